@@ -1,0 +1,23 @@
+# One interface target carries every compile flag; nothing is set globally.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+add_library(airtruth_options INTERFACE)
+target_compile_features(airtruth_options INTERFACE cxx_std_20)
+target_compile_options(airtruth_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wno-deprecated-enum-enum-conversion
+  # The same sums everywhere: no fused multiply-add that one compiler contracts and another does not.
+  -ffp-contract=off)
+if(AIRTRUTH_WERROR)
+  target_compile_options(airtruth_options INTERFACE -Werror)
+endif()
+if(AIRTRUTH_SANITIZE)
+  target_compile_options(airtruth_options INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined)
+endif()

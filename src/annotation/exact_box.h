@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "aircraft/mesh.h"
+#include "geometry/box.h"
+#include "lens/lens.h"
+
+namespace airtruth::annotation {
+
+// How a frame is seen: design.md section 2 in reverse, world to pixel.
+struct Sight {
+  const lens::Lens* lens = nullptr;
+  Rigid cam_from_world;
+  Homography frame_from_nominal = Homography::Identity();
+};
+
+// Where a point of the world is seen; empty behind the camera, beyond the lens's field, or beyond H's horizon.
+std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world);
+
+// The silhouette points of a mesh, prepared once per aircraft.
+struct Silhouette {
+  const aircraft::Mesh* mesh = nullptr;
+  std::vector<std::vector<Eigen::Vector3f>> points;  // aircraft::silhouette_points(*mesh)
+};
+
+struct ExactBox {
+  std::optional<Box> box;       // of the points that have a pixel; empty when none has
+  bool partly_unseen = false;   // some points have no pixel (behind the camera or beyond the lens's field)
+};
+
+// Bounding box of the projected silhouette, in frame pixels, not clipped. Never looks at rendered pixels: it is the
+// other of the two roads to the box.
+ExactBox exact_box(const Sight& sight, const Silhouette& silhouette, const Rigid& world_from_body, double time_s);
+
+}  // namespace airtruth::annotation

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace airtruth {
+
+namespace fs = std::filesystem;
+
+// Whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than max_bytes.
+std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{1} << 30);
+
+// Writes beside the final name, flushes to disk and renames, so that `path` holds either what it held before or
+// all of `bytes`. Throws Error where that fails (folder missing, no permission, disk full) and leaves nothing.
+void write_file(const fs::path& path, std::string_view bytes);
+
+// The name under which a file is written before it is renamed: "dir/a.mp4" -> "dir/.a.part.mp4" (the extension
+// stays, since encoders choose by it).
+fs::path part_path(const fs::path& path);
+
+// SHA-256 of a file's content or of bytes, 64 lower-case hex digits (as sha256sum prints it).
+std::string sha256_of_file(const fs::path& path);
+std::string sha256_of(std::string_view bytes);
+
+// Is the text well-formed UTF-8? Returns the byte offset of the first fault, or npos.
+std::size_t utf8_fault(std::string_view text);
+
+// $XDG_CACHE_HOME/airtruth, else ~/.cache/airtruth, else a folder under the temporary directory.
+fs::path cache_folder();
+
+}  // namespace airtruth

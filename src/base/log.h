@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace airtruth {
+
+// The library never prints: it hands one-line warnings to whoever called. An empty function drops them.
+using Warn = std::function<void(const std::string& message)>;
+
+inline void warn(const Warn& to, const std::string& message) {
+  if (to) to(message);
+}
+
+}  // namespace airtruth

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "image/picture.h"
+
+// Between a picture's samples and linear light.
+//
+// Linear RGB has the sRGB primaries and 1 = the brightest code value. The transfer curve of video is taken as
+// sRGB's (IEC 61966-2-1), which is how such video is shown on a screen.
+namespace airtruth::image {
+
+using Rgb = std::array<float, 3>;
+
+// sRGB, 0..1 to 0..1, by the exact piecewise curve; values outside are clamped.
+float linear_from_srgb(float coded);
+float srgb_from_linear(float linear);
+
+// Y', Cb, Cr as code values (0..255, may be fractional) to coded R'G'B' (0..1 nominal; may exceed) and back.
+// For Matrix::kRgb the three are G, B, R. The pair is an exact inverse up to float rounding.
+struct Ycc {
+  float y = 0;
+  float cb = 128;
+  float cr = 128;
+};
+class ColourCode {
+ public:
+  explicit ColourCode(const Colour& colour);
+  Rgb rgb_from_ycc(const Ycc& ycc) const;  // coded R'G'B'
+  Ycc ycc_from_rgb(const Rgb& rgb) const;
+
+ private:
+  bool rgb_planes_ = false;
+  float kr_ = 0, kg_ = 0, kb_ = 0;
+  float y_scale_ = 0, y_offset_ = 0, c_scale_ = 0;
+};
+
+// The whole picture as packed sRGB, chroma held over its block, for previews and stills.
+Rgb8 rgb8_from_picture(const Picture& picture);
+
+// A part of it, [x, x + width) x [y, y + height), which may stick out of the picture: outside is black.
+Rgb8 rgb8_from_picture(const Picture& picture, int x, int y, int width, int height);
+
+// Back, with chroma averaged over its block.
+Picture picture_from_rgb8(const Rgb8& rgb, const Colour& colour);
+
+}  // namespace airtruth::image

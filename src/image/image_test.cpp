@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/colour.h"
+#include "image/picture.h"
+
+namespace airtruth::image {
+namespace {
+
+TEST(Srgb, MatchesTheStandardAtKnownPoints) {
+  EXPECT_NEAR(linear_from_srgb(0.5f), 0.21404114f, 1e-6f);
+  EXPECT_NEAR(srgb_from_linear(0.18f), 0.46135613f, 1e-6f);
+  for (int i = 0; i <= 255; ++i) {
+    const float coded = static_cast<float>(i) / 255.0f;
+    EXPECT_NEAR(srgb_from_linear(linear_from_srgb(coded)), coded, 1e-5f);
+  }
+}
+
+// Rec. BT.709-6, item 3.4: red at 100 % in 8-bit limited range is Y 63, Cb 102, Cr 240.
+TEST(ColourCode, RedIsWhereTheStandardPutsIt) {
+  const Ycc red = ColourCode({Chroma::k444, Matrix::kBt709, Range::kLimited}).ycc_from_rgb({1, 0, 0});
+  EXPECT_EQ(std::lround(red.y), 63);
+  EXPECT_EQ(std::lround(red.cb), 102);
+  EXPECT_EQ(std::lround(red.cr), 240);
+  const Ycc red601 = ColourCode({Chroma::k444, Matrix::kBt601, Range::kFull}).ycc_from_rgb({1, 0, 0});
+  EXPECT_EQ(std::lround(red601.y), 76);  // JFIF
+  EXPECT_EQ(std::lround(red601.cb), 85);
+  EXPECT_NEAR(red601.cr, 255.5f, 1e-3f);
+}
+
+TEST(ColourCode, RoundTripsForEveryMatrixAndRange) {
+  for (Matrix matrix : {Matrix::kRgb, Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020}) {
+    for (Range range : {Range::kLimited, Range::kFull}) {
+      const ColourCode colour_code({Chroma::k444, matrix, range});
+      for (float y = 0; y < 256; y += 51) {
+        for (float cb = 3; cb < 256; cb += 50) {
+          const Ycc back = colour_code.ycc_from_rgb(colour_code.rgb_from_ycc({y, cb, 255 - cb}));
+          EXPECT_NEAR(back.y, y, 1e-3f);
+          EXPECT_NEAR(back.cb, cb, 1e-3f);
+          EXPECT_NEAR(back.cr, 255 - cb, 1e-3f);
+        }
+      }
+    }
+  }
+}
+
+TEST(Picture, OddSizesRoundChromaUp) {
+  const Picture picture = make_picture(5, 3, {Chroma::k420});
+  EXPECT_EQ(picture.planes[1].width, 3);
+  EXPECT_EQ(picture.planes[1].height, 2);
+  EXPECT_EQ(make_picture(5, 3, {Chroma::k422}).planes[2].height, 3);
+  EXPECT_EQ(make_picture(5, 3, {Chroma::kNone}).plane_count, 1);
+}
+
+TEST(Picture, CloneIsIdenticalUntilASampleChanges) {
+  Picture picture = picture_from_rgb8(make_rgb8(7, 5), {Chroma::k420});
+  Picture copy = picture.clone();
+  EXPECT_TRUE(identical(picture, copy));
+  copy.planes[2].row(2)[3] ^= 1;
+  EXPECT_FALSE(identical(picture, copy));
+}
+
+TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
+  Rgb8 rgb = make_rgb8(16, 16);
+  for (int i = 0; i < 16 * 16; ++i) {
+    rgb.samples[static_cast<std::size_t>(3 * i)] = static_cast<std::uint8_t>(i);
+    rgb.samples[static_cast<std::size_t>(3 * i + 1)] = static_cast<std::uint8_t>(255 - i);
+    rgb.samples[static_cast<std::size_t>(3 * i + 2)] = static_cast<std::uint8_t>((7 * i) % 256);
+  }
+  const Rgb8 back = rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kBt601, Range::kFull}));
+  for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_NEAR(back.samples[i], rgb.samples[i], 1);
+  const Rgb8 exact = rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kRgb, Range::kFull}));
+  for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
+}
+
+}  // namespace
+}  // namespace airtruth::image

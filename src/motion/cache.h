@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion/motion.h"
+
+namespace airtruth::motion {
+
+// Results are cached by content: the video's bytes, the mask's, the range of frames, the options and the version of
+// the estimator. A file that is not whole or not ours is ignored, never trusted.
+struct CacheKey {
+  std::string video_sha256;
+  std::string mask_sha256;  // "" without a mask
+  std::int64_t first_frame = 0;
+  std::int64_t frame_count = -1;  // -1: to the end
+  Options options;
+  std::string file_name() const;  // a hash of all of it, ".csv"
+};
+
+std::optional<std::vector<FrameMotion>> cached(const std::filesystem::path& folder, const CacheKey& key);
+void store(const std::filesystem::path& folder, const CacheKey& key, const std::vector<FrameMotion>& motion);
+
+}  // namespace airtruth::motion

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "aircraft/mesh.h"
+#include "geometry/box.h"
+#include "geometry/transform.h"
+#include "image/layer.h"
+#include "lens/lens.h"
+
+// Rays over exactly the pixels that an intruder can touch (design: docs/architecture.md):
+//
+//   ray_in_world(pixel) = world_from_cam * lens.ray_from_pixel(nominal_from_frame * pixel)
+//
+// carried into each aircraft's own frame, where its BVH (Embree) never moves.
+namespace airtruth::render {
+
+struct Light {
+  Vector3 to_sun_in_world{0, 0, -1};            // unit
+  std::array<float, 3> sun = {1, 1, 1};         // linear; irradiance/pi on a surface facing the sun
+  std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};     // linear; from straight above
+  std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};  // linear; from straight below
+};
+
+// to_sun_in_world from azimuth (north towards east) and elevation.
+Vector3 to_sun(double azimuth_deg, double elevation_deg);
+
+struct View {
+  const lens::Lens* lens = nullptr;
+  Rigid world_from_cam;
+  Homography nominal_from_frame = Homography::Identity();
+  int width = 0;   // of the frame
+  int height = 0;
+};
+
+// One aircraft ready to be hit: its BVH, in body coordinates. Immutable; share one among intruders of one type.
+class Model {
+ public:
+  explicit Model(const aircraft::Mesh& mesh);  // copies what it needs
+  ~Model();
+  Model(Model&&) noexcept;
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+struct Instance {
+  const Model* model = nullptr;
+  Rigid world_from_body;
+  double time_s = 0;  // turns the propellers
+};
+
+struct Options {
+  // Samples: 1 draft, 2, 3 (default: alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px of size, 1/40
+  // above), 4, 5 (the oracle: 4,096 rays a pixel everywhere).
+  int quality = 3;
+};
+
+// `search` boxes (one per instance, in frame pixels, not clipped; empty: not in view) say where an instance can be:
+// from projected geometry with a margin. Pixels outside every box are never touched. Same bytes for any number of
+// threads (rows of tiles run on oneTBB).
+image::Layer render(const View& view, const Light& light, const std::vector<Instance>& instances,
+                    const std::vector<std::optional<Box>>& search, const Options& options = {});
+
+}  // namespace airtruth::render

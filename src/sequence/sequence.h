@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "scene/scene.h"
+
+// One video end to end: read, move, render, composite, annotate, write.
+namespace airtruth::sequence {
+
+namespace fs = std::filesystem;
+
+struct Progress {
+  std::int64_t frames_done = 0;
+  std::int64_t frames_total = 0;  // 0: unknown
+};
+
+struct Options {
+  bool overwrite = false;
+  int threads = 0;                    // 0: one per core. The annotation's bytes do not depend on it.
+  bool use_cache = true;
+  std::optional<int> gpu;             // for chroma-key's OpenGL
+  bool software_gl = false;
+  Warn warn;
+  std::function<void(const Progress&)> progress;
+  std::stop_token stop;
+};
+
+struct Summary {
+  fs::path folder;                    // <out>/<name>
+  std::int64_t frames = 0;
+  std::int64_t frames_visible = 0;    // at least one intruder visible
+  std::int64_t frames_bridged = 0;    // motion not measured
+  std::int64_t frames_damaged = 0;
+  double seconds = 0;
+  bool motion_from_cache = false;
+};
+
+// Leaves <out>/<name>/ whole (docs/formats/output.md) or not at all: everything is written in a hidden folder beside
+// it and renamed at the end. Throws Error for what the user gave, Interrupted after options.stop.
+Summary render(const scene::Scene& scene, const fs::path& out, const Options& options);
+
+}  // namespace airtruth::sequence

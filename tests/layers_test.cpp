@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Includes go strictly downward: src/LAYERS gives each module its rank, and every include is read here.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kSource = fs::path(AIRTRUTH_SOURCE_DIR) / "src";
+
+std::map<std::string, int> ranks() {
+  std::map<std::string, int> result;
+  std::ifstream file(kSource / "LAYERS");
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    int rank = 0;
+    words >> rank;
+    for (std::string module; words >> module;) result[module] = rank;
+  }
+  return result;
+}
+
+bool is_source(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return (name.ends_with(".h") || name.ends_with(".cpp")) && !name.ends_with("_test.cpp");
+}
+
+TEST(Layers, EveryModuleHasARank) {
+  const auto rank_of = ranks();
+  for (const auto& entry : fs::directory_iterator(kSource)) {
+    if (!entry.is_directory()) continue;
+    EXPECT_TRUE(rank_of.contains(entry.path().filename())) << entry.path();
+  }
+}
+
+TEST(Layers, IncludesGoStrictlyDownward) {
+  const auto rank_of = ranks();
+  ASSERT_FALSE(rank_of.empty());
+  const std::regex include(R"re(^\s*#\s*include\s+"([a-z_]+)/[^"]+")re");
+  int checked = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    const std::string module = fs::relative(entry.path(), kSource).begin()->string();
+    ASSERT_TRUE(rank_of.contains(module)) << entry.path();
+    std::ifstream file(entry.path());
+    int number = 0;
+    for (std::string line; std::getline(file, line);) {
+      ++number;
+      std::smatch match;
+      if (!std::regex_search(line, match, include)) continue;
+      const std::string other = match[1];
+      ++checked;
+      ASSERT_TRUE(rank_of.contains(other)) << entry.path() << ":" << number << ": unknown module " << other;
+      if (other == module) continue;
+      EXPECT_GT(rank_of.at(module), rank_of.at(other)) << entry.path() << ":" << number << " includes " << match[1];
+    }
+  }
+  EXPECT_GT(checked, 50);
+}
+
+}  // namespace
