@@ -1,1 +1,36 @@
+# Installs the program, the library libairtruth.so with its headers, and find_package(airtruth); CPack makes the .deb.
+get_property(modules GLOBAL PROPERTY AIRTRUTH_MODULES)
+add_library(airtruth_shared SHARED ${PROJECT_SOURCE_DIR}/cmake/library.cpp)
+set_target_properties(airtruth_shared PROPERTIES OUTPUT_NAME airtruth EXPORT_NAME airtruth
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+target_link_libraries(airtruth_shared PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${modules}>")
+target_link_libraries(airtruth_shared INTERFACE Eigen3::Eigen)
+target_compile_features(airtruth_shared INTERFACE cxx_std_20)
+target_include_directories(airtruth_shared INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/airtruth>)
+add_library(airtruth::airtruth ALIAS airtruth_shared)
 
+include(CMakePackageConfigHelpers)
+install(TARGETS airtruth RUNTIME)
+install(TARGETS airtruth_shared EXPORT airtruth LIBRARY)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/airtruth
+  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/examples)
+install(EXPORT airtruth NAMESPACE airtruth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth FILE airtruth-targets.cmake)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/airtruth-config.cmake.in
+  ${PROJECT_BINARY_DIR}/airtruth-config.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/airtruth-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/airtruth-config.cmake ${PROJECT_BINARY_DIR}/airtruth-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "airtruth maintainers <airtruth@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "flightgear-data-ai, libgl1-mesa-dri, libegl-mesa0")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+include(CPack)

@@ -1,2 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+#include <clocale>
+#include <exception>
+#include <optional>
+
+#include "base/error.h"
+#include "base/version.h"
+#include "cli/commands.h"
+
+namespace {
+
+using namespace airtruth;  // the program's own top level
+
+constexpr int kOurFailure = 1;
+constexpr int kBadInput = 2;
+constexpr int kInterrupted = 130;
+
+constexpr const char* kAbout =
+    "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the exact truth of\n"
+    "every frame. Start with `airtruth demo`, then `airtruth render SCENE.toml --out DIR`.";
+
+int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std::optional<cli::Console>& console) {
+  const auto say = [&](const std::string& message) {
+    if (!console) console.emplace(options);
+    console->end_progress();
+    console->error(message);
+  };
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    say(std::string(error.what()) + " (see --help)");
+    return kBadInput;
+  } catch (const Interrupted&) {
+    say("interrupted; nothing is left behind");
+    return kInterrupted;
+  } catch (const Error& error) {
+    say(error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    say(std::string(error.what()) + " (this is a fault of airtruth; please report it with what you ran)");
+    return kOurFailure;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const cli::StopOnSignal signals;
+  CLI::App app(kAbout, "airtruth");
+  app.set_version_flag("--version", std::string("airtruth ") + kVersion);
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.failure_message(CLI::FailureMessage::simple);
+  cli::ConsoleOptions options;
+  app.add_flag("--quiet", options.quiet, "Print warnings and errors alone");
+  app.add_flag("--json-log", options.json_log, "Log as JSON, an object a line, on standard error");
+  std::optional<cli::Console> console;
+  cli::Context context;
+  context.stop = signals.token();
+  context.console = [&]() -> cli::Console& {
+    if (!console) console.emplace(options);
+    return *console;
+  };
+  cli::add_demo(app, context);
+  cli::add_render(app, context);
+  cli::add_overlay(app, context);
+  cli::add_inspect(app, context);
+  cli::add_motion(app, context);
+  cli::add_aircraft(app, context);
+  cli::add_synth(app, context);
+  cli::add_evision(app, context);
+  return run(app, argc, argv, options, console);
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,32 +12,39 @@
 // Pictures for people: the contact sheet, the burnt-in overlay, the close look at one frame.
 namespace airtruth::report {
 
-// preview.jpg: up to twelve frames, each with the intruder enlarged in a corner, its range and its frame number.
-// Feed frames as they come; keeps small copies of the chosen ones alone.
+// preview.jpg: up to twelve frames, each with its visible intruders enlarged in a corner, with range and frame number.
+// Feed frames as they come, in order; keeps small copies of chosen ones alone, so memory does not grow. With an
+// unknown number of frames the spacing doubles whenever the sheet is full.
 class ContactSheet {
  public:
-  // Chooses `tiles` frames evenly among `frame_count` (or the first that show an intruder where few do).
-  ContactSheet(std::string title, std::int64_t frame_count_estimate, int tiles = 12);
+  ContactSheet(std::string title, std::int64_t frame_count_estimate, std::size_t tiles = 12);
   void add(const image::Picture& picture, const annotation::Frame& truth);
-  image::Rgb8 sheet() const;
+  image::Rgb8 sheet() const;  // 3 columns; a note where no frame was seen
 
  private:
   struct Tile {
-    image::Rgb8 small;
-    std::vector<image::Rgb8> closeups;
-    std::string caption;
+    std::int64_t frame = 0;
+    image::Rgb8 picture;
   };
   std::string title_;
+  std::size_t tiles_;
   std::int64_t every_ = 1;
-  int tiles_ = 12;
   std::vector<Tile> chosen_;
 };
 
-// Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12).
+// Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12): the visible box in
+// green, one pixel outside the labelled pixels; where the intruder is in view but hidden, the exact box in amber.
 image::Rgb8 overlay(const image::Picture& picture, const annotation::Frame& truth);
 
-// Background, alpha and result of one intruder side by side, nearest-neighbour enlarged `zoom` times, boxes drawn.
-image::Rgb8 closeup(const image::Picture& background, const image::Picture& result, const image::Layer* layer,
-                    const annotation::Frame& truth, std::size_t intruder, int zoom);
+// What a closer look needs of one intruder in one frame.
+struct Closeup {
+  const image::Picture* background = nullptr;
+  const image::Picture* result = nullptr;
+  const image::Layer* layer = nullptr;   // its alpha; nullptr: |result - background| is shown instead
+};
+
+// Background, alpha and result side by side, each pixel enlarged `zoom` times without smoothing, exact box (amber) and
+// visible box (green) drawn on the result. `area`: the pixels shown, which may stick out of the frame.
+image::Rgb8 closeup(const Closeup& what, const annotation::Frame& truth, const PixelBox& area, int zoom);
 
 }  // namespace airtruth::report

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "cli/commands.h"
+#include "sequence/portrait.h"
+#include "video/still.h"
+
+namespace airtruth::cli {
+namespace {
+
+void list(const std::string& filter, Context& context) {
+  std::size_t shown = 0;
+  const auto entries = aircraft::list_aircraft();
+  for (const auto& entry : entries) {
+    if (!filter.empty() && entry.name.find(filter) == std::string::npos) continue;
+    fmt::print("{}\n", entry.name);
+    ++shown;
+  }
+  if (shown == 0)
+    throw Error(fmt::format("no name among {} aircraft contains '{}'; `airtruth aircraft list` shows all",
+                            entries.size(), filter));
+  (void)context;
+}
+
+struct ShowArguments {
+  std::string name;
+  std::string out;
+  std::string forward;
+  std::string up;
+  double scale = 0;
+};
+
+aircraft::LoadOptions load_options(const ShowArguments& arguments) {
+  aircraft::LoadOptions options;
+  if (arguments.forward.empty() && arguments.up.empty() && arguments.scale == 0) return options;
+  aircraft::ModelAxes axes;
+  if (!arguments.forward.empty()) axes.forward = arguments.forward;
+  if (!arguments.up.empty()) axes.up = arguments.up;
+  if (arguments.scale != 0) axes.scale = arguments.scale;
+  options.axes = axes;
+  return options;
+}
+
+void show(const ShowArguments& arguments, Context& context) {
+  Console& console = context.console();
+  const aircraft::Aircraft loaded =
+      aircraft::load_aircraft(arguments.name, load_options(arguments), console.warn());
+  const aircraft::Extents size = aircraft::extents(loaded.mesh);
+  const auto liveries = aircraft::liveries(arguments.name);
+  console.result(fmt::format("{}\n  length {:.2f} m, span {:.2f} m, height {:.2f} m\n  {} triangles, {} textures, {}",
+                             loaded.name, size.length_m(), size.span_m(), size.height_m(),
+                             loaded.mesh.triangle_count(), loaded.mesh.textures.size(), loaded.file.string()));
+  if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
+  for (const std::string& livery : liveries) console.result("    " + livery);
+  if (arguments.out.empty()) return;
+  video::write_still(arguments.out, sequence::portrait(loaded));
+  console.result("  " + arguments.out);
+}
+
+}  // namespace
+
+void add_aircraft(CLI::App& app, Context& context) {
+  auto* command = app.add_subcommand("aircraft", "The aircraft that can be flown");
+  command->require_subcommand(1);
+  auto* list_command = command->add_subcommand("list", "Print the name of every aircraft, a line each");
+  auto filter = std::make_shared<std::string>();
+  list_command->add_option("FILTER", *filter, "Show only names that contain this");
+  list_command->callback([filter, &context] { list(*filter, context); });
+  auto* show_command = command->add_subcommand("show", "Size and liveries of one aircraft, and a contact sheet of pictures");
+  auto arguments = std::make_shared<ShowArguments>();
+  show_command->add_option("NAME", arguments->name, "A name of `aircraft list`, or a model file (.ac .obj .3ds .osgt)")->required();
+  show_command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
+  show_command->add_option("--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
+  show_command->add_option("--up", arguments->up, "Model file: its axis that is up");
+  show_command->add_option("--scale", arguments->scale, "Model file: metres per unit")->check(CLI::PositiveNumber);
+  show_command->callback([arguments, &context] { show(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

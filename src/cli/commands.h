@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stop_token>
+
+#include "cli/console.h"
+
+// One function a subcommand: it declares its arguments on `app` and returns what to do once they are parsed.
+namespace airtruth::cli {
+
+struct Context {
+  std::function<Console&()> console;  // made after parsing, when --quiet and --json-log are known
+  std::stop_token stop;
+};
+using Action = std::function<void()>;
+
+void add_render(CLI::App& app, Context& context);
+void add_motion(CLI::App& app, Context& context);
+void add_aircraft(CLI::App& app, Context& context);
+void add_overlay(CLI::App& app, Context& context);
+void add_inspect(CLI::App& app, Context& context);
+void add_synth(CLI::App& app, Context& context);
+void add_demo(CLI::App& app, Context& context);
+void add_evision(CLI::App& app, Context& context);
+
+}  // namespace airtruth::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stop_token>
+#include <string>
+
+#include "base/log.h"
+
+// All that the program prints goes through here. Results go to standard output; warnings, errors and progress to
+// standard error. Progress is drawn on a terminal alone and is quiet in a pipe.
+namespace airtruth::cli {
+
+struct ConsoleOptions {
+  bool quiet = false;     // warnings and errors alone
+  bool json_log = false;  // one JSON object a line on standard error, in place of text
+};
+
+class Console {
+ public:
+  explicit Console(const ConsoleOptions& options);
+
+  void progress(const std::string& stage, std::int64_t done, std::int64_t total);
+  void end_progress();
+  void warning(const std::string& message);
+  void error(const std::string& message);
+  void result(const std::string& message);  // what the run made; nothing when quiet
+  Warn warn() {
+    return [this](const std::string& message) { warning(message); };
+  }
+
+ private:
+  void log(const char* level, const std::string& message);
+
+  ConsoleOptions options_;
+  bool terminal_ = false;
+  bool line_open_ = false;
+  std::string stage_;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+// Turns SIGINT and SIGTERM into a request to stop; a second signal ends the process at once with 130.
+// Made first thing in main, before any thread, so that every thread inherits the blocked signals.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+};
+
+}  // namespace airtruth::cli

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/motion.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "cli/commands.h"
+#include "motion/plot.h"
+#include "motion/stabilise.h"
+#include "sequence/motion_source.h"
+#include "video/still.h"
+#include "video/writer.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct Arguments {
+  std::string video;
+  std::string out;
+  std::string mask;
+  std::string plot;
+  std::string stabilised;
+  std::string reference = "first_frame";
+  double smoothing_s = 1;
+  bool overwrite = false;
+};
+
+void stabilise(const Arguments& arguments, const std::vector<motion::FrameMotion>& all, Context& context) {
+  const fs::path out = arguments.stabilised;
+  const std::string extension = out.extension().string();
+  video::WriterOptions options;
+  options.format = video::format_from_name(extension.empty() ? extension : extension.substr(1));
+  video::Reader reader(arguments.video);
+  video::Writer writer(out, reader.info(), options);
+  while (auto frame = reader.next()) {
+    if (context.stop.stop_requested()) throw Interrupted();
+    const auto& motion = all[static_cast<std::size_t>(frame->index)];
+    frame->picture = motion::stabilised(frame->picture, motion.frame_from_reference);
+    writer.write(*frame);
+    context.console().progress("stabilising", frame->index + 1, static_cast<std::int64_t>(all.size()));
+  }
+  writer.finish();
+}
+
+void measure(const Arguments& arguments, Context& context) {
+  for (const std::string& file : {arguments.out, arguments.plot, arguments.stabilised})
+    if (!file.empty() && fs::exists(file) && !arguments.overwrite)
+      throw Error("exists already; give --overwrite to replace it", {file});
+  Console& console = context.console();
+  video::Reader reader(arguments.video, {}, console.warn());
+  const video::StreamInfo info = reader.info();
+  std::optional<image::Mask> mask;
+  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
+  motion::Options options;
+  options.smoothing_s = arguments.smoothing_s;
+  auto all = sequence::measure_motion(
+      reader, options, mask ? &*mask : nullptr, context.stop,
+      [&](std::int64_t done) { console.progress("measuring", done, info.frame_count_estimate); });
+  if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
+  write_file(arguments.out, motion::csv_from_motion(all));
+  if (!arguments.plot.empty()) video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
+  if (!arguments.stabilised.empty()) stabilise(arguments, all, context);
+  std::size_t measured = 0;
+  for (const auto& frame : all)
+    measured += frame.state == motion::State::kMeasured || frame.state == motion::State::kReference ? 1 : 0;
+  console.result(fmt::format("{}: {} frames, measured in {}", arguments.out, all.size(), measured));
+}
+
+}  // namespace
+
+void add_motion(CLI::App& app, Context& context) {
+  auto* command = app.add_subcommand("motion", "Measure how a video's camera moved");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("VIDEO", arguments->video, "The video")->required();
+  command->add_option("-o,--out", arguments->out, "Table to write: frame,time_s,h11..h33,inliers,rms_px,state (.csv)")->required();
+  command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
+  command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
+  command->add_option("--stabilised", arguments->stabilised, "Write a steadied copy of the video here");
+  command->add_option("--reference", arguments->reference, "first_frame or smoothed")
+      ->check(CLI::IsMember({"first_frame", "smoothed"}))->capture_default_str();
+  command->add_option("--smoothing", arguments->smoothing_s, "smoothed: width of the window in seconds")
+      ->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
+  command->callback([arguments, &context] { measure(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/ambient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "image/colour.h"
+
+namespace airtruth::sequence {
+namespace {
+
+using image::Rgb;
+
+constexpr int kGrid = 48;             // blocks along the longer side
+constexpr float kSmoothing = 0.1f;    // share of a new frame; about a third of a second at 30 frames/s
+constexpr Rgb kSunColour = {1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
+
+struct Block {
+  Rgb linear{};
+  float brightness = 0;
+  float weight = 1;
+};
+
+float brightness(const Rgb& linear) { return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2]; }
+
+Rgb linear_at(const image::Picture& picture, const image::ColourCode& code, int x, int y) {
+  image::Ycc ycc;
+  ycc.y = picture.planes[0].row(y)[x];
+  if (picture.plane_count == 3) {
+    const int cx = x >> image::log2_chroma_width(picture.colour.chroma);
+    const int cy = y >> image::log2_chroma_height(picture.colour.chroma);
+    ycc.cb = picture.planes[1].row(cy)[cx];
+    ycc.cr = picture.planes[2].row(cy)[cx];
+  }
+  Rgb rgb = code.rgb_from_ycc(ycc);
+  for (float& c : rgb) c = image::linear_from_srgb(c);
+  return rgb;
+}
+
+std::vector<Block> blocks_of(const image::Picture& picture, const image::Mask* own_aircraft,
+                             const std::optional<PixelBox>& near) {
+  const image::ColourCode code(picture.colour);
+  const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
+  std::optional<PixelBox> around;
+  if (near) {
+    const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
+    around = PixelBox{near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
+  }
+  std::vector<Block> blocks;
+  for (int y = step / 2; y < picture.height; y += step) {
+    for (int x = step / 2; x < picture.width; x += step) {
+      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
+      Block block;
+      block.linear = linear_at(picture, code, x, y);
+      block.brightness = brightness(block.linear);
+      block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
+      blocks.push_back(block);
+    }
+  }
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const Block& a, const Block& b) { return a.brightness < b.brightness; });
+  return blocks;
+}
+
+// Weighted mean of the blocks whose share of the total weight lies in [from, to).
+Rgb mean(const std::vector<Block>& blocks, float from, float to) {
+  float total = 0;
+  for (const Block& block : blocks) total += block.weight;
+  Rgb sum{};
+  float weight = 0;
+  float before = 0;
+  for (const Block& block : blocks) {
+    const float share = (before + block.weight / 2) / total;
+    before += block.weight;
+    if (share < from || share >= to) continue;
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += block.linear[c] * block.weight;
+    weight += block.weight;
+  }
+  for (float& c : sum) c = weight > 0 ? c / weight : 0.0f;
+  return sum;
+}
+
+Ambient measure(const std::vector<Block>& blocks) {
+  Ambient ambient;
+  ambient.sky = mean(blocks, 0.5f, 1.01f);
+  ambient.ground = mean(blocks, 0.0f, 0.25f);
+  const std::size_t last = blocks.empty() ? 0 : blocks.size() * 98 / 100;
+  const float white = blocks.empty() ? 0.7f : std::clamp(blocks[std::min(last, blocks.size() - 1)].brightness, 0.1f, 1.0f);
+  const float direct = std::max(0.35f * white, white - 0.5f * brightness(ambient.sky));
+  for (std::size_t c = 0; c < 3; ++c) ambient.sun[c] = direct * kSunColour[c];
+  return ambient;
+}
+
+void blend(std::array<float, 3>& into, const std::array<float, 3>& from) {
+  for (std::size_t c = 0; c < 3; ++c) into[c] += kSmoothing * (from[c] - into[c]);
+}
+
+std::array<float, 3> floats(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+}  // namespace
+
+Ambient AmbientEstimator::next(const image::Picture& picture, const std::optional<PixelBox>& near) {
+  const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
+  if (all_stated) return with_scene({});
+  const Ambient now = measure(blocks_of(picture, own_aircraft_, near));
+  if (!smooth_) smooth_ = now;
+  blend(smooth_->sun, now.sun);
+  blend(smooth_->sky, now.sky);
+  blend(smooth_->ground, now.ground);
+  return with_scene(*smooth_);
+}
+
+Ambient AmbientEstimator::with_scene(Ambient measured) const {
+  if (light_.exposure) {
+    for (std::size_t c = 0; c < 3; ++c) measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
+  }
+  if (light_.sky_colour) measured.sky = floats(*light_.sky_colour);
+  if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
+  return measured;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "image/layer.h"
+#include "image/picture.h"
+#include "scene/scene.h"
+
+// What light falls on the intruder, taken from the background where the scene does not state it.
+//
+// The picture is read as a grid of small blocks in linear light, without the own aircraft. Its brighter half stands
+// for the sky and its darkest quarter for the ground, whatever the bank of the camera; the 98th percentile of
+// brightness is what this exposure makes of a bright white thing (cloud, haze), and a white surface square to
+// the sun is given that much. Blocks near the intruder count four times. Smoothed over time, since exposure is.
+namespace airtruth::sequence {
+
+struct Ambient {
+  std::array<float, 3> sun{};
+  std::array<float, 3> sky{};
+  std::array<float, 3> ground{};
+};
+
+class AmbientEstimator {
+ public:
+  AmbientEstimator(const scene::Light& light, const image::Mask* own_aircraft)
+      : light_(light), own_aircraft_(own_aircraft) {}
+
+  // Frames in order. `near`: the intruders' box, where one is in view.
+  Ambient next(const image::Picture& picture, const std::optional<PixelBox>& near);
+
+ private:
+  Ambient with_scene(Ambient measured) const;
+
+  scene::Light light_;
+  const image::Mask* own_aircraft_;
+  std::optional<Ambient> smooth_;
+};
+
+}  // namespace airtruth::sequence

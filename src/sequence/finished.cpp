@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/finished.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "image/colour.h"
+#include "report/pictures.h"
+#include "sequence/paint.h"
+#include "sequence/world.h"
+#include "video/reader.h"
+#include "video/writer.h"
+
+namespace airtruth::sequence {
+namespace {
+
+video::Format format_of(const fs::path& out) {
+  const std::string extension = out.extension().string();
+  if (extension.empty()) throw Error("has no extension; expected .mp4, .mkv or .avi", {out.string()});
+  return video::format_from_name(extension.substr(1));
+}
+
+void refuse_existing(const fs::path& out, bool overwrite) {
+  if (fs::exists(out) && !overwrite) throw Error("exists already; give --overwrite to replace it", {out.string()});
+}
+
+video::Frame frame_at(const fs::path& path, std::int64_t index) {
+  video::ReaderOptions options;
+  options.first_frame = index;
+  options.frame_count = 1;
+  auto frame = video::Reader(path, options).next();
+  if (!frame) throw Error("holds no frame " + std::to_string(index), {path.string()});
+  return std::move(*frame);
+}
+
+std::size_t intruder_index(const annotation::Frame& truth, const std::string& id) {
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    const annotation::Intruder& intruder = truth.intruders[i];
+    const bool drawn = intruder.visible_box_px || intruder.state == annotation::State::kHidden;
+    if (id.empty() ? drawn : intruder.id == id) {
+      if (!intruder.exact_box_px) break;
+      return i;
+    }
+  }
+  throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" + (id.empty() ? "" : " '" + id + "'") +
+              "; expected a frame in which one is in view (see truth.jsonl)");
+}
+
+PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
+  const double margin = std::max(4.0, 0.25 * std::max(box.width, box.height));
+  const int x0 = static_cast<int>(std::floor(std::max(box.x, -8.0) - margin));
+  const int y0 = static_cast<int>(std::floor(std::max(box.y, -8.0) - margin));
+  const int x1 = static_cast<int>(std::ceil(std::min(box.right(), lens.width + 8.0) + margin));
+  const int y1 = static_cast<int>(std::ceil(std::min(box.bottom(), lens.height + 8.0) + margin));
+  return {x0, y0, std::max(1, x1 - x0), std::max(1, y1 - y0)};
+}
+
+}  // namespace
+
+Finished open_finished(const fs::path& folder) {
+  const fs::path record_file = folder / "sequence.json";
+  if (!fs::exists(record_file))
+    throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished", {folder.string()});
+  Finished finished;
+  finished.folder = folder;
+  try {
+    const auto record = nlohmann::json::parse(read_file(record_file));
+    finished.name = record.at("name").get<std::string>();
+    finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(std::string("is not a record of airtruth: ") + error.what(), {record_file.string()});
+  }
+  const auto format = video::format_from_name(finished.scene.output.video);
+  finished.video = folder / (finished.name + video::extension(format));
+  if (!fs::exists(finished.video)) throw Error("is missing; the folder is not whole", {finished.video.string()});
+  finished.truth = annotation::read_truth(folder / "truth.jsonl");
+  return finished;
+}
+
+void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options) {
+  refuse_existing(out, options.overwrite);
+  video::WriterOptions writer_options;
+  writer_options.format = format_of(out);
+  writer_options.quality = sequence.scene.output.quality;
+  video::Reader reader(sequence.video);
+  video::StreamInfo info = reader.info();
+  video::Writer writer(out, info, writer_options);
+  const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
+  while (auto frame = reader.next()) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    if (frame->index >= total) throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
+    const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
+    frame->picture = image::picture_from_rgb8(report::overlay(frame->picture, truth), frame->picture.colour);
+    writer.write(*frame);
+    if (options.progress) options.progress(frame->index + 1, total);
+  }
+  writer.finish();
+}
+
+image::Rgb8 inspect(const Finished& sequence, std::int64_t frame, const std::string& intruder_id, int zoom) {
+  const auto count = static_cast<std::int64_t>(sequence.truth.frames.size());
+  if (frame < 0 || frame >= count)
+    throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " + std::to_string(count - 1),
+                {sequence.folder.string()});
+  const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
+  const std::size_t i = intruder_index(truth, intruder_id);
+  const video::Frame before = frame_at(sequence.scene.background.video, sequence.scene.background.first_frame + frame);
+  const video::Frame after = frame_at(sequence.video, frame);
+  const World world = load_world(sequence.scene, {before.picture.width, before.picture.height}, {});
+  const Moment moment = moment_at(world, truth.time_s, truth.frame_from_reference);
+  const image::Layer layer = render_layer(sequence.scene, world, moment, Ambient{});
+  const bool matte = sequence.scene.composite.method == "matte";
+  return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr}, truth,
+                         area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens), zoom);
+}
+
+}  // namespace airtruth::sequence

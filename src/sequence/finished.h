@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "annotation/truth.h"
+#include "base/log.h"
+#include "image/picture.h"
+#include "scene/scene.h"
+
+// A folder that `render` has left, opened again.
+namespace airtruth::sequence {
+
+namespace fs = std::filesystem;
+
+struct Finished {
+  fs::path folder;
+  std::string name;
+  fs::path video;
+  scene::Scene scene;
+  annotation::Truth truth;
+};
+
+// Error where the folder is not whole: no sequence.json, or a file that it names is missing.
+Finished open_finished(const fs::path& folder);
+
+// Burns boxes, range and id into a copy of the video. mp4, mkv or avi by the extension of `out`.
+struct OverlayOptions {
+  bool overwrite = false;
+  std::stop_token stop;
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options);
+
+// Background, alpha and result of a frame around its intruder at `zoom`. `intruder_id` empty: the first that is in
+// view. Error where the frame does not exist or no intruder is in view in it.
+image::Rgb8 inspect(const Finished& sequence, std::int64_t frame, const std::string& intruder_id, int zoom);
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "annotation/evision.h"
+#include "annotation/truth.h"
+#include "lens/lens.h"
+#include "report/pictures.h"
+#include "scene/scene.h"
+#include "sequence/sequence.h"
+#include "video/reader.h"
+#include "video/writer.h"
+
+// What a run leaves (docs/formats/output.md), written frame by frame into the staged folder.
+namespace airtruth::sequence {
+
+annotation::LensFacts facts_of(const lens::Lens& lens);
+
+// An input or output file with its SHA-256, for sequence.json.
+struct Checksum {
+  std::string name;
+  std::string sha256;
+};
+
+class Outputs {
+ public:
+  Outputs(const fs::path& folder, const scene::Scene& scene, const lens::Lens& lens, const video::StreamInfo& info,
+          int threads);
+
+  void write(const video::Frame& frame, const annotation::Frame& truth);
+  // Closes everything and writes the annotation, the preview and, last, sequence.json.
+  void finish(const std::vector<Checksum>& inputs, const Summary& summary);
+
+ private:
+  void write_annotations() const;
+  void write_preview() const;
+  void write_record(const std::vector<Checksum>& inputs, const Summary& summary) const;
+
+  fs::path folder_;
+  scene::Scene scene_;
+  annotation::LensFacts lens_;
+  fs::path video_;
+  video::Writer writer_;
+  std::ofstream truth_;
+  std::vector<Vector3> camera_ned_m_;
+  std::vector<std::vector<std::optional<annotation::EvisionFrame>>> evision_;  // [intruder][frame]
+  report::ContactSheet sheet_;
+};
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/paint.h"
+
+#include <cmath>
+
+#include "backdrop/backdrop.h"
+#include "base/error.h"
+#include "composite/chroma_key.h"
+
+namespace airtruth::sequence {
+namespace {
+
+class Matte : public Painter {
+ public:
+  Matte(const scene::Scene& scene, const World& world, const image::Mask* mask)
+      : scene_(scene), world_(world), mask_(mask) {}
+
+  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
+    Painted painted;
+    painted.layer = render_layer(scene_, world_, moment, ambient);
+    if (!painted.layer.empty())
+      painted.visible = composite::composite_matte(picture, painted.layer, {.own_aircraft = mask_});
+    return painted;
+  }
+
+ private:
+  const scene::Scene& scene_;
+  const World& world_;
+  const image::Mask* mask_;
+};
+
+class ChromaKey : public Painter {
+ public:
+  ChromaKey(const scene::Scene& scene, const World& world, const image::Mask* mask, const Options& options)
+      : scene_(scene), world_(world), mask_(mask) {
+    if (!std::holds_alternative<lens::Pinhole>(world.lens.model()))
+      throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole alone; the lens is ") +
+                      world.lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
+                  scene.lens.where);
+    backdrop::Options gl;
+    gl.gpu = options.gpu;
+    gl.software = options.software_gl;
+    const lens::ImageSize size = world.lens.size();
+    backdrop_ = std::make_unique<backdrop::Backdrop>(size.width, size.height, gl);
+  }
+
+  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
+    Painted painted;
+    painted.layer = render_layer(scene_, world_, moment, ambient);
+    const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
+    std::vector<backdrop::Instance> instances;
+    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
+      if (!moment.search[i]) continue;
+      instances.push_back({&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
+    }
+    if (instances.empty()) return painted;
+    const backdrop::Light light{render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
+                                ambient.sun, ambient.sky, ambient.ground};
+    const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px, pinhole.principal_point_px,
+                                                        moment.sight.cam_from_world, light, instances);
+    const image::Picture before = picture.clone();
+    composite::composite_chroma_key(picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
+    painted.visible = changed(before, picture, painted.layer, moment);
+    return painted;
+  }
+
+ private:
+  // What changed, shared out among the intruders by where geometry says they are.
+  std::vector<composite::Visible> changed(const image::Picture& before, const image::Picture& after,
+                                          const image::Layer& layer, const Moment& moment) const;
+
+  const scene::Scene& scene_;
+  const World& world_;
+  const image::Mask* mask_;
+  std::unique_ptr<backdrop::Backdrop> backdrop_;
+};
+
+bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
+  if (a.planes[0].row(y)[x] != b.planes[0].row(y)[x]) return true;
+  if (a.plane_count == 1) return false;
+  const int cx = x >> image::log2_chroma_width(a.colour.chroma);
+  const int cy = y >> image::log2_chroma_height(a.colour.chroma);
+  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] || a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
+}
+
+void add_pixel(composite::Visible& visible, int x, int y) {
+  const PixelBox pixel{x, y, 1, 1};
+  visible.box = visible.box ? bounds(*visible.box, pixel) : pixel;
+  ++visible.pixels;
+}
+
+std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before, const image::Picture& after,
+                                                   const image::Layer& layer, const Moment& moment) const {
+  constexpr double kLanczosReachPx = 5;  // an 8x8 kernel spreads an edge by four pixels
+  std::vector<composite::Visible> visible(world_.actors.size());
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (!moment.search[i]) continue;
+    const Box& box = *moment.search[i];
+    const int x1 = std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
+    const int y1 = std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
+    for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
+      for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
+        if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
+    }
+    if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
+    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
+      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+        const double coverage = layer.coverage[i][layer.index(x, y)];
+        visible[i].alpha_before_mask_px += coverage;
+        if (mask_ == nullptr || mask_->is_free(x, y)) visible[i].alpha_sum_px += coverage;
+      }
+    }
+  }
+  return visible;
+}
+
+}  // namespace
+
+image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment,
+                          const Ambient& ambient) {
+  const render::View view{&world.lens, moment.sight.cam_from_world.inverse(),
+                          moment.sight.frame_from_nominal.inverse(), world.lens.size().width,
+                          world.lens.size().height};
+  const render::Light light{render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg), ambient.sun,
+                            ambient.sky, ambient.ground};
+  std::vector<render::Instance> instances;
+  bool any = false;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    render::Instance instance{world.actors[i].model.get(), {}, moment.time_s};
+    if (moment.states[i]) instance.world_from_body = moment.states[i]->world_from_body_rigid();
+    any = any || moment.search[i].has_value();
+    instances.push_back(instance);
+  }
+  if (!any) return {};
+  return render::render(view, light, instances, moment.search, {.quality = scene.render.quality});
+}
+
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
+                                      const Options& options) {
+  if (scene.composite.method == "chroma-key") return std::make_unique<ChromaKey>(scene, world, mask, options);
+  return std::make_unique<Matte>(scene, world, mask);
+}
+
+}  // namespace airtruth::sequence

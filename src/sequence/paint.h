@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "composite/matte.h"
+#include "image/layer.h"
+#include "image/picture.h"
+#include "scene/scene.h"
+#include "sequence/ambient.h"
+#include "sequence/sequence.h"
+#include "sequence/world.h"
+
+// Puts the intruders of one moment into a picture, by the method that the scene names.
+namespace airtruth::sequence {
+
+struct Painted {
+  image::Layer layer;                         // what the ray tracer drew (for chroma-key: what it would draw)
+  std::vector<composite::Visible> visible;    // per intruder; empty where none is in view
+};
+
+class Painter {
+ public:
+  virtual ~Painter() = default;
+  // matte: any thread, any order. chroma-key: one thread.
+  virtual Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const = 0;
+};
+
+// Error where the method cannot draw through the scene's lens.
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
+                                      const Options& options);
+
+// The layer of one moment, as the matte uses it.
+image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient);
+
+}  // namespace airtruth::sequence

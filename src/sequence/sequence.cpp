@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "sequence/ambient.h"
+#include "sequence/motion_source.h"
+#include "sequence/outputs.h"
+#include "sequence/paint.h"
+#include "sequence/staging.h"
+#include "sequence/world.h"
+#include "video/still.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// One frame on its way through the pipeline.
+struct Work {
+  video::Frame frame;
+  motion::FrameMotion motion;
+  Ambient ambient;
+  Moment moment;
+  annotation::Frame truth;
+};
+using WorkPtr = std::shared_ptr<Work>;
+
+std::optional<PixelBox> around_intruders(const Moment& moment) {
+  std::optional<PixelBox> all;
+  for (const auto& box : moment.search) {
+    if (!box) continue;
+    const PixelBox whole{static_cast<int>(std::floor(box->x)), static_cast<int>(std::floor(box->y)),
+                         static_cast<int>(std::ceil(box->width)), static_cast<int>(std::ceil(box->height))};
+    all = all ? bounds(*all, whole) : whole;
+  }
+  return all;
+}
+
+class Run {
+ public:
+  Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
+      : scene_(scene),
+        options_(options),
+        reader_(open()),
+        size_{reader_.info().width, reader_.info().height},
+        mask_(read_mask()),
+        world_(load_world(scene, size_, options.warn)),
+        video_sha256_(sha256_of_video(scene.background.video)),
+        motion_(scene, video_sha256_, mask_ptr(), options.use_cache),
+        ambient_(scene.light, mask_ptr()),
+        painter_(make_painter(scene, world_, mask_ptr(), options)),
+        staged_(folder, options.overwrite) {
+    outputs_.emplace(staged_.path(), scene_, world_.lens, stream_info(), options_.threads);
+    if (motion_.needs_pass()) measure_first();
+    seen_.assign(world_.actors.size(), false);
+  }
+
+  Summary run() {
+    const auto start = std::chrono::steady_clock::now();
+    run_pipeline();
+    if (options_.stop.stop_requested()) throw Interrupted();
+    motion_.store();
+    say_what_was_odd();
+    summary_.motion_from_cache = motion_.from_cache();
+    outputs_->finish(inputs(), summary_);
+    outputs_.reset();
+    staged_.commit();
+    summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return summary_;
+  }
+
+ private:
+  video::Reader open() const {
+    video::ReaderOptions reader_options;
+    reader_options.first_frame = scene_.background.first_frame;
+    reader_options.frame_count = scene_.background.frame_count;
+    reader_options.threads = options_.threads;
+    return video::Reader(scene_.background.video, reader_options, options_.warn);
+  }
+
+  std::optional<image::Mask> read_mask() const {
+    if (!scene_.background.mask) return std::nullopt;
+    return video::read_mask(*scene_.background.mask, size_.width, size_.height);
+  }
+  const image::Mask* mask_ptr() const { return mask_ ? &*mask_ : nullptr; }
+
+  // The stream, with the number of frames that this run will make of it.
+  video::StreamInfo stream_info() const {
+    video::StreamInfo info = reader_.info();
+    const std::int64_t left = std::max<std::int64_t>(0, info.frame_count_estimate - scene_.background.first_frame);
+    info.frame_count_estimate = left;
+    if (scene_.background.frame_count)
+      info.frame_count_estimate = left > 0 ? std::min(left, *scene_.background.frame_count) : *scene_.background.frame_count;
+    total_ = info.frame_count_estimate;
+    return info;
+  }
+
+  void measure_first() {
+    motion::Options motion_options;
+    motion_options.seed = scene_.seed;
+    motion_options.smoothing_s = scene_.motion.smoothing_s;
+    motion_.set_pass(measure_motion(reader_, motion_options, mask_ptr(), options_.stop, {}));
+    reader_ = open();
+  }
+
+  WorkPtr read() {
+    if (options_.stop.stop_requested()) return nullptr;
+    auto frame = reader_.next();
+    if (!frame) return nullptr;
+    auto work = std::make_shared<Work>();
+    work->frame = std::move(*frame);
+    return work;
+  }
+
+  void move(Work& work) {
+    work.motion = motion_.next(work.frame);
+    work.moment = moment_at(world_, work.frame.time_s, work.motion.frame_from_reference);
+    work.ambient = ambient_.next(work.frame.picture, around_intruders(work.moment));
+  }
+
+  void paint(Work& work) const {
+    const Painted painted = painter_->paint(work.frame.picture, work.moment, work.ambient);
+    annotation::Frame& truth = work.truth;
+    truth.frame = work.frame.index;
+    truth.time_s = work.frame.time_s;
+    truth.damaged = work.frame.damaged;
+    truth.camera_position_ned_m = work.moment.camera.position_in_world;
+    truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(work.moment.camera.world_from_body);
+    truth.frame_from_reference = work.motion.frame_from_reference;
+    truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
+    truth.intruders = truth_of(world_, work.moment, painted.layer, painted.visible);
+  }
+
+  void write(const Work& work) {
+    outputs_->write(work.frame, work.truth);
+    ++summary_.frames;
+    last_time_s_ = work.frame.time_s;
+    bool any = false;
+    for (std::size_t i = 0; i < work.truth.intruders.size(); ++i) {
+      const bool visible = work.truth.intruders[i].state == annotation::State::kVisible;
+      any = any || visible;
+      seen_[i] = seen_[i] || visible;
+    }
+    summary_.frames_visible += any ? 1 : 0;
+    const motion::State state = work.motion.state;
+    summary_.frames_bridged += state == motion::State::kBridged || state == motion::State::kCut ? 1 : 0;
+    summary_.frames_damaged += work.frame.damaged ? 1 : 0;
+    if (options_.progress) options_.progress({summary_.frames, total_});
+  }
+
+  void run_pipeline() {
+    const int threads = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
+    const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
+    // OpenGL's context belongs to one thread: the paper's road runs in an arena of one.
+    const bool one_thread = scene_.composite.method == "chroma-key";
+    tbb::task_arena arena(one_thread ? 1 : threads);
+    const auto paint_mode = one_thread ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
+    arena.execute([&] {
+      tbb::parallel_pipeline(
+          in_flight,
+          tbb::make_filter<void, WorkPtr>(tbb::filter_mode::serial_in_order,
+                                          [&](tbb::flow_control& control) {
+                                            WorkPtr work = read();
+                                            if (!work) control.stop();
+                                            return work;
+                                          }) &
+              tbb::make_filter<WorkPtr, WorkPtr>(tbb::filter_mode::serial_in_order,
+                                                 [&](WorkPtr work) {
+                                                   move(*work);
+                                                   return work;
+                                                 }) &
+              tbb::make_filter<WorkPtr, WorkPtr>(paint_mode,
+                                                 [&](WorkPtr work) {
+                                                   paint(*work);
+                                                   return work;
+                                                 }) &
+              tbb::make_filter<WorkPtr, void>(tbb::filter_mode::serial_in_order,
+                                              [&](const WorkPtr& work) { write(*work); }));
+    });
+  }
+
+  void say_what_was_odd() const {
+    const auto number = [](std::int64_t n) { return std::to_string(n); };
+    if (reader_.corrupt_packets() > 0 || summary_.frames_damaged > 0)
+      warn(options_.warn, scene_.background.video.string() + ": " + number(reader_.corrupt_packets()) +
+                              " corrupt packets; " + number(summary_.frames_damaged) + " frames are flagged damaged");
+    if (reader_.ends_early())
+      warn(options_.warn, scene_.background.video.string() + ": ends early, after " + number(summary_.frames) + " frames");
+    if (scene_.background.frame_count && summary_.frames < *scene_.background.frame_count)
+      warn(options_.warn, to_string(scene_.background.where) + ": frame_count is " +
+                              number(*scene_.background.frame_count) + ", but the video holds " +
+                              number(summary_.frames) + " frames from first_frame on");
+    if (summary_.frames_bridged > 0)
+      warn(options_.warn, "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
+                              " frames; they are bridged, and truth.jsonl says which");
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (!seen_[i]) warn_never_seen(i);
+  }
+
+  void warn_never_seen(std::size_t i) const {
+    std::string text = to_string(scene_.intruders[i].where) + ": intruder '" + world_.actors[i].id + "' is never visible";
+    if (const auto nearest = nearest_approach(world_, i, last_time_s_)) {
+      char detail[160];
+      std::snprintf(detail, sizeof detail,
+                    "; it comes nearest to the view's edge at %.2f s, %.1f degrees from it, at a range of %.0f m",
+                    nearest->time_s, nearest->off_view_deg, nearest->range_m);
+      text += detail;
+    } else {
+      text += "; its path does not overlap the clip in time";
+    }
+    warn(options_.warn, text);
+  }
+
+  std::vector<Checksum> inputs() const {
+    std::vector<Checksum> result;
+    if (!video_sha256_.empty()) result.push_back({scene_.background.video.string(), video_sha256_});
+    const auto add = [&](const fs::path& file) { result.push_back({file.string(), sha256_of_file(file)}); };
+    if (scene_.background.mask) add(*scene_.background.mask);
+    if (scene_.lens.file) add(*scene_.lens.file);
+    if (scene_.camera.path_file) add(*scene_.camera.path_file);
+    for (const scene::Intruder& intruder : scene_.intruders)
+      if (intruder.path_file) add(*intruder.path_file);
+    std::vector<fs::path> models;
+    for (const Actor& actor : world_.actors)
+      models.insert(models.end(), actor.type->sources.begin(), actor.type->sources.end());
+    std::sort(models.begin(), models.end());
+    models.erase(std::unique(models.begin(), models.end()), models.end());
+    for (const fs::path& model : models) add(model);
+    return result;
+  }
+
+  scene::Scene scene_;
+  Options options_;
+  video::Reader reader_;
+  lens::ImageSize size_;
+  std::optional<image::Mask> mask_;
+  World world_;
+  std::string video_sha256_;
+  MotionSource motion_;
+  AmbientEstimator ambient_;
+  std::unique_ptr<Painter> painter_;
+  StagedFolder staged_;
+  std::optional<Outputs> outputs_;
+  std::vector<bool> seen_;
+  Summary summary_;
+  double last_time_s_ = 0;
+  mutable std::int64_t total_ = 0;
+};
+
+}  // namespace
+
+Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  const fs::path folder = out / scene.name;
+  Run run(scene, folder, options);
+  Summary summary = run.run();
+  summary.folder = folder;
+  return summary;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "lens/calibration_file.h"
+
+namespace airtruth::sequence {
+namespace {
+
+constexpr double kMetresPerSecondInKnots = 1.943844;
+constexpr double kMetresInFeet = 3.280840;
+constexpr double kSearchMarginPx = 1.5;
+
+// Adds the place in the scene to an error that knows none.
+template <typename Make>
+auto at_place(const Where& where, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (!error.where().file.empty()) throw;
+    throw Error(error.message(), where);
+  }
+}
+
+std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
+  if (distortion.size() < size) distortion.resize(size, 0.0);
+  return distortion;
+}
+
+lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
+  if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
+    if (lens.model == "pinhole") return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    if (lens.model == "fisheye") return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
+  }
+  Pixel focal{0, 0};
+  if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
+  if (lens.vertical_fov_deg) {
+    const lens::Lens plain = lens.model == "fisheye" ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
+                                                     : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    focal = {plain.focal_px(), plain.focal_px()};
+  }
+  Pixel centre{size.width / 2.0, size.height / 2.0};
+  if (lens.principal_point_px) centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
+  if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
+  if (lens.model == "fisheye") return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
+  return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
+}
+
+trajectory::Path camera_path(const scene::Camera& camera) {
+  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  return trajectory::uniform(camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+}
+
+trajectory::Path intruder_path(const scene::Intruder& intruder) {
+  const trajectory::AttitudeOverride attitude{intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  const trajectory::Path path =
+      intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
+      : intruder.speed_mps
+          ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
+          : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
+  return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
+}
+
+aircraft::LoadOptions load_options(const scene::Intruder& intruder, const trajectory::Path& path) {
+  aircraft::LoadOptions options;
+  if (const auto state = path.at(path.start_s())) {
+    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
+    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
+  }
+  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
+    aircraft::ModelAxes axes;
+    if (intruder.model_forward) axes.forward = *intruder.model_forward;
+    if (intruder.model_up) axes.up = *intruder.model_up;
+    if (intruder.model_scale) axes.scale = *intruder.model_scale;
+    options.axes = axes;
+  }
+  return options;
+}
+
+struct Type {
+  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const render::Model> model;
+};
+
+Type load_type(const scene::Intruder& intruder, const trajectory::Path& path, const Warn& warn) {
+  const auto loaded = std::make_shared<const aircraft::Aircraft>(
+      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path), warn));
+  return {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+}
+
+bool meets_frame(const Box& box, const lens::ImageSize& size) {
+  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
+}
+
+Box grown(const Box& box, double margin) {
+  return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
+}
+
+// The whole frame, for an aircraft so near that part of it has no pixel.
+Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
+
+std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::ImageSize& size) {
+  if (!exact.box) return std::nullopt;
+  const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
+  if (!meets_frame(box, size)) return std::nullopt;
+  return box;
+}
+
+annotation::State state_of(const Moment& moment, std::size_t i, const Vector3& p_in_cam,
+                           const image::Layer& layer, const composite::Visible* visible) {
+  using annotation::State;
+  if (visible != nullptr && visible->box) return State::kVisible;
+  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() && layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) return State::kHidden;
+  if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
+  return State::kOutside;
+}
+
+void add_geometry(annotation::Intruder& truth, const Moment& moment, const trajectory::State& state) {
+  const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
+  const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
+  const double range_m = offset.norm();
+  truth.position_ned_m = state.position_in_world;
+  truth.velocity_ned_mps = state.velocity_in_world_mps;
+  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
+  truth.position_in_cam_m = p_in_cam;
+  truth.range_m = range_m;
+  if (range_m > 0) {
+    const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
+    truth.range_rate_mps = offset.dot(relative) / range_m;
+    truth.azimuth_deg = degrees(std::atan2(p_in_cam.x(), p_in_cam.z()));
+    truth.elevation_deg = degrees(std::atan2(-p_in_cam.y(), std::hypot(p_in_cam.x(), p_in_cam.z())));
+  }
+}
+
+void add_pixels(annotation::Intruder& truth, std::size_t i, const image::Layer& layer,
+                const composite::Visible& visible) {
+  truth.visible_box_px = visible.box;
+  truth.visible_area_px = visible.pixels;
+  truth.alpha_sum_px = visible.alpha_sum_px;
+  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
+  const double alone = layer.area_alone_px[i];
+  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
+  truth.hidden_by_own_aircraft = fraction(visible.alpha_before_mask_px - visible.alpha_sum_px);
+  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - visible.alpha_before_mask_px);
+  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
+  constexpr double kRounding = 1e-6;  // sums of float coverages
+  for (double* share : {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+    if (*share < kRounding) *share = 0;
+}
+
+}  // namespace
+
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
+  return at_place(lens.where, [&] {
+    return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
+  });
+}
+
+World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
+  World world{lens_of(scene.lens, size), at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), {}};
+  std::map<std::string, Type> types;  // one BVH for all intruders of one type
+  for (const scene::Intruder& intruder : scene.intruders) {
+    const trajectory::Path path = at_place(intruder.where, [&] { return intruder_path(intruder); });
+    Type& type = types[intruder.aircraft];
+    if (!type.aircraft) type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });
+    annotation::Silhouette silhouette{&type.aircraft->mesh, aircraft::silhouette_points(type.aircraft->mesh)};
+    world.actors.push_back(
+        {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
+  }
+  return world;
+}
+
+Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference) {
+  const auto camera = world.camera.at(time_s);
+  if (!camera)
+    throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
+                " s, but the clip goes on at " + std::to_string(time_s) + " s; expected a path as long as the clip");
+  Moment moment;
+  moment.time_s = time_s;
+  moment.camera = *camera;
+  const Rigid world_from_cam = camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  moment.sight = {&world.lens, world_from_cam.inverse(), frame_from_reference};
+  for (const Actor& actor : world.actors) {
+    const auto state = actor.path.at(time_s);
+    moment.states.push_back(state);
+    moment.boxes.push_back(state ? annotation::exact_box(moment.sight, actor.silhouette,
+                                                         state->world_from_body_rigid(), time_s)
+                                 : annotation::ExactBox{});
+    moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
+  }
+  return moment;
+}
+
+std::vector<annotation::Intruder> truth_of(const World& world, const Moment& moment, const image::Layer& layer,
+                                           const std::vector<composite::Visible>& visible) {
+  std::vector<annotation::Intruder> result;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    annotation::Intruder truth;
+    truth.id = world.actors[i].id;
+    truth.aircraft = world.actors[i].aircraft;
+    if (moment.states[i]) {
+      add_geometry(truth, moment, *moment.states[i]);
+      const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
+      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
+      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
+      if (seen != nullptr) add_pixels(truth, i, layer, *seen);
+    }
+    result.push_back(std::move(truth));
+  }
+  return result;
+}
+
+std::optional<NearestApproach> nearest_approach(const World& world, std::size_t actor, double end_s) {
+  std::optional<NearestApproach> best;
+  const lens::ImageSize size = world.lens.size();
+  for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
+    const auto state = world.actors[actor].path.at(time_s);
+    const auto camera = world.camera.at(time_s);
+    if (!state || !camera) continue;
+    const Rigid world_from_cam = camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+    const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
+    // The nearest pixel of the image to the direction, through a coarse walk along the image's border.
+    double off = kPi;
+    for (int i = 0; i <= 64; ++i) {
+      const double s = i / 64.0;
+      for (const Pixel& edge : {Pixel(s * size.width, 0), Pixel(s * size.width, size.height), Pixel(0, s * size.height),
+                                Pixel(size.width, s * size.height)}) {
+        const auto ray = world.lens.ray_from_pixel(edge);
+        if (ray && p_in_cam.norm() > 0)
+          off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
+      }
+    }
+    if (!best || degrees(off) < best->off_view_deg) best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
+  }
+  return best;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "aircraft/catalogue.h"
+#include "annotation/exact_box.h"
+#include "annotation/truth.h"
+#include "base/log.h"
+#include "composite/matte.h"
+#include "lens/lens.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+#include "trajectory/path.h"
+
+// A scene with everything it names loaded: lens, paths, aircraft.
+namespace airtruth::sequence {
+
+struct Actor {
+  std::string id;
+  std::string aircraft;
+  trajectory::Path path;
+  std::shared_ptr<const aircraft::Aircraft> type;
+  std::shared_ptr<const render::Model> model;
+  annotation::Silhouette silhouette;
+};
+
+struct World {
+  lens::Lens lens;
+  trajectory::Path camera;
+  std::vector<Actor> actors;
+};
+
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
+World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn);
+
+// Where everything is in one frame, from geometry alone.
+struct Moment {
+  double time_s = 0;
+  trajectory::State camera;
+  annotation::Sight sight;
+  std::vector<std::optional<trajectory::State>> states;  // per actor; empty: not in the world
+  std::vector<annotation::ExactBox> boxes;
+  std::vector<std::optional<Box>> search;                // where to look for pixels: boxes with a margin, if in view
+};
+
+// Error where the camera's path does not reach that time.
+Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference);
+
+// The truth of the frame's intruders from geometry and from what compositing changed.
+std::vector<annotation::Intruder> truth_of(const World& world, const Moment& moment, const image::Layer& layer,
+                                           const std::vector<composite::Visible>& visible);
+
+// Where an actor comes nearest to being in view: for the warning about an intruder that never is.
+struct NearestApproach {
+  double time_s = 0;
+  double off_view_deg = 0;  // angle from the nearest edge of the view
+  double range_m = 0;
+};
+std::optional<NearestApproach> nearest_approach(const World& world, std::size_t actor, double end_s);
+
+}  // namespace airtruth::sequence
