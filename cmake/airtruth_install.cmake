@@ -1,9 +1,17 @@
 # Installs the program, the library libairtruth.so with its headers, and find_package(airtruth); CPack makes the .deb.
 get_property(modules GLOBAL PROPERTY AIRTRUTH_MODULES)
-add_library(airtruth_shared SHARED ${PROJECT_SOURCE_DIR}/cmake/library.cpp)
+set(objects "")
+foreach(module IN LISTS modules)
+  get_target_property(type ${module} TYPE)
+  if(type STREQUAL STATIC_LIBRARY)
+    list(APPEND objects $<TARGET_OBJECTS:${module}>)
+  endif()
+endforeach()
+add_library(airtruth_shared SHARED ${objects})
+set_target_properties(airtruth_shared PROPERTIES LINKER_LANGUAGE CXX)
 set_target_properties(airtruth_shared PROPERTIES OUTPUT_NAME airtruth EXPORT_NAME airtruth
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
-target_link_libraries(airtruth_shared PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${modules}>")
+target_link_libraries(airtruth_shared PRIVATE ${modules})
 target_link_libraries(airtruth_shared INTERFACE Eigen3::Eigen)
 target_compile_features(airtruth_shared INTERFACE cxx_std_20)
 target_include_directories(airtruth_shared INTERFACE

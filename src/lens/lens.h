@@ -8,11 +8,12 @@
 #include "geometry/transform.h"
 
 // Lenses map directions in the camera frame (x right, y down, z forward) to pixels and back.
-// Conventions: docs/conventions.md. Pixel (0, 0) is the corner of the image; a calibration made with OpenCV's
-// integer-centred pixels is moved by half a pixel where it is read (calibration_file.h).
+// Conventions: docs/conventions.md. Pixel (0, 0) is the corner of the image; a calibration made
+// with OpenCV's integer-centred pixels is moved by half a pixel where it is read
+// (calibration_file.h).
 //
-// Example: 1920 x 1080 with a horizontal view of 60 degrees is a focal length of 960 / tan(30 deg) = 1662.8 px;
-// an aircraft 10 m long, side-on and 500 m ahead, spans 33.3 px.
+// Example: 1920 x 1080 with a horizontal view of 60 degrees is a focal length of 960 / tan(30 deg)
+// = 1662.8 px; an aircraft 10 m long, side-on and 500 m ahead, spans 33.3 px.
 namespace airtruth::lens {
 
 struct ImageSize {
@@ -35,8 +36,9 @@ struct BrownConrady {
   std::vector<double> distortion;  // 4, 5 or 8 numbers, in OpenCV's order
 };
 
-// Kannala and Brandt (2006), as OpenCV's fisheye: theta_d = theta (1 + k1 theta^2 + ... + k4 theta^8).
-// Valid up to the largest angle from the axis to which theta_d still rises, at most 180 degrees.
+// Kannala and Brandt (2006), as OpenCV's fisheye: theta_d = theta (1 + k1 theta^2 + ... + k4
+// theta^8). Valid up to the largest angle from the axis to which theta_d still rises, at most 180
+// degrees.
 struct Fisheye {
   Pixel focal_px{0, 0};
   Pixel principal_point_px{0, 0};
@@ -45,19 +47,20 @@ struct Fisheye {
 
 using Model = std::variant<Pinhole, BrownConrady, Fisheye>;
 
-// A lens with the size of the image it was calibrated for. Immutable; safe to share between threads.
+// A lens with the size of the image it was calibrated for. Immutable; safe to share between
+// threads.
 class Lens {
  public:
-  // Throws Error where the parameters are nonsense (focal length not positive or not finite, wrong number of
-  // distortion coefficients, a radial curve that falls from the axis on).
+  // Throws Error where the parameters are nonsense (focal length not positive or not finite, wrong
+  // number of distortion coefficients, a radial curve that falls from the axis on).
   Lens(Model model, ImageSize size);
 
-  // Empty where the model has no image: behind a pinhole, beyond the valid field, at the origin. Not clipped to
-  // the image: pixels outside it are answers too. Continuous over the valid field.
+  // Empty where the model has no image: behind a pinhole, beyond the valid field, at the origin.
+  // Not clipped to the image: pixels outside it are answers too. Continuous over the valid field.
   std::optional<Pixel> pixel_from_cam(const Vector3& p_in_cam) const;
 
-  // Unit vector in cam; empty where no direction of the valid field reaches the pixel. Inverse of pixel_from_cam
-  // within 1e-9 rad over the valid field.
+  // Unit vector in cam; empty where no direction of the valid field reaches the pixel. Inverse of
+  // pixel_from_cam within 1e-9 rad over the valid field.
   std::optional<Vector3> ray_from_pixel(const Pixel& pixel) const;
 
   const Model& model() const { return model_; }

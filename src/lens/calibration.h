@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "lens/lens.h"
+
+// What both file kinds come down to, still in the file's own image size and OpenCV's
+// integer-centred pixels.
+namespace airtruth::lens {
+
+struct Calibration {
+  bool fisheye = false;
+  std::array<double, 9> camera_matrix{};  // row by row
+  std::vector<double> distortion;
+  ImageSize size;
+};
+
+Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name);
+Calibration parse_opencv_calibration(std::string_view text, const std::filesystem::path& name);
+
+}  // namespace airtruth::lens

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens/calibration_file.h"
+
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "base/error.h"
+
+namespace airtruth::lens {
+namespace {
+
+const ImageSize kSize{1280, 960};
+
+std::string error_of(std::string_view text, const char* name, ImageSize size = kSize) {
+  try {
+    parse_calibration(text, name, size);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string profile(const std::string& extra = "") {
+  return "{\"calib_dimension\": {\"w\": 1280, \"h\": 960},\n" + extra +
+         "\"fisheye_params\": {\"camera_matrix\": [[560,0,639.5],[0,561,479.5],[0,0,1]],\n"
+         "\"distortion_coeffs\": [0.06, 0.01, -0.01, 0.004]}}";
+}
+
+TEST(Gyroflow, BecomesAFisheyeInOurPixels) {
+  const Lens lens = parse_calibration(profile(), "a.json", kSize);
+  const auto& fisheye = std::get<Fisheye>(lens.model());
+  EXPECT_EQ(fisheye.focal_px, Pixel(560, 561));
+  EXPECT_EQ(fisheye.principal_point_px, Pixel(640, 480));
+  EXPECT_EQ(fisheye.distortion, (std::vector<double>{0.06, 0.01, -0.01, 0.004}));
+}
+
+TEST(Gyroflow, ScalesToAnotherSizeOfTheSameShapeAlone) {
+  const Lens lens = parse_calibration(profile(), "a.json", {640, 480});
+  EXPECT_EQ(std::get<Fisheye>(lens.model()).focal_px, Pixel(280, 280.5));
+  EXPECT_EQ(std::get<Fisheye>(lens.model()).principal_point_px, Pixel(320, 240));
+  EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}), testing::HasSubstr("same aspect ratio"));
+}
+
+TEST(Gyroflow, NamesTheFieldItCannotHonour) {
+  EXPECT_THAT(error_of(profile("\"input_horizontal_stretch\": 1.33,\n"), "a.json"),
+              testing::StartsWith("a.json:2: input_horizontal_stretch is not 1"));
+  EXPECT_THAT(error_of(profile("\"digital_lens\": \"gopro_superview\",\n"), "a.json"),
+              testing::HasSubstr("digital_lens"));
+  EXPECT_THAT(error_of(profile("\"distortion_model\": \"insta360\",\n"), "a.json"),
+              testing::HasSubstr("distortion_model"));
+  EXPECT_THAT(error_of("{\"a\": ", "a.json"), testing::HasSubstr("is not JSON"));
+  EXPECT_THAT(error_of("{}", "a.json"), testing::HasSubstr("fisheye_params"));
+}
+
+TEST(Gyroflow, ReadsARealProfile) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
+  const Lens lens = read_calibration(
+      std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kSize);
+  EXPECT_STREQ(lens.name(), "fisheye");
+  EXPECT_NEAR(lens.horizontal_fov_deg(), 120, 5);  // what its note of origin says
+}
+
+// What OpenCV writes, we read: both file kinds, through OpenCV's own writer.
+TEST(OpenCv, ReadsWhatFileStorageWrites) {
+  const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
+  const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
+  for (const char* name : {"a.yml", "a.xml"}) {
+    cv::FileStorage storage(name, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    storage << "image_width" << 1280 << "image_height" << 960 << "camera_matrix" << matrix
+            << "distortion_coefficients" << distortion;
+    const Lens lens = parse_calibration(storage.releaseAndGetString(), name, kSize);
+    const auto& model = std::get<BrownConrady>(lens.model());
+    EXPECT_EQ(model.focal_px, Pixel(900.25, 905)) << name;
+    EXPECT_EQ(model.principal_point_px, Pixel(640, 480)) << name;
+    EXPECT_EQ(model.distortion, (std::vector<double>{-0.28, 0.09, 1e-3, -5e-4, 0.02})) << name;
+  }
+}
+
+TEST(OpenCv, FisheyeWhereTheFileSaysSo) {
+  const std::string text =
+      "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 960\nfisheye_model: 1\n"
+      "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 560., 0., "
+      "639.5, 0., 561., 479.5,\n"
+      "       0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   "
+      "dt: d\n"
+      "   data: [ 0.06, 0.01, -0.01, 0.004 ]\n";
+  EXPECT_STREQ(parse_calibration(text, "a.yml", kSize).name(), "fisheye");
+}
+
+TEST(OpenCv, RefusesSkewPrismAndGarbage) {
+  const auto yml = [](const std::string& matrix, const std::string& distortion) {
+    return "camera_matrix: [" + matrix + "]\ndistortion_coefficients: [" + distortion + "]\n";
+  };
+  EXPECT_THAT(error_of(yml("900,2,640,0,900,480,0,0,1", "0"), "a.yml"), testing::HasSubstr("skew"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0,0,0,0,0,0,0,0,0.1"), "a.yml"),
+              testing::HasSubstr("thin prism"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,x,480,0,0,1", "0"), "a.yml"),
+              testing::StartsWith("a.yml:1: camera_matrix holds 'x'"));
+  EXPECT_THAT(error_of(yml("-900,0,640,0,900,480,0,0,1", "0"), "a.yml"),
+              testing::HasSubstr("focal_px"));
+  EXPECT_THAT(error_of("<a", "a.xml"), testing::HasSubstr("is not XML"));
+  EXPECT_THAT(error_of("", "a.yml"), testing::HasSubstr("no camera_matrix"));
+  EXPECT_THAT(error_of("", "a.txt"), testing::HasSubstr("is no calibration file"));
+}
+
+}  // namespace
+}  // namespace airtruth::lens
