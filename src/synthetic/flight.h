@@ -13,9 +13,10 @@
 #include "lens/lens.h"
 #include "trajectory/path.h"
 
-// Virtual flights: onboard video of a world that is known exactly. Sky with clouds and sun, textured ground to a hazy
-// horizon, the own aircraft in view, a camera that flies and shakes, sensor noise. A function of a seed and a few
-// parameters; the yardstick of the motion tests and the background of `airtruth demo`.
+// Virtual flights: onboard video of a world that is known exactly. Sky with clouds and sun,
+// textured ground to a hazy horizon, the own aircraft in view, a camera that flies and shakes,
+// sensor noise. A function of a seed and a few parameters; the yardstick of the motion tests and
+// the background of `airtruth demo`.
 namespace airtruth::synthetic {
 
 struct FlightOptions {
@@ -32,13 +33,15 @@ struct FlightOptions {
   double heading_deg = 0;
   double sun_azimuth_deg = 120;
   double sun_elevation_deg = 40;
-  double cloud_cover = 0.5;      // 0..1
-  double shake_deg = 0.35;       // rms of the vibration in pitch and yaw
-  double roll_deg = 3;           // amplitude of the slow rolling of the flight
-  bool own_aircraft = true;      // nose and wing tips in view
-  double noise = 1.0;            // sensor noise: 1 = a cheap camera; 0 none
-  double clutter = 0;            // share of the image's texture that moves on its own (for the motion tests), 0..1
-  bool translate = true;         // false: the camera only rotates, so that a homography is exact
+  double cloud_cover = 0.5;  // 0..1
+  double hills_deg = 1.1;    // highest of the hills on the horizon; 0 none
+  double shake_deg = 0.35;   // rms of the vibration in pitch and yaw
+  double roll_deg = 3;       // amplitude of the slow rolling of the flight
+  bool own_aircraft = true;  // nose and wing tips in view
+  double noise = 1.0;        // sensor noise: 1 = a cheap camera; 0 none
+  double clutter =
+      0;  // share of the image's texture that moves on its own (for the motion tests), 0..1
+  bool translate = true;  // false: the camera only rotates, so that a homography is exact
 };
 
 // Frame by frame, any order, any thread: frame k depends on the options and k alone.
@@ -48,10 +51,11 @@ class Flight {
   ~Flight();
   Flight(Flight&&) noexcept;
 
-  image::Picture frame(int index) const;           // 4:2:0, BT.601 limited as a cheap camera tags it
-  trajectory::State camera(int index) const;       // true pose of the camera: position and world_from_body (shaken)
+  image::Picture frame(int index) const;  // 4:2:0, BT.601 limited as a cheap camera tags it
+  trajectory::State camera(
+      int index) const;  // true pose of the camera: position and world_from_body (shaken)
   trajectory::State nominal_camera(int index) const;  // the same without the shake
-  const image::Mask& own_aircraft() const;         // 0 where the own aircraft is
+  const image::Mask& own_aircraft() const;            // 0 where the own aircraft is
   const lens::Lens& lens() const;
   const FlightOptions& options() const;
   // The exact far-field homography frame_from_first: K R_k R_0^-1 K^-1. Pinhole only.
@@ -62,7 +66,8 @@ class Flight {
   std::unique_ptr<Impl> impl_;
 };
 
-// flight.csv: frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg of the true camera, and of the nominal one.
+// flight.csv: frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg of the true camera, and
+// of the nominal one.
 std::string csv_from_flight(const Flight& flight);
 
 }  // namespace airtruth::synthetic
