@@ -5,11 +5,12 @@
 #include "image/layer.h"
 #include "image/picture.h"
 
-// The paper's compositing (section II.C, Figure 5), to the letter and with OpenCV, full frames throughout:
+// The paper's compositing (section II.C, Figure 5), to the letter and with OpenCV, full frames
+// throughout:
 //
-//   A = background warped back by H^-1 (Lanczos over 8x8)      B = A with the rendered pixels that are not green
-//   C = B warped by H                                          D = the green virtual image warped by H
-//   output = C where D is not green, else the background
+//   A = background warped back by H^-1 (Lanczos over 8x8)      B = A with the rendered pixels that
+//   are not green C = B warped by H                                          D = the green virtual
+//   image warped by H output = C where D is not green, else the background
 //
 // It exists as the reference that the matte is compared with, in looks and in time.
 namespace airtruth::composite {
@@ -24,10 +25,13 @@ struct ChromaKeyImages {  // for documents and tests; all of the frame's size
 };
 
 // `virtual_image`: the rendered intruder over pure green (0, 255, 0), in the reference frame.
-// frame_from_reference: H of the paper's equation 1. Changes only samples of pixels where D is not green.
-// Returns the mask of the pixels it replaced (255) as one byte a pixel; `images` is filled where given.
-std::vector<unsigned char> composite_chroma_key(image::Picture& frame, const image::Rgb8& virtual_image,
+// frame_from_reference: H of the paper's equation 1. Changes only samples of pixels where D is not
+// green. Returns the mask of the pixels it replaced (255) as one byte a pixel; `images` is filled
+// where given.
+std::vector<unsigned char> composite_chroma_key(image::Picture& frame,
+                                                const image::Rgb8& virtual_image,
                                                 const Homography& frame_from_reference,
-                                                const ChromaKeyOptions& options, ChromaKeyImages* images = nullptr);
+                                                const ChromaKeyOptions& options,
+                                                ChromaKeyImages* images = nullptr);
 
 }  // namespace airtruth::composite

@@ -8,20 +8,23 @@
 #include "image/layer.h"
 #include "image/picture.h"
 
-// Puts a layer over a frame in the frame's own samples (Porter and Duff 1984, "over", in linear light).
+// Puts a layer over a frame in the frame's own samples (Porter and Duff 1984, "over", in linear
+// light).
 //
-// Each luma sample Y under alpha > 0 becomes Y + (Y'(blend) - Y'(background)), both taken through the same
-// conversion, so that the change is exactly what the layer adds and alpha = 0 changes nothing. A subsampled chroma
-// sample moves by the mean of its pixels' changes, weighted by where the sample sits, and only where one of the
-// pixels of its own block is under the layer. Every other sample keeps its bits.
+// Each luma sample Y under alpha > 0 becomes Y + (Y'(blend) - Y'(background)), both taken through
+// the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
+// nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
+// the sample sits, and only where one of the pixels of its own block is under the layer. Every
+// other sample keeps its bits.
 namespace airtruth::composite {
 
-// What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma sample, or the
-// chroma sample of its block, now differs from the input.
+// What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
+// sample, or the chroma sample of its block, now differs from the input.
 struct Visible {
-  std::optional<PixelBox> box;      // bounds of the changed pixels that this intruder covers; empty: none
-  std::int64_t pixels = 0;          // how many
-  double alpha_sum_px = 0;          // coverage that is seen: after the own aircraft and nearer intruders
+  std::optional<PixelBox>
+      box;                  // bounds of the changed pixels that this intruder covers; empty: none
+  std::int64_t pixels = 0;  // how many
+  double alpha_sum_px = 0;  // coverage that is seen: after the own aircraft and nearer intruders
   double alpha_before_mask_px = 0;  // the same before the own aircraft's mask
 };
 
@@ -30,6 +33,8 @@ struct MatteOptions {
 };
 
 // One entry per intruder of the layer.
-std::vector<Visible> composite_matte(image::Picture& picture, const image::Layer& layer, const MatteOptions& options);
+std::vector<Visible> composite_matte(image::Picture& picture,
+                                     const image::Layer& layer,
+                                     const MatteOptions& options);
 
 }  // namespace airtruth::composite

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/matte.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "composite/transfer_curve.h"
+#include "image/colour.h"
+
+namespace airtruth::composite {
+namespace {
+
+const TransferCurve& transfer_curve() {
+  static const TransferCurve curve;
+  return curve;
+}
+
+std::uint8_t code(float value) {
+  return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+}
+
+// Which pixels a chroma sample stands for along one axis: `count` pixels from block_size * sample +
+// first.
+struct Footprint {
+  int block_size = 1;
+  int first = 0;
+  int count = 1;
+  std::array<float, 3> weight = {1, 0, 0};
+};
+
+Footprint footprint(int log2_size, bool on_a_pixel) {
+  if (log2_size == 0) return {};
+  if (on_a_pixel) return {2, -1, 3, {0.25f, 0.5f, 0.25f}};
+  return {2, 0, 2, {0.5f, 0.5f, 0}};
+}
+
+// One call of composite_matte: the patch's own picture of what is under the layer and what has
+// changed.
+class Matte {
+ public:
+  Matte(image::Picture& picture, const image::Layer& layer, const image::Mask* own_aircraft);
+  void blend();
+  std::vector<Visible> visible() const;
+
+ private:
+  bool drawn(int x, int y) const {
+    return layer_.patch.contains(x, y) && drawn_[layer_.index(x, y)] != 0;
+  }
+  // What the layer adds to a pixel whose background has this chroma.
+  image::Ycc change(std::size_t index, float cb, float cr) const;
+  image::Ycc chroma_at(int cx, int cy) const;
+  bool block_is_drawn(int cx, int cy) const;
+  void blend_luma();
+  void blend_chroma();
+  image::Ycc chroma_change(int cx, int cy) const;
+  bool move_chroma(int cx, int cy, const image::Ycc& change);
+  void mark_block(int cx, int cy);
+  void add_coverage(std::size_t intruder, Visible& visible) const;
+
+  image::Picture& picture_;
+  const image::Layer& layer_;
+  const TransferCurve& curve_ = transfer_curve();
+  image::ColourCode colour_code_;
+  int log2_width_;
+  int log2_height_;
+  Footprint across_;
+  Footprint down_;
+  std::vector<std::uint8_t> free_;     // 1: not the own aircraft
+  std::vector<std::uint8_t> drawn_;    // 1: alpha > 0 and free
+  std::vector<std::uint8_t> changed_;  // 1: drawn, and a sample differs
+  std::vector<std::uint8_t> luma_;     // the background's, before the blend
+  std::vector<image::Ycc> change_;     // with the chroma of the pixel's own block
+};
+
+Matte::Matte(image::Picture& picture, const image::Layer& layer, const image::Mask* own_aircraft)
+    : picture_(picture),
+      layer_(layer),
+      colour_code_(picture.colour),
+      log2_width_(image::log2_chroma_width(picture.colour.chroma)),
+      log2_height_(image::log2_chroma_height(picture.colour.chroma)),
+      across_(footprint(log2_width_, picture.colour.siting != image::Siting::kCenter)),
+      down_(footprint(log2_height_, picture.colour.siting == image::Siting::kTopLeft)) {
+  const std::size_t size = layer.pixels.size();
+  free_.assign(size, 1);
+  drawn_.assign(size, 0);
+  changed_.assign(size, 0);
+  luma_.assign(size, 0);
+  change_.assign(size, image::Ycc{0, 0, 0});
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+      const std::size_t i = layer.index(x, y);
+      if (own_aircraft != nullptr) free_[i] = own_aircraft->is_free(x, y);
+      drawn_[i] = free_[i] && layer.pixels[i].alpha > 0;
+      luma_[i] = picture.planes[0].row(y)[x];
+    }
+  }
+}
+
+image::Ycc Matte::change(std::size_t index, float cb, float cr) const {
+  const image::LayerPixel& over = layer_.pixels[index];
+  const auto luma = static_cast<float>(luma_[index]);
+  const image::Rgb background = colour_code_.rgb_from_ycc({luma, cb, cr});
+  const std::array<float, 3> add = {over.red, over.green, over.blue};
+  image::Rgb blend;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float under = curve_.linear_from_coded(background[c]);
+    const float brightest =
+        std::max(1.0f, under);  // a highlight of the layer saturates as a sensor does
+    blend[c] = curve_.coded_from_linear(std::min(add[c] + (1 - over.alpha) * under, brightest));
+  }
+  const image::Ycc ycc = colour_code_.ycc_from_rgb(blend);
+  return {ycc.y - luma, ycc.cb - cb, ycc.cr - cr};
+}
+
+image::Ycc Matte::chroma_at(int cx, int cy) const {
+  if (picture_.plane_count == 1) return {};
+  return {0,
+          static_cast<float>(picture_.planes[1].row(cy)[cx]),
+          static_cast<float>(picture_.planes[2].row(cy)[cx])};
+}
+
+void Matte::blend_luma() {
+  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
+    std::uint8_t* row = picture_.planes[0].row(y);
+    for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
+      const std::size_t i = layer_.index(x, y);
+      if (!drawn_[i]) continue;
+      const image::Ycc under = chroma_at(x >> log2_width_, y >> log2_height_);
+      change_[i] = change(i, under.cb, under.cr);
+      row[x] = code(static_cast<float>(luma_[i]) + change_[i].y);
+      changed_[i] = row[x] != luma_[i];
+    }
+  }
+}
+
+bool Matte::block_is_drawn(int cx, int cy) const {
+  for (int y = cy << log2_height_; y < (cy + 1) << log2_height_; ++y) {
+    for (int x = cx << log2_width_; x < (cx + 1) << log2_width_; ++x)
+      if (drawn(x, y)) return true;
+  }
+  return false;
+}
+
+// The weighted mean over the sample's footprint, every pixel of it taken over this very sample: so
+// an opaque layer leaves nothing of the background's chroma behind, even where the footprint
+// reaches into the next block.
+image::Ycc Matte::chroma_change(int cx, int cy) const {
+  const image::Ycc under = chroma_at(cx, cy);
+  image::Ycc sum{0, 0, 0};
+  float total = 0;
+  for (int j = 0; j < down_.count; ++j) {
+    const int y = cy * down_.block_size + down_.first + j;
+    for (int i = 0; i < across_.count; ++i) {
+      const int x = cx * across_.block_size + across_.first + i;
+      if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height) continue;
+      const float weight =
+          across_.weight[static_cast<std::size_t>(i)] * down_.weight[static_cast<std::size_t>(j)];
+      total += weight;
+      if (!drawn(x, y)) continue;
+      const bool own_block = x >> log2_width_ == cx && y >> log2_height_ == cy;
+      const std::size_t index = layer_.index(x, y);
+      const image::Ycc here = own_block ? change_[index] : change(index, under.cb, under.cr);
+      sum.cb += weight * here.cb;
+      sum.cr += weight * here.cr;
+    }
+  }
+  return {0, sum.cb / total, sum.cr / total};
+}
+
+bool Matte::move_chroma(int cx, int cy, const image::Ycc& change) {
+  const image::Ycc before = chroma_at(cx, cy);
+  picture_.planes[1].row(cy)[cx] = code(before.cb + change.cb);
+  picture_.planes[2].row(cy)[cx] = code(before.cr + change.cr);
+  const image::Ycc after = chroma_at(cx, cy);
+  return after.cb != before.cb || after.cr != before.cr;
+}
+
+void Matte::mark_block(int cx, int cy) {
+  for (int y = cy << log2_height_; y < (cy + 1) << log2_height_; ++y) {
+    for (int x = cx << log2_width_; x < (cx + 1) << log2_width_; ++x)
+      if (drawn(x, y)) changed_[layer_.index(x, y)] = 1;
+  }
+}
+
+void Matte::blend_chroma() {
+  const PixelBox& patch = layer_.patch;
+  for (int cy = patch.y >> log2_height_; cy <= (patch.bottom() - 1) >> log2_height_; ++cy) {
+    for (int cx = patch.x >> log2_width_; cx <= (patch.right() - 1) >> log2_width_; ++cx) {
+      if (block_is_drawn(cx, cy) && move_chroma(cx, cy, chroma_change(cx, cy))) mark_block(cx, cy);
+    }
+  }
+}
+
+void Matte::blend() {
+  blend_luma();
+  if (picture_.plane_count == 3) blend_chroma();
+}
+
+void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
+  const std::vector<float>& coverage = layer_.coverage[intruder];
+  if (coverage.empty()) return;
+  int left = picture_.width, right = -1, top = picture_.height, bottom = -1;
+  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
+    for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
+      const std::size_t i = layer_.index(x, y);
+      if (!(coverage[i] > 0)) continue;
+      visible.alpha_before_mask_px += static_cast<double>(coverage[i]);
+      if (free_[i]) visible.alpha_sum_px += static_cast<double>(coverage[i]);
+      if (!changed_[i]) continue;
+      ++visible.pixels;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  }
+  if (visible.pixels > 0) visible.box = PixelBox{left, top, right - left + 1, bottom - top + 1};
+}
+
+std::vector<Visible> Matte::visible() const {
+  std::vector<Visible> result(layer_.coverage.size());
+  for (std::size_t i = 0; i < result.size(); ++i) add_coverage(i, result[i]);
+  return result;
+}
+
+void check_fits(const image::Picture& picture, const image::Layer& layer, const image::Mask* mask) {
+  const PixelBox& patch = layer.patch;
+  check(patch.width > 0 && patch.height > 0, "a layer's patch has a size");
+  check(patch.x >= 0 && patch.y >= 0 && patch.right() <= picture.width &&
+            patch.bottom() <= picture.height,
+        "a layer's patch lies inside the frame");
+  const std::size_t size =
+      static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
+  check(layer.pixels.size() == size, "a layer has a pixel for each of its patch");
+  for (const auto& coverage : layer.coverage)
+    check(coverage.empty() || coverage.size() == size, "coverage is of the patch's size");
+  check(mask == nullptr || (mask->width == picture.width && mask->height == picture.height),
+        "the own aircraft's mask is of the frame's size");
+}
+
+}  // namespace
+
+std::vector<Visible> composite_matte(image::Picture& picture,
+                                     const image::Layer& layer,
+                                     const MatteOptions& options) {
+  if (layer.empty()) return std::vector<Visible>(layer.coverage.size());
+  check_fits(picture, layer, options.own_aircraft);
+  Matte matte(picture, layer, options.own_aircraft);
+  matte.blend();
+  return matte.visible();
+}
+
+}  // namespace airtruth::composite
