@@ -12,10 +12,11 @@
 #include "base/error.h"
 #include "geometry/transform.h"
 
-// A scene file as a value: what the user wrote, checked for shape and range, and nothing loaded yet.
-// Each struct is a table of the file and each field a key of the same name; docs/formats/scene.md describes them.
-// Paths are already resolved against the scene file's folder. `where` is where a table stands in the file, for
-// errors that show only later (an unknown aircraft, a path that never increases).
+// A scene file as a value: what the user wrote, checked for shape and range, and nothing loaded
+// yet. Each struct is a table of the file and each field a key of the same name;
+// docs/formats/scene.md describes them. Paths are already resolved against the scene file's folder.
+// `where` is where a table stands in the file, for errors that show only later (an unknown
+// aircraft, a path that never increases).
 namespace airtruth::scene {
 
 namespace fs = std::filesystem;
@@ -54,30 +55,27 @@ struct Motion {
 };
 
 struct Light {
-  double sun_azimuth_deg = 180;   // from north towards east
+  double sun_azimuth_deg = 180;  // from north towards east
   double sun_elevation_deg = 45;
-  std::optional<double> exposure;                     // factor on the sun's light; else from the background
-  std::optional<std::array<double, 3>> sky_colour;    // linear RGB of the light from above; else from the background
+  std::optional<double> exposure;  // factor on the sun's light; else from the background
+  std::optional<std::array<double, 3>>
+      sky_colour;  // linear RGB of the light from above; else from the background
   std::optional<std::array<double, 3>> ground_colour;
   Where where;
-};
-
-struct Axes {
-  std::string forward;
-  std::string up;
 };
 
 struct Intruder {
   std::string id;
   std::string aircraft;
-  std::optional<std::string> model_forward;  // for a bare model file: which of its axes is the nose ...
-  std::optional<std::string> model_up;       // ... and which is up
-  std::optional<double> model_scale;         // metres per unit
+  std::optional<std::string>
+      model_forward;                    // for a bare model file: which of its axes is the nose ...
+  std::optional<std::string> model_up;  // ... and which is up
+  std::optional<double> model_scale;    // metres per unit
   std::vector<Vector3> waypoints_ned_m;
   std::optional<double> speed_mps;
   std::vector<double> times_s;
   std::optional<fs::path> path_file;
-  double start_s = 0;                        // when the path begins, on the clip's clock
+  double start_s = 0;                                  // when the path begins, on the clip's clock
   std::optional<double> yaw_deg, pitch_deg, roll_deg;  // in place of the path's own
   Where where;
 };
@@ -110,12 +108,14 @@ struct Scene {
   fs::path file;
 };
 
-// Throws Error with line and column: not TOML, not UTF-8, larger than 16 MiB, an unknown key (nearest valid
-// spelling), a wrong type, a value out of range, keys that exclude each other, a missing required key.
+// Throws Error with line and column: not TOML, not UTF-8, larger than 16 MiB, an unknown key
+// (nearest valid spelling), a wrong type, a value out of range, keys that exclude each other, a
+// missing required key.
 Scene read_scene(const fs::path& file);
 Scene parse_scene(std::string_view text, const fs::path& file);
 
-// The effective scene as TOML, every key written out, paths absolute; parse_scene of it gives the same value.
+// The effective scene as TOML, every key written out, paths absolute; parse_scene of it gives the
+// same value.
 std::string toml_from_scene(const Scene& scene);
 
 }  // namespace airtruth::scene

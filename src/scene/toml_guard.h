@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace airtruth::scene {
+
+// Throws Error where the text nests deeper than a scene ever does: arrays in arrays, or
+// a.long.dotted.key. The TOML parser and the destructors of what it returns recurse, so a hostile
+// file could exhaust the stack.
+void refuse_deep_nesting(std::string_view text, const std::string& file);
+
+}  // namespace airtruth::scene
