@@ -10,7 +10,7 @@ add_library(airtruth_options INTERFACE)
 target_compile_features(airtruth_options INTERFACE cxx_std_20)
 target_compile_options(airtruth_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  -Wno-deprecated-enum-enum-conversion
+  -Wno-deprecated-enum-enum-conversion -Wno-missing-field-initializers
   # The same sums everywhere: no fused multiply-add that one compiler contracts and another does not.
   -ffp-contract=off)
 if(AIRTRUTH_WERROR)

@@ -43,25 +43,36 @@ class Path {
   std::shared_ptr<const Impl> impl_;
 };
 
-// A C2 cubic spline through the waypoints, flown at constant speed along the curve (arc length by Gauss-Legendre
-// quadrature). Attitude: heading and climb from the tangent, bank from a coordinated turn,
-// tan(bank) = (lateral acceleration) / g, each replaced where `attitude` states it.
-// Errors (std::string_view of the scene's line is added by the caller): fewer than two waypoints, two equal
-// neighbours, a number that is not finite, a speed that is not positive.
-Path spline_at_speed(std::span<const Vector3> waypoints_ned_m, double speed_mps, const AttitudeOverride& attitude = {});
-
-// The same through the waypoints at stated, strictly increasing times.
-Path spline_at_times(std::span<const Vector3> waypoints_ned_m, std::span<const double> times_s,
+// A C2 cubic spline through the waypoints, flown at constant speed along the curve (arc length by
+// Gauss-Legendre quadrature). Attitude: heading and climb from the tangent, bank from a coordinated
+// turn, tan(bank) = (lateral acceleration) / g, each replaced where `attitude` states it. Errors
+// (std::string_view of the scene's line is added by the caller): fewer than two waypoints, two
+// equal neighbours, a number that is not finite, a speed that is not positive.
+Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
+                     double speed_mps,
                      const AttitudeOverride& attitude = {});
 
-// Straight at constant velocity and attitude, for ever in both directions of time.
-Path uniform(const Vector3& position_ned_m, const Vector3& velocity_ned_mps, const YawPitchRoll& attitude);
+// The same through the waypoints at stated, strictly increasing times.
+Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
+                     std::span<const double> times_s,
+                     const AttitudeOverride& attitude = {});
 
-// A sampled path: CSV with a header, columns time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any
-// order. Positions by the C2 spline through the samples; angles, where given, by unwrapped spline, else from the
-// path as above. Errors carry file and line: missing or unknown column (nearest spelling), a cell that is no number,
-// times that do not increase, fewer than two rows.
+// The same path, `start_s` later.
+Path shifted(const Path& path, double start_s);
+
+// Straight at constant velocity and attitude, for ever in both directions of time.
+Path uniform(const Vector3& position_ned_m,
+             const Vector3& velocity_ned_mps,
+             const YawPitchRoll& attitude);
+
+// A sampled path: CSV with a header, columns
+// time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. Positions by the C2
+// spline through the samples; angles, where given, by unwrapped spline, else from the path as
+// above. Errors carry file and line: missing or unknown column (nearest spelling), a cell that is
+// no number, times that do not increase, fewer than two rows.
 Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude = {});
-Path parse_path_csv(std::string_view text, const std::filesystem::path& name, const AttitudeOverride& attitude = {});
+Path parse_path_csv(std::string_view text,
+                    const std::filesystem::path& name,
+                    const AttitudeOverride& attitude = {});
 
 }  // namespace airtruth::trajectory

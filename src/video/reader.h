@@ -23,43 +23,50 @@ struct StreamInfo {
   int width = 0;
   int height = 0;
   image::Colour colour;
-  bool matrix_guessed = false;  // untagged: BT.601 below 720 lines, else BT.709 (the common rule of players)
-  bool range_guessed = false;   // untagged: limited, or full for JPEG kinds (yuvj*) and RGB
-  int primaries_tag = 2;        // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2 = unspecified
+  bool matrix_guessed =
+      false;  // untagged: BT.601 below 720 lines, else BT.709 (the common rule of players)
+  bool range_guessed = false;  // untagged: limited, or full for JPEG kinds (yuvj*) and RGB
+  int primaries_tag =
+      2;  // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2 = unspecified
   int transfer_tag = 2;
   Rational time_base{1, 30};
-  Rational frame_rate{30, 1};   // average
+  Rational frame_rate{30, 1};  // average
   bool variable_frame_rate = false;
   Rational sample_aspect{1, 1};
-  int rotation_deg = 0;         // what was applied: 0, 90, 180, 270 clockwise
+  int rotation_deg = 0;                   // what was applied: 0, 90, 180, 270 clockwise
   std::int64_t frame_count_estimate = 0;  // 0 = unknown
-  std::string codec;            // "h264"
-  std::string pixel_format;     // "yuv420p"
+  std::string codec;                      // "h264"
+  std::string pixel_format;               // "yuv420p"
 };
 
 struct ReaderOptions {
-  std::int64_t first_frame = 0;                // frames before it are decoded and dropped
-  std::optional<std::int64_t> frame_count;     // else to the end
-  int threads = 0;                             // 0 = one per core
+  std::int64_t first_frame = 0;             // frames before it are decoded and dropped
+  std::optional<std::int64_t> frame_count;  // else to the end
+  int threads = 0;                          // 0 = one per core
 };
 
-// Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or numbered
-// images ("frames/%04d.png", or a folder of numbered images), 8-bit 4:2:0, 4:2:2, 4:4:0, 4:4:4, grey or RGB.
-// 10-bit and other layouts are an Error that names the format and what to do.
-// The constructor opens the file and decodes up to the first frame, so that what is wrong with it is said there:
-// missing, empty, not a video, audio only, no frame that decodes, first_frame past the end.
+// Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or
+// numbered images ("frames/%04d.png", or a folder of numbered images), 8-bit 4:2:0, 4:2:2, 4:4:0,
+// 4:4:4, grey or RGB. Deeper samples are rounded to 8 bits with a warning; other layouts (palettes,
+// Bayer) are an Error that says what to do. The constructor opens the file and decodes up to the
+// first frame, so that what is wrong with it is said there: missing, empty, not a video, audio
+// only, no frame that decodes, first_frame past the end.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path, const ReaderOptions& options = {}, Warn warn = {});
+  explicit Reader(const std::filesystem::path& path,
+                  const ReaderOptions& options = {},
+                  Warn warn = {});
   ~Reader();
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
 
   const StreamInfo& info() const;
-  // The next frame in presentation order; empty at the end. Corrupt packets are passed over and the frames they
-  // touch are flagged `damaged`. Throws Error only where the file can no longer be read at all.
+  // The next frame in presentation order; empty at the end. Corrupt packets are passed over and the
+  // frames they touch are flagged `damaged`. Throws Error only where the file can no longer be read
+  // at all.
   std::optional<Frame> next();
-  // After the end: how many packets could not be decoded, and whether the file ends early (truncated).
+  // After the end: how many packets could not be decoded, and whether the file ends early
+  // (truncated).
   std::int64_t corrupt_packets() const;
   bool ends_early() const;
 

@@ -8,14 +8,15 @@
 
 namespace airtruth::video {
 
-// A still image (png, jpg, bmp, tif, ...) as packed sRGB; an alpha channel is dropped. Throws Error.
+// A still image (png, jpg, bmp, tif, ...) as packed sRGB; an alpha channel is dropped. Throws
+// Error.
 image::Rgb8 read_still(const std::filesystem::path& path);
 
 // By extension: .png (lossless) or .jpg. Whole or not at all. Throws Error.
 void write_still(const std::filesystem::path& path, const image::Rgb8& rgb);
 
-// An own-aircraft mask: darker than middle grey = own aircraft. Error if its size is not width x height, or if it is
-// black all over.
+// An own-aircraft mask: darker than middle grey = own aircraft. Error if its size is not width x
+// height, or if it is black all over.
 image::Mask read_mask(const std::filesystem::path& path, int width, int height);
 
 }  // namespace airtruth::video

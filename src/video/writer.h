@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "video/frame.h"
@@ -10,7 +11,12 @@
 
 namespace airtruth::video {
 
-enum class Format { kMp4, kMkv, kAvi, kPng };  // H.264 in mp4, FFV1 in mkv (lossless), MJPEG in avi, numbered png
+enum class Format {
+  kMp4,
+  kMkv,
+  kAvi,
+  kPng
+};  // H.264 in mp4, FFV1 in mkv (lossless), MJPEG in avi, numbered png
 
 // "mp4", "mkv", "avi", "png"; throws Error naming the four for anything else.
 Format format_from_name(std::string_view name);
@@ -18,15 +24,18 @@ const char* extension(Format format);  // ".mp4"; for png "" (a folder of 000000
 
 struct WriterOptions {
   Format format = Format::kMp4;
-  int quality = 18;   // H.264: CRF 0..51; MJPEG: qscale 1..31 is derived from the same scale; lossless: ignored
-  int threads = 0;    // 0 = one per core
+  int quality = 18;  // H.264: CRF 0..51; MJPEG: qscale 1..31 is derived from the same scale;
+                     // lossless: ignored
+  std::string preset = "veryfast";  // x264's speed against size
+  int threads = 0;                  // 0 = one per core
 };
 
 // Writes pictures of one size and colour with their time stamps, tagged with the colour they have.
-// The file is written under part_path(path) and renamed by finish(); a Writer destroyed before finish() leaves
-// nothing behind. H.264 keeps the picture's own chroma layout (High, High 4:2:2 or High 4:4:4 profile; odd sizes
-// as they are where the layout allows it, else Error that names a format that can); RGB becomes 4:4:4 BT.709 full
-// range in mp4 and avi, and stays RGB in mkv and png.
+// The file is written under part_path(path) and renamed by finish(); a Writer destroyed before
+// finish() leaves nothing behind. H.264 keeps the picture's own chroma layout (High, High 4:2:2 or
+// High 4:4:4 profile; odd sizes as they are where the layout allows it, else Error that names a
+// format that can); RGB becomes 4:4:4 BT.709 full range in mp4 and avi, and stays RGB in mkv and
+// png. avi has one frame rate and full-range samples alone; png is sRGB.
 class Writer {
  public:
   Writer(const std::filesystem::path& path, const StreamInfo& info, const WriterOptions& options);
@@ -34,7 +43,8 @@ class Writer {
   Writer(Writer&&) noexcept;
   Writer& operator=(Writer&&) noexcept;
 
-  void write(const Frame& frame);   // in presentation order. Throws Error, for example when the disk is full
+  void write(const Frame&
+                 frame);  // in presentation order. Throws Error, for example when the disk is full
   void finish();
 
  private:

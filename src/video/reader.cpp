@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "video/reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "base/error.h"
+#include "video/libav.h"
+#include "video/numbered_images.h"
+
+namespace airtruth::video {
+namespace {
+
+Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
+
+int rotation_of(const AVStream& stream) {
+  const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+  if (matrix == nullptr) return 0;
+  const double counter_clockwise =
+      av_display_rotation_get(reinterpret_cast<const std::int32_t*>(matrix));
+  if (!std::isfinite(counter_clockwise)) return 0;
+  const int quarter = static_cast<int>(std::lround(-counter_clockwise / 90.0));
+  return ((quarter % 4) + 4) % 4 * 90;
+}
+
+image::Siting siting_of(AVChromaLocation location) {
+  switch (location) {
+    case AVCHROMA_LOC_CENTER:
+      return image::Siting::kCenter;
+    case AVCHROMA_LOC_TOPLEFT:
+      return image::Siting::kTopLeft;
+    default:
+      return image::Siting::kLeft;
+  }
+}
+
+}  // namespace
+
+struct Reader::State {
+  std::filesystem::path path;
+  ReaderOptions options;
+  Warn warn;
+  InputPtr input;
+  CodecPtr codec;
+  PacketPtr packet;
+  FramePtr frame;
+  int stream_index = -1;
+  StreamInfo info;
+  Layout layout;
+  image::Colour coded_colour;
+  bool draining = false;
+  bool finished = false;
+  bool read_failed = false;
+  bool broken = false;  // a packet failed: frames are suspect until the next key frame
+  std::int64_t corrupt = 0;
+  std::int64_t decoded = 0;  // frames out of the decoder
+  std::int64_t handed = 0;
+  std::int64_t last_pts = AV_NOPTS_VALUE;
+  std::int64_t pts_step = 1;
+  std::optional<std::int64_t> first_pts;
+  std::optional<Frame> ahead;  // decoded by the constructor
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(message, {path.string()});
+  }
+
+  void open_input();
+  void open_codec();
+  void describe(const AVFrame& first);
+  bool decode_one();  // fills `frame`; false at the end
+  std::optional<Frame> next();
+  Frame to_frame();
+};
+
+void Reader::State::open_input() {
+  keep_libav_quiet();
+  std::error_code ignored;
+  AVDictionary* settings = nullptr;
+  const AVInputFormat* format = nullptr;
+  std::string url = path.string();
+  if (const auto images = numbered_images(path)) {
+    format = av_find_input_format("image2");
+    url = images->pattern;
+    av_dict_set_int(&settings, "start_number", images->first, 0);
+  } else if (!std::filesystem::exists(path, ignored)) {
+    fail("does not exist; expected a video");
+  } else if (std::filesystem::is_directory(path, ignored)) {
+    fail("is a folder without numbered images; expected a video or images such as 000000.png");
+  } else if (std::filesystem::file_size(path, ignored) == 0 && !ignored) {
+    fail("is empty; expected a video");
+  }
+  AVFormatContext* raw = nullptr;
+  const int opened = avformat_open_input(&raw, url.c_str(), format, &settings);
+  av_dict_free(&settings);
+  if (opened < 0) fail("cannot be read as a video: " + reason(opened));
+  input.reset(raw);
+  if (const int found = avformat_find_stream_info(input.get(), nullptr); found < 0)
+    fail("cannot be read as a video: " + reason(found));
+  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (stream_index < 0) fail("holds no video stream; expected a video");
+  const AVStream& stream = *input->streams[stream_index];
+  if ((stream.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0)
+    fail("holds sound and a cover picture; expected a video");
+}
+
+void Reader::State::open_codec() {
+  const AVStream& stream = *input->streams[stream_index];
+  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (decoder == nullptr)
+    fail(std::string("is ") + avcodec_get_name(stream.codecpar->codec_id) +
+         ", which cannot be decoded");
+  codec.reset(avcodec_alloc_context3(decoder));
+  avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = stream.time_base;
+  codec->thread_count = options.threads > 0
+                            ? options.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+  codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+  if (const int opened = avcodec_open2(codec.get(), decoder, nullptr); opened < 0)
+    fail(std::string("cannot be decoded (") + decoder->name + "): " + reason(opened));
+  packet.reset(av_packet_alloc());
+  frame.reset(av_frame_alloc());
+  info.codec = decoder->name;
+  info.time_base = rational(stream.time_base);
+  const AVRational average =
+      stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
+  if (average.num > 0 && average.den > 0) info.frame_rate = rational(average);
+  info.variable_frame_rate =
+      stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
+      std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
+  info.rotation_deg = rotation_of(stream);
+  info.frame_count_estimate = stream.nb_frames;
+  if (info.frame_count_estimate <= 0 && input->duration > 0)
+    info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
+        static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
+  pts_step = std::max<std::int64_t>(
+      1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
+  if (stream.sample_aspect_ratio.num > 0) info.sample_aspect = rational(stream.sample_aspect_ratio);
+}
+
+void Reader::State::describe(const AVFrame& first) {
+  const auto format = static_cast<AVPixelFormat>(first.format);
+  const char* name = av_get_pix_fmt_name(format);
+  const auto known = layout_of(format);
+  if (!known)
+    fail(std::string("has the pixel format ") + (name != nullptr ? name : "?") +
+         "; expected 4:2:0, 4:2:2, 4:4:4, grey or RGB (convert it: ffmpeg -i IN -pix_fmt yuv420p "
+         "OUT)");
+  layout = *known;
+  info.pixel_format = name;
+  if (layout.shift > 0)
+    airtruth::warn(warn,
+                   path.string() + ": has " + std::to_string(8 + layout.shift) +
+                       " bits a sample; they are rounded to 8");
+  coded_colour.chroma = layout.chroma;
+  coded_colour.matrix = layout.rgb
+                            ? image::Matrix::kRgb
+                            : matrix_of(first.colorspace, first.height, &info.matrix_guessed);
+  if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
+    coded_colour.matrix = image::Matrix::kBt601;
+  info.range_guessed = first.color_range == AVCOL_RANGE_UNSPECIFIED && !layout.rgb;
+  const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
+  coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
+  coded_colour.siting = siting_of(first.chroma_location);
+  info.primaries_tag = first.color_primaries;
+  info.transfer_tag = first.color_trc;
+  info.width = first.width;
+  info.height = first.height;
+  info.colour = coded_colour;
+  if (info.rotation_deg == 90 || info.rotation_deg == 270) {
+    std::swap(info.width, info.height);
+    std::swap(info.sample_aspect.num, info.sample_aspect.den);
+    if (coded_colour.chroma == image::Chroma::k422) info.colour.chroma = image::Chroma::k440;
+    if (coded_colour.chroma == image::Chroma::k440) info.colour.chroma = image::Chroma::k422;
+  }
+}
+
+bool Reader::State::decode_one() {
+  for (;;) {
+    av_frame_unref(frame.get());
+    const int got = avcodec_receive_frame(codec.get(), frame.get());
+    if (got == 0) return true;
+    if (got == AVERROR_EOF) return false;
+    if (got != AVERROR(EAGAIN)) {
+      ++corrupt;
+      broken = true;
+      if (draining && got != AVERROR_INVALIDDATA) return false;
+      if (draining) continue;
+    }
+    if (draining) continue;
+    const int read = av_read_frame(input.get(), packet.get());
+    if (read < 0) {
+      read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
+      draining = true;
+      avcodec_send_packet(codec.get(), nullptr);
+      continue;
+    }
+    if (packet->stream_index == stream_index) {
+      if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) ++corrupt;
+      const int sent = avcodec_send_packet(codec.get(), packet.get());
+      if (sent < 0 && sent != AVERROR(EAGAIN)) {
+        ++corrupt;
+        broken = true;
+      }
+    }
+    av_packet_unref(packet.get());
+  }
+}
+
+Frame Reader::State::to_frame() {
+  Frame result;
+  if (frame->key_frame == 1 && frame->decode_error_flags == 0) broken = false;
+  result.damaged =
+      broken || frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  std::int64_t pts = frame->best_effort_timestamp;
+  if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
+  if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
+  last_pts = pts;
+  result.pts = pts;
+  return result;
+}
+
+std::optional<Frame> Reader::State::next() {
+  if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
+  for (;;) {
+    if (!decode_one()) {
+      finished = true;
+      return std::nullopt;
+    }
+    Frame result = to_frame();
+    if (decoded++ == 0) describe(*frame);
+    if (decoded <= options.first_frame) continue;
+    const bool same =
+        frame->width == (info.rotation_deg % 180 == 0 ? info.width : info.height) &&
+        frame->height == (info.rotation_deg % 180 == 0 ? info.height : info.width) &&
+        av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame->format)) == info.pixel_format;
+    if (!same)
+      fail("changes its size or pixel format at frame " + std::to_string(decoded - 1) +
+           "; expected one for all");
+    if (!first_pts) first_pts = result.pts;
+    result.index = handed++;
+    result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
+    result.picture = rotated(picture_of(*frame, layout, coded_colour), info.rotation_deg);
+    return result;
+  }
+}
+
+Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
+    : state_(std::make_unique<State>()) {
+  state_->path = path;
+  state_->options = options;
+  state_->warn = std::move(warn);
+  state_->open_input();
+  state_->open_codec();
+  state_->ahead = state_->next();
+  if (state_->ahead) return;
+  if (state_->decoded == 0) state_->fail("holds no frame that can be decoded; expected a video");
+  if (!options.frame_count || *options.frame_count > 0)
+    state_->fail("holds " + std::to_string(state_->decoded) + " frames; first_frame = " +
+                 std::to_string(options.first_frame) + " is past its end");
+}
+
+Reader::~Reader() = default;
+Reader::Reader(Reader&&) noexcept = default;
+Reader& Reader::operator=(Reader&&) noexcept = default;
+
+const StreamInfo& Reader::info() const { return state_->info; }
+
+std::optional<Frame> Reader::next() {
+  if (state_->ahead) {
+    std::optional<Frame> first = std::move(state_->ahead);
+    state_->ahead.reset();
+    return first;
+  }
+  return state_->next();
+}
+
+std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }
+
+bool Reader::ends_early() const {
+  if (!state_->finished) return false;
+  const AVStream& stream = *state_->input->streams[state_->stream_index];
+  return state_->read_failed ||
+         (stream.nb_frames > 0 && state_->decoded + state_->corrupt < stream.nb_frames);
+}
+
+}  // namespace airtruth::video
