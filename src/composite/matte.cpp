@@ -18,7 +18,7 @@ const TransferCurve& transfer_curve() {
 }
 
 std::uint8_t code(float value) {
-  return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5f, 0.0f, 255.0f));
 }
 
 // Which pixels a chroma sample stands for along one axis: `count` pixels from block_size * sample +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -27,11 +28,10 @@ class TransferCurve {
 
   static float odd(const Table& table, float x) {
     const float place = std::abs(x) * table.scale;
-    const auto last = static_cast<float>(table.values.size() - 2);
-    const float below = std::floor(place < last ? place : last);
-    const auto i = static_cast<std::size_t>(below);
-    const float t = place - below;
-    return std::copysign(table.values[i] + t * (table.values[i + 1] - table.values[i]), x);
+    const auto i = std::min(static_cast<int>(place), static_cast<int>(table.values.size()) - 2);
+    const float t = place - static_cast<float>(i);
+    const float* value = table.values.data() + i;
+    return std::copysign(value[0] + t * (value[1] - value[0]), x);
   }
 
   Table decode_, encode_, encode_bright_;
