@@ -17,7 +17,7 @@ constexpr float kBase_m = 1050;
 constexpr float kDepth_m = 1500;
 constexpr float kLevel_m = kDepth_m / kLevels;
 constexpr int kDetail = 64;  // texels of the fine noise, along each axis
-constexpr float kDetailTexel_m = 9;
+constexpr float kDetailTexel_m = 15;
 constexpr float kExtinction_per_m = 0.022F;
 constexpr float kFarthest_m = 60000;
 constexpr float kHaze_m = 30000;
@@ -35,11 +35,6 @@ float cloud_phase(float cosine) {
   const float g = 0.6F;
   const float lobe = (1 - g * g) / std::pow(1 + g * g - 2 * g * cosine, 1.5F);
   return 0.80F + 0.20F * lobe;
-}
-
-float parallel_noise(float x, float y, float z, std::uint32_t seed) {
-  const float billow = fractal(x, y, z, 4, 32, seed);
-  return billow;
 }
 
 }  // namespace
@@ -83,10 +78,12 @@ void Clouds::fill(double cover) {
         const float height = (static_cast<float>(level) + 0.5F) / kLevels;
         const float room = strength - 1.25F * height * (0.55F + 0.45F * height);
         if (room < -0.45F) break;
-        const float noise = parallel_noise(static_cast<float>(x) / 16,
-                                           static_cast<float>(y) / 16,
-                                           static_cast<float>(level) * kLevel_m / kCell_m / 16,
-                                           seed_ + 3);
+        const float noise = fractal(static_cast<float>(x) / 16,
+                                    static_cast<float>(y) / 16,
+                                    static_cast<float>(level) * kLevel_m / kCell_m / 16,
+                                    4,
+                                    kCells / 16,
+                                    seed_ + 3);
         const float base = smoothstep(0.0F, 0.06F, height);
         const float density = clamp01((room + 1.7F * (noise - 0.5F)) * 1.9F) * base;
         if (density <= 0) continue;
@@ -130,8 +127,6 @@ void Clouds::light_up() {
     });
     std::swap(above, here);
   }
-  for (std::size_t i = 0; i < above.size(); ++i)
-    if (column_used_[i] == 0) column_used_[i] = 0;
 }
 
 Clouds::Sample Clouds::sample(float north_m, float east_m, float height) const {
@@ -213,7 +208,8 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
     const float height_m = t * up - kBase_m;
     Sample here = sample(t * north, t * east, height_m / kDepth_m);
     if (here.density > 0) {
-      const float fine = erosion(t * north, t * east, height_m);
+      // Far off the fine noise is finer than the steps: it fades to its mean.
+      const float fine = lerp(erosion(t * north, t * east, height_m), 0.5F, clamp01(t / 15000));
       here.density = clamp01((here.density - 1.05F * (1 - here.density) * (fine - 0.22F)) * 1.4F);
     }
     if (here.density <= 0.004F) {
@@ -243,9 +239,9 @@ void Clouds::add_cirrus(const Vector3& direction, Light& colour) const {
   const float along = 0.85F * x + 0.53F * y;
   const float across = -0.53F * x + 0.85F * y + bend;
   const float patches = fractal(x / 14000, y / 14000, 3, 256, seed_ + 22);
-  const float streaks = fractal(along / 6000, across / 900, 5, 256, seed_ + 23);
-  const float amount = smoothstep(0.42F, 0.72F, patches) * smoothstep(0.35F, 0.85F, streaks);
-  const float kept = 0.55F * amount * smoothstep(0.03F, 0.2F, up);
+  const float streaks = fractal(along / 6000, across / 1300, 5, 256, seed_ + 23);
+  const float amount = smoothstep(0.42F, 0.72F, patches) * smoothstep(0.30F, 0.95F, streaks);
+  const float kept = 0.34F * amount * smoothstep(0.03F, 0.2F, up);
   colour += kept * (sky_.sunlight() * 0.82F + light(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
 }
 

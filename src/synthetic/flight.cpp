@@ -148,13 +148,15 @@ void Flight::Impl::draw_row(int y,
                             const trajectory::State& state,
                             const std::vector<Clutter::Disc>& discs,
                             Light* row) const {
+  const auto r = static_cast<std::size_t>(y);
+  const std::size_t base = r * static_cast<std::size_t>(options.width);
   view.for_each_in_row(y, nodes, [&](int x, const Light& d) {
-    row[x] = light_at(d, state);
+    const bool hidden = x >= own.first[r] && x < own.last[r] &&
+                        own.layer[base + static_cast<std::size_t>(x)][3] >= 1;
+    if (!hidden) row[x] = light_at(d, state);
     row[x][3] = d[3];
   });
-  const auto r = static_cast<std::size_t>(y);
   if (!discs.empty()) Clutter::draw(discs, y, options.width, row);
-  const std::size_t base = r * static_cast<std::size_t>(options.width);
   for (int x = own.first[r]; x < own.last[r]; ++x) {
     const Light& over = own.layer[base + static_cast<std::size_t>(x)];
     const float shading = row[x][3];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "synthetic/clouds.h"
@@ -45,6 +46,21 @@ class Ground {
   void plant(const Land& land, std::uint32_t seed);
   void build(std::uint32_t seed);
   void make_levels();
+  void find_peaks();
+  float peak_m(float north_m, float east_m, float span_m) const;
+  // How far along the ray something standing up is met, and the height at which; empty where
+  // nothing is.
+  struct Meeting {
+    float distance_m = 0;
+    float shade = 1;
+  };
+  std::optional<Meeting> meet(float eye_north_m,
+                              float eye_east_m,
+                              float north,
+                              float east,
+                              float down,
+                              float far_m,
+                              float across) const;
   void tree(float north_m, float east_m, float radius_m, float height_m, const Light& colour);
   void house(float north_m,
              float east_m,
@@ -55,7 +71,8 @@ class Ground {
              const Light& roof);
   void darken(float north_m, float east_m, float radius_m, float factor);
   std::uint32_t& texel(int x, int y);
-  float height_m(float x, float y, int level) const;
+  float height_m(float x, float y, int level) const;  // of the texel
+  float smooth_height_m(float x, float y, int level) const;
   Light colour(float x, float y, float level) const;
   float sunlit(float north_m, float east_m) const;
   float detail(float north_m, float east_m) const;
@@ -66,6 +83,9 @@ class Ground {
   Light sunlight_;
   Light skylight_;
   std::vector<Level> levels_;
+  // Greatest heights in and beside square cells, each level's cells twice as wide: open fields need
+  // no marching.
+  std::vector<std::vector<std::uint8_t>> peaks_;
   std::vector<float> shadow_;
   std::vector<float> detail_;
   std::vector<Light> haze_;

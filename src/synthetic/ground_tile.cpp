@@ -60,6 +60,7 @@ Ground::Ground(
   plant(land, seed + 50);
   build(seed + 60);
   make_levels();
+  find_peaks();
 }
 
 std::uint32_t& Ground::texel(int x, int y) {
@@ -225,6 +226,40 @@ void Ground::build(std::uint32_t seed) {
     const float y = kLand_m * unit(mix(id + 3));
     house(x, y, angle, 30 + 35 * unit(mix(id + 4)), 13, 5, roof(id % 3));
     house(x + 30, y + 12, angle + 1.571F, 18, 10, 4.5F, roof(id));
+  }
+}
+
+void Ground::find_peaks() {
+  const Level& base = levels_.front();
+  int cells = static_cast<int>(kLand_m / 10);
+  const int ratio = base.size / cells;
+  const auto at = [](int x, int y, int n) {
+    return static_cast<std::size_t>((y & (n - 1)) * n + (x & (n - 1)));
+  };
+  std::vector<std::uint8_t> highest(static_cast<std::size_t>(cells * cells), 0);
+  tbb::parallel_for(0, cells, [&](int row) {
+    for (int y = row * ratio; y < (row + 1) * ratio; ++y)
+      for (int x = 0; x < base.size; ++x) {
+        std::uint8_t& cell = highest[at(x / ratio, row, cells)];
+        cell = std::max(cell, static_cast<std::uint8_t>(texel(x, y) >> 24));
+      }
+  });
+  while (cells >= 4) {
+    std::vector<std::uint8_t> around(highest.size(), 0);
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x)
+        for (int k = 0; k < 9; ++k)
+          around[at(x, y, cells)] =
+              std::max(around[at(x, y, cells)], highest[at(x + k % 3 - 1, y + k / 3 - 1, cells)]);
+    peaks_.push_back(std::move(around));
+    const int half = cells / 2;
+    std::vector<std::uint8_t> coarse(static_cast<std::size_t>(half * half), 0);
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x)
+        coarse[at(x / 2, y / 2, half)] =
+            std::max(coarse[at(x / 2, y / 2, half)], highest[at(x, y, cells)]);
+    highest = std::move(coarse);
+    cells = half;
   }
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "synthetic/noise.h"
 
@@ -22,21 +24,35 @@ struct Place {
 
 class Land {
  public:
-  explicit Land(std::uint32_t seed) : seed_(seed) {}
+  explicit Land(std::uint32_t seed);
   Place at(float north_m, float east_m) const;
 
  private:
-  struct Block {
+  static constexpr int kBlocks = 8;  // along each side of the land
+  struct Centre {
     std::uint32_t id = 0;
-    float north = 0;  // from the block's centre
+    float north = 0;  // in blocks, from the corner of its cell
     float east = 0;
+    float cosine = 1;  // of the direction of its strips
+    float sine = 0;
+    float width_m = 0;
+    float length_m = 0;
+  };
+  struct Block {
+    const Centre* centre = nullptr;
+    float north_m = 0;  // from the centre
+    float east_m = 0;
     float edge_m = 0;
     std::uint32_t border = 0;  // the same seen from both sides
   };
-  Block block(float north_m, float east_m) const;
+  // Slow variation, read from a coarse map: bend of the borders (two), woods, height.
+  Light slow(float north_m, float east_m) const;
+  Block block(float north_m, float east_m, const Light& slow) const;
   Light crop(const Block& block, float north_m, float east_m) const;
 
-  std::uint32_t seed_;
+  std::array<Centre, std::size_t{kBlocks} * kBlocks> centres_;
+  std::vector<Light> slow_;
+  std::vector<std::array<float, 2>> soil_;  // coarse and fine mottling
 };
 
 }  // namespace airtruth::synthetic

@@ -136,7 +136,7 @@ struct Scene {
 Light shaded(const Point& p, Part part, const Point& ray, const Scene& scene) {
   const Point n = normal(p);
   const float facing = std::max((n * scene.sun).sum(), 0.0F);
-  const float lit = facing > 0 ? facing * shadow(p + n * 0.004F, scene.sun) : 0.0F;
+  const float lit = facing > 0 ? facing * shadow(p + n * 0.015F, scene.sun) : 0.0F;
   const float up = 0.5F - 0.5F * n[2];
   const Light ambient = light(0.26F, 0.34F, 0.46F) * up + light(0.20F, 0.17F, 0.12F) * (1 - up);
   const Point half = (scene.sun - ray).matrix().normalized().array();
