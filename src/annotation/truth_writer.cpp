@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "annotation/truth.h"
+#include "annotation/truth_rules.h"
+#include "base/error.h"
+
+namespace airtruth::annotation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json(double value) { return value; }
+Json json(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json json(const YawPitchRoll& a) { return Json::array({a.yaw_deg, a.pitch_deg, a.roll_deg}); }
+Json json(const Box& b) { return Json::array({b.x, b.y, b.width, b.height}); }
+Json json(const PixelBox& b) { return Json::array({b.x, b.y, b.width, b.height}); }
+
+Json json(const Homography& h) {
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back(Json::array({h(i, 0), h(i, 1), h(i, 2)}));
+  return rows;
+}
+
+template <typename T>
+void add(Json& object, const char* key, const std::optional<T>& value) {
+  if (value) object[key] = json(*value);
+}
+
+Json json(const Intruder& intruder) {
+  Json object;
+  object["id"] = intruder.id;
+  object["aircraft"] = intruder.aircraft;
+  object["state"] = name(intruder.state);
+  add(object, "position_ned_m", intruder.position_ned_m);
+  add(object, "velocity_ned_mps", intruder.velocity_ned_mps);
+  add(object, "attitude_yaw_pitch_roll_deg", intruder.attitude_yaw_pitch_roll_deg);
+  add(object, "position_in_cam_m", intruder.position_in_cam_m);
+  add(object, "range_m", intruder.range_m);
+  add(object, "range_rate_mps", intruder.range_rate_mps);
+  add(object, "azimuth_deg", intruder.azimuth_deg);
+  add(object, "elevation_deg", intruder.elevation_deg);
+  add(object, "exact_box_px", intruder.exact_box_px);
+  add(object, "visible_box_px", intruder.visible_box_px);
+  object["visible_area_px"] = intruder.visible_area_px;
+  object["alpha_sum_px"] = intruder.alpha_sum_px;
+  object["hidden_by_own_aircraft"] = intruder.hidden_by_own_aircraft;
+  object["hidden_by_intruder"] = intruder.hidden_by_intruder;
+  object["cut_by_frame"] = intruder.cut_by_frame;
+  return object;
+}
+
+Json json(const LensFacts& lens) {
+  return {{"model", lens.model},
+          {"width", lens.width},
+          {"height", lens.height},
+          {"focal_px", lens.focal_px},
+          {"principal_point_px", lens.principal_point_px},
+          {"distortion", lens.distortion}};
+}
+
+}  // namespace
+
+const char* name(State state) {
+  switch (state) {
+    case State::kVisible:
+      return "visible";
+    case State::kHidden:
+      return "hidden";
+    case State::kOutside:
+      return "outside";
+    case State::kBehind:
+      return "behind";
+    case State::kEnded:
+      return "ended";
+  }
+  return "";
+}
+
+std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
+  if (const auto found = fault(frame))
+    check(false, "truth of frame " + std::to_string(frame.frame) + ": " + *found);
+  if (const auto found = fault(lens)) check(false, *found);
+  Json object;
+  object["frame"] = frame.frame;
+  object["time_s"] = frame.time_s;
+  object["damaged"] = frame.damaged;
+  object["lens"] = json(lens);
+  object["camera"] = {
+      {"position_ned_m", json(frame.camera_position_ned_m)},
+      {"attitude_yaw_pitch_roll_deg", json(frame.camera_attitude_yaw_pitch_roll_deg)}};
+  object["motion"] = {{"state", frame.motion_state},
+                      {"frame_from_reference", json(frame.frame_from_reference)}};
+  Json intruders = Json::array();
+  for (const Intruder& intruder : frame.intruders) intruders.push_back(json(intruder));
+  object["intruders"] = std::move(intruders);
+  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace airtruth::annotation
