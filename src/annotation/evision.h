@@ -22,7 +22,7 @@ struct EvisionFrame {
   PixelBox rect_px{};  // all zero: none
 };
 
-// Text in the very form of the published files. Where an intruder is not in the world (its path has not begun or is
+// Text in the form of the published files (but for the last digit of exact halves: docs/formats/evision.md). Where an intruder is not in the world (its path has not begun or is
 // over) the frame is written with the camera's position, an empty box, and no IntruderPos_m or Distance_m.
 std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
                         const std::vector<Vector3>& camera_ned_m);
