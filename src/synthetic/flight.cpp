@@ -181,7 +181,7 @@ image::Picture Flight::frame(int index) const {
   Sensor::Exposure exposure = impl_->sensor.start();
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   tbb::parallel_for(0, tasks, [&](int task) {
-    std::vector<Light> rows(2 * static_cast<std::size_t>(width));
+    std::vector<Light> rows(2 * static_cast<std::size_t>(width), Light::Zero());
     Light* upper = rows.data();
     Light* lower = upper + width;
     for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {

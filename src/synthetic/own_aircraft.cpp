@@ -153,7 +153,7 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
   float closest = 1e9F;
   float closest_t = t;
   Part part = Part::kWing;
-  for (int i = 0; i < 90 && t < kFarthest_m; ++i) {
+  for (int i = 0; i < 140 && t < kFarthest_m; ++i) {
     const Nearest here = nearest(ray * t);
     const float relative = here.distance_m / (t * pixel_rad);
     if (relative < closest) {
@@ -164,7 +164,7 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
     if (here.distance_m < 0.0002F) break;
     t += std::max(here.distance_m, 0.0004F);
   }
-  const float covered = clamp01(1 - closest);
+  const float covered = clamp01(1.1F * (1 - closest));
   if (covered <= 0) return Light::Zero();
   Light colour = shaded(ray * closest_t, part, ray, scene) * covered;
   colour[3] = covered;
