@@ -10,9 +10,10 @@
 #include "geometry/transform.h"
 #include "image/picture.h"
 
-// The paper's virtual image (section II.B): OpenGL by OpenSceneGraph on EGL without a screen. Intruders over a chroma
-// key green backdrop, averaged normals, antialiasing, anisotropic filtering, one directional light.
-// A pinhole camera, whatever the scene's lens: OpenGL has no other, and nor had the paper.
+// The paper's virtual image (section II.B): OpenGL by OpenSceneGraph on EGL without a screen.
+// Intruders over a chroma key green backdrop, averaged normals, antialiasing, anisotropic
+// filtering, one directional light. A pinhole camera, whatever the scene's lens: OpenGL has no
+// other, and nor had the paper.
 namespace airtruth::backdrop {
 
 struct Instance {
@@ -29,13 +30,14 @@ struct Light {  // as render::Light
 };
 
 struct Options {
-  int samples = 4;             // multisamples per pixel
+  int samples = 4;  // multisamples per pixel
   float anisotropy = 16;
-  std::optional<int> gpu;      // EGL device; empty: the first GPU if there is one, else llvmpipe
-  bool software = false;       // --gpu none: llvmpipe
+  std::optional<int> gpu;  // EGL device; empty: the first GPU if there is one, else llvmpipe
+  bool software = false;   // --gpu none: llvmpipe
 };
 
-// One OpenGL context; use it from one thread at a time.
+// One OpenGL context; use it from one thread at a time. A mesh that it has drawn stays on the
+// device and must outlive it unchanged.
 class Backdrop {
  public:
   // Throws Error where no EGL device can be opened.
@@ -43,14 +45,21 @@ class Backdrop {
   ~Backdrop();
 
   // The virtual image: sRGB over pure green. focal and principal point in airtruth's pixels.
-  image::Rgb8 render(const Pixel& focal_px, const Pixel& principal_point_px, const Rigid& cam_from_world,
-                     const Light& light, const std::vector<Instance>& instances);
+  image::Rgb8 render(const Pixel& focal_px,
+                     const Pixel& principal_point_px,
+                     const Rigid& cam_from_world,
+                     const Light& light,
+                     const std::vector<Instance>& instances);
 
-  // The same drawn `supersampling` times larger in each direction over transparent black and averaged: linear
-  // premultiplied colour and alpha, the independent answer that render's layer is tested against.
-  std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px, const Pixel& principal_point_px,
-                                                 const Rigid& cam_from_world, const Light& light,
-                                                 const std::vector<Instance>& instances, int supersampling);
+  // The same drawn `supersampling` times larger in each direction over transparent black and
+  // averaged: linear premultiplied colour and alpha, the independent answer that render's layer is
+  // tested against.
+  std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
+                                                 const Pixel& principal_point_px,
+                                                 const Rigid& cam_from_world,
+                                                 const Light& light,
+                                                 const std::vector<Instance>& instances,
+                                                 int supersampling);
 
   // "llvmpipe (LLVM 15.0.6, 256 bits)" or the GPU's name.
   std::string device_name() const;
