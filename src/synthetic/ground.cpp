@@ -9,8 +9,8 @@ namespace airtruth::synthetic {
 namespace {
 
 constexpr float kHighest_m = 16;      // of trees and houses
-constexpr int kMarch = 8;             // steps through the height field
-constexpr float kReliefEnd_m = 2000;  // beyond, the ground is flat
+constexpr int kMarch = 7;             // steps through the height field
+constexpr float kReliefEnd_m = 1600;  // beyond, the ground is flat
 constexpr float kVisibility_m = 17000;
 constexpr float kFarthest_m = 26000;  // where the hills begin
 constexpr float kPeakCell_m = 10;
@@ -162,6 +162,7 @@ std::optional<Ground::Meeting> Ground::meet(float eye_north_m,
                                static_cast<int>(levels_.size()) - 2);
   const auto x = [&](float s) { return (eye_north_m + s * north) * inverse; };
   const auto y = [&](float s) { return (eye_east_m + s * east) * inverse; };
+  const int refinements = far_m < 600 ? 4 : 2;
   float clear = far_m - peak / down;
   for (int i = 0; i < kMarch; ++i) {
     float inside = clear + step;
@@ -169,7 +170,7 @@ std::optional<Ground::Meeting> Ground::meet(float eye_north_m,
       clear = inside;
       continue;
     }
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < refinements; ++k) {
       const float s = 0.5F * (clear + inside);
       ((far_m - s) * down < smooth_height_m(x(s), y(s), level) ? inside : clear) = s;
     }
