@@ -55,7 +55,8 @@ class Flight {
   trajectory::State camera(
       int index) const;  // true pose of the camera: position and world_from_body (shaken)
   trajectory::State nominal_camera(int index) const;  // the same without the shake
-  const image::Mask& own_aircraft() const;            // 0 where the own aircraft is
+  const image::Mask& own_aircraft()
+      const;  // 0 where the own aircraft, or nothing (beyond the lens), is
   const lens::Lens& lens() const;
   const FlightOptions& options() const;
   // The exact far-field homography frame_from_first: K R_k R_0^-1 K^-1. Pinhole only.
