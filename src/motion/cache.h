@@ -11,8 +11,8 @@
 
 namespace airtruth::motion {
 
-// Results are cached by content: the video's bytes, the mask's, the range of frames, the options and the version of
-// the estimator. A file that is not whole or not ours is ignored, never trusted.
+// Results are cached by content: the video's bytes, the mask's, the range of frames, the options
+// and the version of the estimator. A file that is not whole or not ours is ignored, never trusted.
 struct CacheKey {
   std::string video_sha256;
   std::string mask_sha256;  // "" without a mask
@@ -22,7 +22,10 @@ struct CacheKey {
   std::string file_name() const;  // a hash of all of it, ".csv"
 };
 
-std::optional<std::vector<FrameMotion>> cached(const std::filesystem::path& folder, const CacheKey& key);
-void store(const std::filesystem::path& folder, const CacheKey& key, const std::vector<FrameMotion>& motion);
+std::optional<std::vector<FrameMotion>> cached(const std::filesystem::path& folder,
+                                               const CacheKey& key);
+void store(const std::filesystem::path& folder,
+           const CacheKey& key,
+           const std::vector<FrameMotion>& motion);
 
 }  // namespace airtruth::motion

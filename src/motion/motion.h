@@ -13,27 +13,30 @@
 
 // How the picture moved, as one plane homography per frame (the paper, section II.C).
 //
-// Strong corners (Shi and Tomasi 1994) outside the own aircraft, spread over the image; pyramidal Lucas-Kanade
-// (Bouguet 2001) with a forward-backward check (Kalal 2010); RANSAC (Fischler and Bolles 1981) homography to the key
-// frame, refined on its inliers; new key frames before tracks run thin, homographies composed.
+// Strong corners (Shi and Tomasi 1994) outside the own aircraft, spread over the image; pyramidal
+// Lucas-Kanade (Bouguet 2001) with a forward-backward check (Kalal 2010); RANSAC (Fischler and
+// Bolles 1981) homography to the key frame, refined on its inliers; new key frames before tracks
+// run thin, homographies composed.
 namespace airtruth::motion {
 
 enum class State {
   kReference,  // the first frame: identity by definition
   kMeasured,
-  kBridged,    // could not be measured (blank sky, blur, damage); carried on from its neighbours and flagged
-  kCut,        // the scene changed: nothing links it to the frames before; carried on and flagged
+  kBridged,  // could not be measured (blank sky, blur, damage); carried on from its neighbours and
+             // flagged
+  kCut,      // the scene changed: nothing links it to the frames before; carried on and flagged
 };
 const char* name(State state);  // "reference", "measured", "bridged", "cut"
 
 struct FrameMotion {
   std::int64_t frame = 0;
   double time_s = 0;
-  // p_in_frame ~ H p_in_reference, in airtruth's pixels (corner origin), h33 = 1. For Reference::kFirstFrame the
-  // reference is the first frame; for kSmoothed the steady camera that the shaking one follows.
+  // p_in_frame ~ H p_in_reference, in airtruth's pixels (corner origin), h33 = 1. For
+  // Reference::kFirstFrame the reference is the first frame; for kSmoothed the steady camera that
+  // the shaking one follows.
   Homography frame_from_reference = Homography::Identity();
   int inliers = 0;
-  double rms_px = 0;     // of the inliers' reprojection, in the frame
+  double rms_px = 0;  // of the inliers' reprojection, in the frame
   State state = State::kReference;
 };
 
@@ -41,18 +44,21 @@ enum class Reference { kFirstFrame, kSmoothed };
 
 struct Options {
   int max_corners = 400;
-  double min_corner_distance_px = 0;      // 0: chosen from the image's size
-  double forward_backward_px = 0.5;       // largest disagreement of a track with its own way back
+  double min_corner_distance_px = 0;  // 0: chosen from the image's size
+  double forward_backward_px = 0.5;   // largest disagreement of a track with its own way back
   double ransac_px = 1.0;
   int min_inliers = 12;
-  double smoothing_s = 1.0;               // kSmoothed: standard deviation of the Gaussian window over time
+  double smoothing_s = 1.0;  // kSmoothed: standard deviation of the Gaussian window over time
   std::uint64_t seed = 1;
 };
 
 // Frame by frame, in order; memory does not grow with the number of frames. One thread at a time.
 class Estimator {
  public:
-  Estimator(int width, int height, const Options& options, const image::Mask* own_aircraft = nullptr);
+  Estimator(int width,
+            int height,
+            const Options& options,
+            const image::Mask* own_aircraft = nullptr);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   // Reads the luma plane alone. `damaged` frames are bridged. Result against the first frame.
@@ -63,9 +69,11 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-// Splits motion against the first frame into steady camera and shake: returns frame_from_reference with the
-// reference following a Gaussian-smoothed camera. All frames are needed at once (a few hundred bytes each).
-std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first, const Options& options);
+// Splits motion against the first frame into steady camera and shake: returns frame_from_reference
+// with the reference following a Gaussian-smoothed camera. All frames are needed at once (a few
+// hundred bytes each).
+std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
+                                  const Options& options);
 
 // motion.csv: frame,time_s,h11,...,h33,inliers,rms_px,state. Numbers round-trip exactly.
 std::string csv_from_motion(const std::vector<FrameMotion>& motion);

@@ -19,8 +19,8 @@
 namespace airtruth::render {
 
 struct Light {
-  Vector3 to_sun_in_world{0, 0, -1};            // unit
-  std::array<float, 3> sun = {1, 1, 1};         // linear; irradiance/pi on a surface facing the sun
+  Vector3 to_sun_in_world{0, 0, -1};     // unit
+  std::array<float, 3> sun = {1, 1, 1};  // linear; irradiance/pi on a surface facing the sun
   std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};     // linear; from straight above
   std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};  // linear; from straight below
 };
@@ -32,11 +32,12 @@ struct View {
   const lens::Lens* lens = nullptr;
   Rigid world_from_cam;
   Homography nominal_from_frame = Homography::Identity();
-  int width = 0;   // of the frame
+  int width = 0;  // of the frame
   int height = 0;
 };
 
-// One aircraft ready to be hit: its BVH, in body coordinates. Immutable; share one among intruders of one type.
+// One aircraft ready to be hit: its BVH, in body coordinates. Immutable; share one among intruders
+// of one type.
 class Model {
  public:
   explicit Model(const aircraft::Mesh& mesh);  // copies what it needs
@@ -56,15 +57,18 @@ struct Instance {
 };
 
 struct Options {
-  // Samples: 1 draft, 2, 3 (default: alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px of size, 1/40
-  // above), 4, 5 (the oracle: 4,096 rays a pixel everywhere).
+  // Samples: 1 draft, 2, 3 (default: alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px
+  // of size, 1/40 above), 4, 5 (the oracle: 4,096 rays a pixel everywhere).
   int quality = 3;
 };
 
-// `search` boxes (one per instance, in frame pixels, not clipped; empty: not in view) say where an instance can be:
-// from projected geometry with a margin. Pixels outside every box are never touched. Same bytes for any number of
-// threads (rows of tiles run on oneTBB).
-image::Layer render(const View& view, const Light& light, const std::vector<Instance>& instances,
-                    const std::vector<std::optional<Box>>& search, const Options& options = {});
+// `search` boxes (one per instance, in frame pixels, not clipped; empty: not in view) say where an
+// instance can be: from projected geometry with a margin. Pixels outside every box are never
+// touched. Same bytes for any number of threads (rows of tiles run on oneTBB).
+image::Layer render(const View& view,
+                    const Light& light,
+                    const std::vector<Instance>& instances,
+                    const std::vector<std::optional<Box>>& search,
+                    const Options& options = {});
 
 }  // namespace airtruth::render

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/stabilise.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace airtruth::motion {
+namespace {
+
+cv::Mat mat_of(const image::Plane& plane) {
+  return {plane.height,
+          plane.width,
+          CV_8UC1,
+          const_cast<std::uint8_t*>(plane.row(0)),
+          static_cast<std::size_t>(plane.stride)};
+}
+
+// H for a plane whose samples are 2^sx by 2^sy pixels, in OpenCV's integer-centred samples.
+cv::Matx33d plane_map(const Homography& h, int sx, int sy) {
+  Homography pixel_from_sample = Homography::Identity();
+  pixel_from_sample(0, 0) = 1 << sx;
+  pixel_from_sample(1, 1) = 1 << sy;
+  pixel_from_sample(0, 2) = 0.5 * (1 << sx);
+  pixel_from_sample(1, 2) = 0.5 * (1 << sy);
+  const Homography m = pixel_from_sample.inverse() * h * pixel_from_sample;
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
+}
+
+}  // namespace
+
+image::Picture stabilised(const image::Picture& picture, const Homography& frame_from_reference) {
+  image::Picture result = image::make_picture(picture.width, picture.height, picture.colour);
+  const bool rgb = picture.colour.matrix == image::Matrix::kRgb;
+  const int black = picture.colour.range == image::Range::kFull || rgb ? 0 : 16;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
+    const bool chroma = i > 0 && !rgb;
+    const int sx = chroma ? image::log2_chroma_width(picture.colour.chroma) : 0;
+    const int sy = chroma ? image::log2_chroma_height(picture.colour.chroma) : 0;
+    cv::Mat target = mat_of(result.planes[i]);
+    cv::warpPerspective(mat_of(picture.planes[i]),
+                        target,
+                        plane_map(frame_from_reference, sx, sy),
+                        target.size(),
+                        cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                        cv::BORDER_CONSTANT,
+                        cv::Scalar(chroma ? 128 : black));
+  }
+  return result;
+}
+
+}  // namespace airtruth::motion

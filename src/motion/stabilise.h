@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/transform.h"
+#include "image/picture.h"
+
+namespace airtruth::motion {
+
+// The picture as the reference camera would have seen it: sample p of the result is sample H p of
+// the picture, plane by plane. What the frame did not see is black.
+image::Picture stabilised(const image::Picture& picture, const Homography& frame_from_reference);
+
+}  // namespace airtruth::motion

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "aircraft/mesh.h"
+#include "render/renderer.h"
+
+// Embree stays in this module's sources.
+namespace airtruth::render {
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+
+struct Model::Impl {
+  aircraft::Mesh mesh;
+  std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
+  // One BVH per part, in the part's own coordinates; primitive k is parts[i].triangles[k].
+  std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
+  std::vector<std::vector<float>> texels_per_m;  // [part][triangle], 0 without a texture
+  Eigen::Vector3d centre_in_body{0, 0, 0};
+  double radius_m = 0;  // of a sphere about the centre that holds every part at any turn
+};
+
+// Where a ray meets a part.
+struct Hit {
+  float t = 0;
+  int part = 0;
+  std::uint32_t triangle = 0;
+  float u = 0;
+  float v = 0;
+};
+
+}  // namespace airtruth::render

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "render/model.h"
+
+namespace airtruth::render {
+
+// A ray in body coordinates that begins near the aircraft; what it says of distance is from that
+// beginning.
+struct BodyRay {
+  Eigen::Vector3f origin;
+  Eigen::Vector3f direction;  // unit
+};
+
+// An instance as rays meet it.
+struct Placed {
+  const Model::Impl* model = nullptr;
+  Eigen::Vector3f to_sun_in_body{0, 0, -1};
+  Eigen::Vector3f up_in_body{0, 0, -1};
+  std::vector<Eigen::Affine3f> part_from_body;
+  std::vector<Eigen::Affine3f> body_from_part;
+};
+
+// Light premultiplied by opacity, linear.
+struct Shaded {
+  std::array<float, 3> rgb{};
+  float alpha = 0;
+};
+
+// Opacity of the surface at a hit, texture included. `footprint_m`: the width of a pixel there.
+float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
+
+// Opacity and light: Lambert for the sun (with the aircraft's own shadow) and for a sky that goes
+// evenly from ground to zenith colour (hemisphere lighting), Blinn-Phong (Blinn 1977) for the sun's
+// glint. Two-sided.
+Shaded shade(const Placed& placed,
+             const BodyRay& ray,
+             const Hit& hit,
+             const Light& light,
+             float footprint_m);
+
+}  // namespace airtruth::render
