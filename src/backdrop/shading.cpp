@@ -14,10 +14,12 @@ namespace {
 constexpr float kOpaque = 0.996f;  // 254 / 255
 
 constexpr const char* kVertexShader = R"(#version 120
+varying vec3 p_in_part;
 centroid varying vec3 p_in_eye;
 centroid varying vec3 normal_in_eye;
 centroid varying vec2 uv;
 void main() {
+  p_in_part = gl_Vertex.xyz;
   p_in_eye = (gl_ModelViewMatrix * gl_Vertex).xyz;
   normal_in_eye = gl_NormalMatrix * gl_Normal;
   uv = gl_MultiTexCoord0.xy;
@@ -25,8 +27,11 @@ void main() {
 }
 )";
 
-// Colour is premultiplied throughout; texels are linear and premultiplied too.
+// The light is the ray tracer's: Lambert for the sun, a sky that goes evenly from ground to zenith
+// colour, Blinn-Phong (Blinn 1977) for the glint; two-sided by the side of the flat face that is
+// seen. Only its shadows are missing. Texels are linear and premultiplied.
 constexpr const char* kFragmentShader = R"(#version 120
+varying vec3 p_in_part;
 centroid varying vec3 p_in_eye;
 centroid varying vec3 normal_in_eye;
 centroid varying vec2 uv;
@@ -38,6 +43,8 @@ uniform vec3 ground;
 uniform bool encode;
 uniform vec3 diffuse;
 uniform vec3 emission;
+uniform vec3 specular;
+uniform float shininess;
 uniform float opacity;
 uniform bool textured;
 uniform bool opaque_pass;
@@ -53,10 +60,20 @@ void main() {
   float alpha = texel.a * opacity;
   bool is_opaque = alpha >= 0.996;
   if (is_opaque != opaque_pass || alpha <= 0.0) discard;
-  vec3 n = normalize(normal_in_eye);
-  if (dot(n, p_in_eye) > 0.0) n = -n;
-  vec3 light = sun * max(0.0, dot(n, to_sun_in_eye)) + mix(ground, sky, 0.5 + 0.5 * dot(n, up_in_eye));
+  vec3 to_viewer = -normalize(p_in_eye);
+  vec3 face = gl_NormalMatrix * cross(dFdx(p_in_part), dFdy(p_in_part));
+  face = length(face) > 0.0 ? normalize(face) : to_viewer;
+  if (dot(face, to_viewer) < 0.0) face = -face;
+  vec3 n = length(normal_in_eye) > 1e-6 ? normalize(normal_in_eye) : face;
+  if (dot(n, face) < 0.0) n = -n;
+  float cosine = dot(face, to_sun_in_eye) > 0.0 ? max(0.0, dot(n, to_sun_in_eye)) : 0.0;
+  vec3 light = sun * cosine + mix(ground, sky, 0.5 + 0.5 * dot(n, up_in_eye));
   vec3 straight = diffuse * light * (texel.rgb / texel.a) + emission;
+  if (cosine > 0.0 && shininess > 0.0) {
+    float exponent = clamp(shininess, 4.0, 128.0);
+    float halfway = max(0.0, dot(n, normalize(to_sun_in_eye + to_viewer)));
+    straight += 0.08 * specular * sun * cosine * (exponent + 8.0) / 25.0 * pow(halfway, exponent);
+  }
   if (encode) straight = srgb_from_linear(straight);
   if (is_opaque) alpha = 1.0;
   gl_FragColor = vec4(straight * alpha, alpha);
@@ -108,6 +125,8 @@ osg::ref_ptr<osg::StateSet> material_state(Pass pass,
   osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
   state->addUniform(new osg::Uniform("diffuse", osg_from_rgb(material.diffuse)));
   state->addUniform(new osg::Uniform("emission", osg_from_rgb(material.emission)));
+  state->addUniform(new osg::Uniform("specular", osg_from_rgb(material.specular)));
+  state->addUniform(new osg::Uniform("shininess", material.shininess));
   state->addUniform(new osg::Uniform("opacity", material.opacity));
   state->addUniform(new osg::Uniform("textured", texture != nullptr));
   state->addUniform(new osg::Uniform("opaque_pass", pass == Pass::kOpaque));
