@@ -208,6 +208,11 @@ Raw with_includes(const fs::path& file, std::vector<fs::path>& sources, int dept
   return base;
 }
 
+// Procedural lamps are glowing discs of metres, drawn for the night.
+bool is_lamp(const std::string& path) {
+  return path.find("Light") != std::string::npos || path.find("light") != std::string::npos;
+}
+
 Wrapper read_at(const fs::path& file,
                 const fs::path& data_root,
                 std::vector<fs::path>& sources,
@@ -228,6 +233,7 @@ Wrapper read_at(const fs::path& file,
   if (raw.offsets) wrapper.parent_from_model = *raw.offsets;
   wrapper.animations = raw.animations;
   for (const Raw::Nested& nested : raw.nested) {
+    if (is_lamp(nested.path)) continue;
     const fs::path path = resolved(nested.path, folder, data_root);
     if (nested.path.empty() || !fs::is_regular_file(path)) {
       missing.insert(nested.path);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "cli/commands.h"
 #include "sequence/finished.h"
 #include "video/still.h"

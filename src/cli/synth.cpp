@@ -7,6 +7,7 @@
 #include "base/files.h"
 #include "cli/commands.h"
 #include "lens/calibration_file.h"
+#include "sequence/mask_picture.h"
 #include "sequence/virtual_flight.h"
 #include "video/still.h"
 
@@ -25,13 +26,6 @@ struct Arguments {
   int quality = 23;
   synthetic::FlightOptions flight;
 };
-
-image::Rgb8 picture_of(const image::Mask& mask) {
-  image::Rgb8 picture = image::make_rgb8(mask.width, mask.height);
-  for (std::size_t i = 0; i < mask.free.size(); ++i)
-    std::fill_n(picture.samples.get() + 3 * i, 3, mask.free[i] >= 128 ? std::uint8_t{255} : std::uint8_t{0});
-  return picture;
-}
 
 void refuse_existing(const Arguments& arguments) {
   for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
@@ -59,7 +53,7 @@ void synth(Arguments arguments, Context& context) {
   const synthetic::Flight flight(options);
   sequence::write_flight(flight, out, how);
   if (!arguments.truth.empty()) write_file(arguments.truth, synthetic::csv_from_flight(flight));
-  if (!arguments.mask.empty()) video::write_still(arguments.mask, picture_of(flight.own_aircraft()));
+  if (!arguments.mask.empty()) video::write_still(arguments.mask, sequence::picture_of(flight.own_aircraft()));
   console.result(fmt::format("{}: {} frames of {}x{}", arguments.out, options.frame_count, options.width, options.height));
 }
 

@@ -188,14 +188,8 @@ struct Sum {
 
 class Painter {
  public:
-  Painter(const View& view,
-          const Light& light,
-          const std::vector<Actor>& actors,
-          const RayGrid& grid)
-      : light_(light), actors_(actors), grid_(grid) {
-    const Vector3 centre = RayGrid::direction(view, {view.width / 2.0, view.height / 2.0});
-    (void)centre;
-  }
+  Painter(const Light& light, const std::vector<Actor>& actors, const RayGrid& grid)
+      : light_(light), actors_(actors), grid_(grid) {}
 
   // Adds samples [from, to) of a pixel. `coverage` and `alone`: per actor.
   void sample(int x,
@@ -449,7 +443,7 @@ image::Layer render(const View& view,
   const Samples samples = samples_for(options.quality, largest_px(actors));
   const auto patch = patch_of(actors);
   const RayGrid grid(view, patch.value_or(PixelBox{0, 0, 1, 1}));
-  const Painter painter(view, light, actors, grid);
+  const Painter painter(light, actors, grid);
   if (patch) {
     Canvas canvas{*patch, actors.size(), {}, {}, {}};
     const auto count =

@@ -36,7 +36,7 @@ Texel bilinear(const aircraft::Texture& texture, std::size_t index, float u, flo
   return result;
 }
 
-// Trilinear (Williams 1983). Several samples fall in a pixel, so each takes half a pixel's width.
+// Trilinear (Williams 1983). Several samples fall in a pixel, so each takes a quarter of a pixel's width.
 Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
   const auto part = static_cast<std::size_t>(hit.part);
@@ -48,7 +48,7 @@ Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const Eigen::Vector2f uv =
       (1 - hit.u - hit.v) * mesh.uvs[a] + hit.u * mesh.uvs[b] + hit.v * mesh.uvs[c];
   if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return {1, 1, 1, 1};
-  const float texels = 0.5f * footprint_m * placed.model->texels_per_m[part][hit.triangle];
+  const float texels = 0.25f * footprint_m * placed.model->texels_per_m[part][hit.triangle];
   const float deepest = static_cast<float>(texture.levels.size() - 1);
   const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
   const auto low = static_cast<std::size_t>(level);

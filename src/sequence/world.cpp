@@ -155,6 +155,14 @@ void add_pixels(annotation::Intruder& truth, std::size_t i, const image::Layer& 
 
 }  // namespace
 
+// Intruders share a mesh when they load the same: gear and axes included.
+static std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  const aircraft::LoadOptions options = load_options(intruder, path);
+  std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' + std::to_string(options.altitude_agl_ft);
+  if (options.axes) key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
+}
+
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
   return at_place(lens.where, [&] {
     return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
@@ -166,7 +174,7 @@ World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& wa
   std::map<std::string, Type> types;  // one BVH for all intruders of one type
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = at_place(intruder.where, [&] { return intruder_path(intruder); });
-    Type& type = types[intruder.aircraft];
+    Type& type = types[type_key(intruder, path)];
     if (!type.aircraft) type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });
     annotation::Silhouette silhouette{&type.aircraft->mesh, aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
