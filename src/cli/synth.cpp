@@ -81,6 +81,10 @@ void add_synth(CLI::App& app, Context& context) {
   command->add_option("--clouds", flight.cloud_cover, "Cloud cover, 0 to 1")->check(CLI::Range(0.0, 1.0))->capture_default_str();
   command->add_option("--shake", flight.shake_deg, "Vibration, degrees rms")->check(CLI::Range(0.0, 10.0))->capture_default_str();
   command->add_option("--noise", flight.noise, "Sensor noise; 1 is a cheap camera's")->check(CLI::Range(0.0, 10.0))->capture_default_str();
+  command
+      ->add_option("--clutter", flight.clutter, "Share of the picture that wanders by itself, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_flag("--no-own-aircraft", arguments->no_own_aircraft, "Leave the own aircraft out of the view");
   command->add_flag("--rotate-only", arguments->rotate_only, "The camera turns but does not move, so that a homography is exact");
   command->add_option("--quality", arguments->quality, "H.264 CRF")->check(CLI::Range(0, 51))->capture_default_str();

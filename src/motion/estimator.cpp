@@ -111,8 +111,8 @@ std::vector<cv::Point2f> Estimator::Impl::corners_of(const cv::Mat& grey) const 
     distance = std::max(6.0, std::sqrt(double(width) * height / options.max_corners) * 0.35);
   std::vector<cv::Point2f> candidates;
   cv::goodFeaturesToTrack(
-      image, candidates, 6 * options.max_corners, 0.004, distance / scale, mask, 5);
-  const int share = std::max(2, 3 * options.max_corners / (kGrid * kGrid));
+      image, candidates, 0, 0.0005, distance / scale, mask, 5);
+  const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
   std::vector<int> taken(kGrid * kGrid, 0);
   std::vector<cv::Point2f> chosen;
   for (const cv::Point2f& c : candidates) {  // best first

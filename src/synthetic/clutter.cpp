@@ -53,7 +53,8 @@ void Clutter::draw(const std::vector<Disc>& discs, int y, int width, Light* row)
       if (edge <= 0) continue;
       const float scale = 4.5F / disc.radius;
       const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
-      const Light tone = light(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
+      Light tone = light(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
+      tone[3] = row[x][3];  // the lens's shading is the pixel's own
       row[x] += (tone - row[x]) * smoothstep(0.0F, 0.25F, edge);
     }
   }
