@@ -146,7 +146,8 @@ TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
   EXPECT_LT(fin_x, size.low_in_body.x() + 0.25 * size.length_m());
 }
 
-// The model is 9.63 m wide where a Cessna 172 is 11.0 m: what its file holds (wing vertices from z = -4.82 to 4.81).
+// The model is 9.63 m wide where a Cessna 172 is 11.0 m: what its file holds (wing vertices from z
+// = -4.82 to 4.81).
 TEST(Catalogue, TheCessnaHasItsFilesSize) {
   const Extents size = extents(load_aircraft("c172/news", {.airspeed_kt = 110}).mesh);
   EXPECT_NEAR(size.length_m(), 8.2, 0.6);

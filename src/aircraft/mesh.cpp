@@ -25,7 +25,9 @@ void add_visible_border(const Mesh& mesh,
                         std::vector<Eigen::Vector3f>& points) {
   const Texture& texture =
       mesh.textures[static_cast<std::size_t>(mesh.materials[triangle.material].texture)];
-  const auto& [a, b, c] = triangle.vertex;
+  const std::uint32_t a = triangle.vertex[0];
+  const std::uint32_t b = triangle.vertex[1];
+  const std::uint32_t c = triangle.vertex[2];
   const auto texels = [&](std::uint32_t i, std::uint32_t j) {
     const Eigen::Vector2f d = mesh.uvs[i] - mesh.uvs[j];
     return std::max(std::abs(d.x()) * static_cast<float>(texture.levels[0].width),

@@ -236,7 +236,8 @@ void append_model(Mesh& mesh,
   } else {
     if (!fs::is_regular_file(file))
       throw Error("does not exist; expected a 3D model", {file.string()});
-    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("noRotation");  // an .obj file's axes as they are
+    osg::ref_ptr<osgDB::Options> options =
+        new osgDB::Options("noRotation");  // an .obj file's axes as they are
     for (const fs::path& folder : all) options->getDatabasePathList().push_back(folder.string());
     node = osgDB::readRefNodeFile(file.string(), options.get());
   }

@@ -14,6 +14,8 @@
 namespace airtruth::render {
 namespace {
 
+constexpr int kNeighbourSamples =
+    128;  // of a pixel that looks whole beside an edge, before it is believed
 constexpr int kShadedSamples = 16;  // hits per pixel whose light is computed; the others only count
 constexpr float kStep = 1e-4f;      // past a translucent surface, metres
 constexpr int kMaxLayers = 24;      // translucent surfaces along one ray
@@ -182,6 +184,8 @@ struct Sum {
   std::array<double, 3> translucent_rgb{};
   double alpha = 0;
   double depth = 0;  // alpha-weighted
+  double least = 1;  // smallest and largest opacity of the samples that hit
+  double most = 0;
   int hits = 0;
   int count = 0;
 };
@@ -192,13 +196,7 @@ class Painter {
       : light_(light), actors_(actors), grid_(grid) {}
 
   // Adds samples [from, to) of a pixel. `coverage` and `alone`: per actor.
-  void sample(int x,
-              int y,
-              int from,
-              int to,
-              Sum& sum,
-              std::vector<double>& coverage,
-              std::vector<double>& alone) const {
+  void sample(int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const {
     const auto corners = grid_.corners(x, y);
     sum.count += to - from;
     for (const Vector3& corner : corners)
@@ -255,13 +253,25 @@ class Painter {
            double pixel_rad,
            std::vector<Fragment>& fragments,
            Sum& sum,
-           std::vector<double>& coverage) const {
+           double* coverage) const {
     if (fragments.size() > 1)
       std::stable_sort(
           fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
             return a.distance_m < b.distance_m;
           });
+    const double before = sum.alpha;
+    blend(direction, pixel_rad, fragments, sum, coverage);
     ++sum.hits;
+    sum.least = std::min(sum.least, sum.alpha - before);
+    sum.most = std::max(sum.most, sum.alpha - before);
+  }
+
+  // One sample's surfaces, nearest first, over one another.
+  void blend(const Vector3& direction,
+             double pixel_rad,
+             const std::vector<Fragment>& fragments,
+             Sum& sum,
+             double* coverage) const {
     double through = 1;
     const bool simple = fragments.front().alpha >= 1;
     for (const Fragment& fragment : fragments) {
@@ -315,13 +325,9 @@ struct Canvas {
 
 void sample_pixel(const Painter& painter, Canvas& canvas, int x, int y, int from, int to) {
   const std::size_t i = canvas.index(x, y);
-  std::vector<double> coverage(canvas.actors, 0.0);
-  std::vector<double> alone(canvas.actors, 0.0);
+  double* coverage = canvas.coverage.data() + i * canvas.actors;
+  double* alone = canvas.alone.data() + i * canvas.actors;
   painter.sample(x, y, from, to, canvas.sums[i], coverage, alone);
-  for (std::size_t a = 0; a < canvas.actors; ++a) {
-    canvas.coverage[i * canvas.actors + a] += coverage[a];
-    canvas.alone[i * canvas.actors + a] += alone[a];
-  }
 }
 
 bool wanted(const std::vector<Actor>& actors, int x, int y) {
@@ -343,19 +349,20 @@ bool on_edge(const Canvas& canvas, const std::vector<std::uint8_t>& kind, int x,
   return false;
 }
 
-// 0: every sample missed; 1: every sample met something opaque, of one actor; 2: mixed.
+// 0: every sample missed; 1: every sample met one actor, at much the same opacity; 2: mixed.
+std::uint8_t kind_of(const Canvas& canvas, std::size_t i) {
+  const Sum& sum = canvas.sums[i];
+  if (sum.hits == 0) return 0;
+  constexpr double kEven = 0.1;
+  if (sum.hits != sum.count || sum.most - sum.least > kEven) return 2;
+  for (std::size_t a = 0; a < canvas.actors; ++a)
+    if (canvas.coverage[i * canvas.actors + a] == sum.alpha) return 1;
+  return 2;
+}
+
 std::vector<std::uint8_t> kinds(const Canvas& canvas) {
   std::vector<std::uint8_t> result(canvas.sums.size());
-  for (std::size_t i = 0; i < canvas.sums.size(); ++i) {
-    const Sum& sum = canvas.sums[i];
-    bool whole = sum.count > 0 && sum.hits == sum.count && sum.opaque == sum.count;
-    if (whole && canvas.actors > 1) {
-      whole = false;
-      for (std::size_t a = 0; a < canvas.actors; ++a)
-        whole = whole || canvas.coverage[i * canvas.actors + a] == sum.count;
-    }
-    result[i] = sum.hits == 0 ? 0 : whole ? 1 : 2;
-  }
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = kind_of(canvas, i);
   return result;
 }
 
@@ -461,8 +468,15 @@ image::Layer render(const View& view,
     if (samples.edge > samples.base) {
       const auto kind = kinds(canvas);
       each_row([&](int x, int y) {
-        if (on_edge(canvas, kind, x, y))
-          sample_pixel(painter, canvas, x, y, samples.base, samples.edge);
+        if (!on_edge(canvas, kind, x, y)) return;
+        const std::size_t i = canvas.index(x, y);
+        int done = samples.base;
+        if (kind[i] != 2 && samples.edge > kNeighbourSamples && samples.base < kNeighbourSamples) {
+          done = kNeighbourSamples;
+          sample_pixel(painter, canvas, x, y, samples.base, done);
+          if (kind_of(canvas, i) == kind[i]) return;
+        }
+        sample_pixel(painter, canvas, x, y, done, samples.edge);
       });
     }
     layer.patch = *patch;

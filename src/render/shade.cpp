@@ -36,7 +36,8 @@ Texel bilinear(const aircraft::Texture& texture, std::size_t index, float u, flo
   return result;
 }
 
-// Trilinear (Williams 1983). Several samples fall in a pixel, so each takes a quarter of a pixel's width.
+// Trilinear (Williams 1983). Several samples fall in a pixel, so each takes a quarter of a pixel's
+// width.
 Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
   const auto part = static_cast<std::size_t>(hit.part);

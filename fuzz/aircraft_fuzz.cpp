@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// FlightGear's wrapper XML: anything but an Error is a finding.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "aircraft/wrapper.h"
+#include "base/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const auto wrapper = airtruth::aircraft::parse_wrapper(text, "a.xml");
+    for (const auto& animation : wrapper.animations) {
+      (void)airtruth::aircraft::animated_value(animation, {});
+      if (animation.condition) (void)airtruth::aircraft::holds(*animation.condition, {});
+    }
+  } catch (const airtruth::Error&) {
+  }
+  return 0;
+}
