@@ -9,15 +9,15 @@
 namespace airtruth::render {
 namespace {
 
+// No "threads=1" here: Embree would hold all of oneTBB, and so the whole pipeline, to one thread.
 // One instruction set for all machines, so that a frame has the same bytes on each: AVX2 (2013 and
 // later), or SSE4.2 where there is no AVX2.
 RTCDevice new_device() {
-  for (const char* settings :
-       {"threads=1,set_affinity=0,isa=avx2", "threads=1,set_affinity=0,isa=sse4.2"}) {
+  for (const char* settings : {"isa=avx2", "isa=sse4.2"}) {
     if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
     if (RTCDevice device = rtcNewDevice(settings)) return device;
   }
-  RTCDevice device = rtcNewDevice("threads=1");
+  RTCDevice device = rtcNewDevice(nullptr);
   check(device != nullptr, "Embree has a device");
   return device;
 }
