@@ -33,7 +33,7 @@ Samples samples_for(int quality, double size_px) {
     case 2:
       return {16, 128};
     case 3:
-      return size_px <= 64 ? Samples{32, 1024} : Samples{16, 384};
+      return size_px <= 64 ? Samples{16, 512} : Samples{16, 256};
     case 4:
       return {64, 1024};
     case 5:
@@ -51,16 +51,29 @@ std::uint32_t hashed(std::uint32_t x, std::uint32_t y) {
   return h;
 }
 
-// Point i of the two-dimensional Sobol sequence (Sobol 1967), xor-scrambled by the pixel (Kollig
-// and Keller 2002): any power of two of them is a (0, 2)-net, which is what keeps the error of an
-// edge small at every slope.
+// The two-dimensional Sobol sequence (Sobol 1967), xor-scrambled by the pixel (Kollig and Keller
+// 2002): any power of two of its points is a (0, 2)-net, which is what keeps the error of an edge
+// small at every slope.
+constexpr std::size_t kMostSamples = 4096;
+
+std::array<std::array<std::uint32_t, 2>, kMostSamples> sobol_points() {
+  std::array<std::array<std::uint32_t, 2>, kMostSamples> points{};
+  for (std::uint32_t n = 0; n < kMostSamples; ++n) {
+    std::uint32_t vx = 1u << 31;
+    std::uint32_t vy = 1u << 31;
+    for (std::uint32_t i = n; i != 0; i >>= 1, vx >>= 1, vy ^= vy >> 1) {
+      if ((i & 1u) != 0) {
+        points[n][0] ^= vx;
+        points[n][1] ^= vy;
+      }
+    }
+  }
+  return points;
+}
+
 Eigen::Vector2d sobol(std::uint32_t i, std::uint32_t scramble_x, std::uint32_t scramble_y) {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  std::uint32_t vx = 1u << 31;
-  std::uint32_t vy = 1u << 31;
-  for (; i != 0; i >>= 1, vx >>= 1, vy ^= vy >> 1)
-    if ((i & 1u) != 0) x ^= vx, y ^= vy;
+  static const auto points = sobol_points();
+  const auto& [x, y] = points[i];
   return {((x ^ scramble_x) + 0.5) * 0x1.0p-32, ((y ^ scramble_y) + 0.5) * 0x1.0p-32};
 }
 
