@@ -33,6 +33,7 @@ Samples samples_for(int quality, double size_px) {
     case 2:
       return {16, 128};
     case 3:
+      if (size_px <= 24) return {64, 1024};
       return size_px <= 64 ? Samples{16, 512} : Samples{16, 256};
     case 4:
       return {64, 1024};
