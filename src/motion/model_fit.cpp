@@ -12,6 +12,7 @@ namespace {
 constexpr double kMinSpan =
     0.35;  // share of the image's sides that the inliers' hull must cover for a homography
 constexpr double kMinInlierShare = 0.35;
+constexpr double kLooser = 3;
 
 Homography eigen_from(const cv::Mat& h) {
   Homography result = Homography::Identity();
@@ -73,27 +74,42 @@ void measure(ModelFit& fit,
 
 }  // namespace
 
+namespace {
+
+std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
+                                   const std::vector<cv::Point2f>& moved,
+                                   cv::Size image,
+                                   const Options& options,
+                                   double limit_px) {
+  cv::Mat mask;
+  cv::Mat h = cv::findHomography(key, moved, cv::RANSAC, limit_px, mask, 1000, 0.999);
+  const bool use_homography = !h.empty() && span_of(chosen(key, mask), image) >= kMinSpan &&
+                              plausible(eigen_from(h), image);
+  if (!use_homography) {
+    h = cv::estimateAffinePartial2D(key, moved, mask, cv::RANSAC, 1.5 * limit_px, 1000, 0.999, 10);
+    if (h.empty() || !plausible(eigen_from(h), image)) return std::nullopt;
+  }
+  ModelFit fit;
+  fit.frame_from_key = eigen_from(h);
+  measure(fit, key, moved, (use_homography ? 1.0 : 1.5) * limit_px);
+  if (fit.inliers < options.min_inliers ||
+      fit.inliers < kMinInlierShare * static_cast<double>(key.size()))
+    return std::nullopt;
+  return fit;
+}
+
+}  // namespace
+
 std::optional<ModelFit> fit_model(const std::vector<cv::Point2f>& key,
                                   const std::vector<cv::Point2f>& moved,
                                   cv::Size image,
                                   const Options& options) {
   if (static_cast<int>(key.size()) < options.min_inliers) return std::nullopt;
-  cv::Mat mask;
-  cv::Mat h = cv::findHomography(key, moved, cv::RANSAC, options.ransac_px, mask, 1000, 0.999);
-  bool use_homography = !h.empty() && span_of(chosen(key, mask), image) >= kMinSpan &&
-                        plausible(eigen_from(h), image);
-  if (!use_homography) {
-    h = cv::estimateAffinePartial2D(
-        key, moved, mask, cv::RANSAC, 1.5 * options.ransac_px, 1000, 0.999, 10);
-    if (h.empty() || !plausible(eigen_from(h), image)) return std::nullopt;
-  }
-  ModelFit fit;
-  fit.frame_from_key = eigen_from(h);
-  measure(fit, key, moved, (use_homography ? 1.0 : 1.5) * options.ransac_px);
-  if (fit.inliers < options.min_inliers ||
-      fit.inliers < kMinInlierShare * static_cast<double>(key.size()))
-    return std::nullopt;
-  return fit;
+  // One plane is no exact model of a wide lens or of near ground: a second, looser look before
+  // giving up. The larger rms_px says that it was needed.
+  for (double limit_px : {options.ransac_px, kLooser * options.ransac_px})
+    if (const auto fit = fit_within(key, moved, image, options, limit_px)) return fit;
+  return std::nullopt;
 }
 
 }  // namespace airtruth::motion

@@ -130,12 +130,12 @@ image::Rgb8 plot(const std::vector<FrameMotion>& motion, int width, int height) 
     rms.values.push_back(m.rms_px);
     inliers.values.push_back(m.inliers);
   }
-  cv::Mat canvas(4 * (kPanelPx + kTopPx) + 40, kWidthPx, CV_8UC3, cv::Scalar(252, 252, 252));
+  cv::Mat canvas(4 * (kPanelPx + kTopPx) + 56, kWidthPx, CV_8UC3, cv::Scalar(252, 252, 252));
   panel(canvas, motion, 0, "px", {x, y});
   panel(canvas, motion, 1, "degrees", {turn});
   panel(canvas, motion, 2, "px", {rms});
   panel(canvas, motion, 3, "corners", {inliers});
-  write(canvas, "frame (shaded: bridged; red: cut)", kLeftPx + 6, canvas.rows - 14, 0.48, kInk);
+  write(canvas, "frame (shaded: bridged; red: cut)", kLeftPx + 300, canvas.rows - 12, 0.48, kInk);
   image::Rgb8 result = image::make_rgb8(canvas.cols, canvas.rows);
   for (int row = 0; row < canvas.rows; ++row)
     std::memcpy(result.at(0, row), canvas.ptr(row), static_cast<std::size_t>(canvas.cols) * 3);
