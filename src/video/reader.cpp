@@ -119,6 +119,7 @@ void Reader::State::open_codec() {
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
   codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+  codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
   if (const int opened = avcodec_open2(codec.get(), decoder, nullptr); opened < 0)
     fail(std::string("cannot be decoded (") + decoder->name + "): " + reason(opened));
   packet.reset(av_packet_alloc());
@@ -212,9 +213,13 @@ bool Reader::State::decode_one() {
 
 Frame Reader::State::to_frame() {
   Frame result;
-  if (frame->key_frame == 1 && frame->decode_error_flags == 0) broken = false;
-  result.damaged =
-      broken || frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  if (bad) {
+    broken = true;
+  } else if (frame->key_frame == 1) {
+    broken = false;
+  }
+  result.damaged = broken;  // what leans on a bad frame is bad, up to the next key frame
   std::int64_t pts = frame->best_effort_timestamp;
   if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
   if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
@@ -282,9 +287,14 @@ std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }
 
 bool Reader::ends_early() const {
   if (!state_->finished) return false;
-  const AVStream& stream = *state_->input->streams[state_->stream_index];
-  return state_->read_failed ||
-         (stream.nb_frames > 0 && state_->decoded + state_->corrupt < stream.nb_frames);
+  const State& s = *state_;
+  const AVStream& stream = *s.input->streams[s.stream_index];
+  if (s.read_failed) return true;
+  if (stream.nb_frames > 0) return s.decoded + s.corrupt < stream.nb_frames;
+  // Matroska counts no frames; its duration tells. A second's slack: sound may outlast the picture.
+  if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;
+  const double seen_s = static_cast<double>(s.last_pts - *s.first_pts) * s.info.time_base.value();
+  return seen_s + 1.0 < static_cast<double>(s.input->duration) / AV_TIME_BASE;
 }
 
 }  // namespace airtruth::video

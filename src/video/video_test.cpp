@@ -114,7 +114,8 @@ TEST_F(Video, ProResIsRoundedToEightBits) {
 }
 
 TEST_F(Video, OddSizesAndNumberedImages) {
-  ffmpeg("-f lavfi -i testsrc2=s=67x51:r=25:d=0.2 -c:v ffv1 -pix_fmt yuv420p odd.mkv");
+  ffmpeg(
+      "-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=yuv420p -c:v ffv1 odd.mkv");
   Reader odd(folder_ / "odd.mkv");
   EXPECT_TRUE(all_planes(odd) == raw("odd.mkv", "yuv420p"));
   fs::create_directories(folder_ / "frames");
@@ -162,9 +163,9 @@ TEST_F(Video, VariableFrameRateKeepsItsTimes) {
 
 TEST_F(Video, LosslessOutputGivesEverySampleBack) {
   for (const char* format : {"yuv420p", "yuv422p", "yuv444p", "yuv440p", "gray", "yuvj420p"}) {
-    ffmpeg(std::string("-f lavfi -i testsrc2=s=67x51:r=25:d=0.2 -c:v ") +
-           (std::string(format) == "yuvj420p" ? "mjpeg" : "ffv1") + " -strict -1 -pix_fmt " +
-           format + " in.mkv");
+    ffmpeg(std::string("-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=") + format +
+           " -c:v " + (std::string(format) == "yuvj420p" ? "mjpeg" : "ffv1") +
+           " -strict -1 in.mkv");
     Reader reader(folder_ / "in.mkv");
     {
       Writer writer(folder_ / "out.mkv", reader.info(), {.format = Format::kMkv});
@@ -244,6 +245,27 @@ TEST_F(Video, TruncatedStreamEndsEarly) {
   EXPECT_GT(frames, 5);
   EXPECT_LT(frames, 50);
   EXPECT_TRUE(reader.ends_early());
+}
+
+TEST_F(Video, TruncatedMatroskaEndsEarlyToo) {
+  ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=4 -c:v libx264 -g 5 whole.mkv");
+  const std::string bytes = read_file(folder_ / "whole.mkv");
+  write_file(folder_ / "cut.mkv", bytes.substr(0, bytes.size() / 2));
+  Reader cut(folder_ / "cut.mkv");
+  Reader whole(folder_ / "whole.mkv");
+  all_planes(cut);
+  all_planes(whole);
+  EXPECT_TRUE(cut.ends_early());
+  EXPECT_FALSE(whole.ends_early());
+}
+
+TEST_F(Video, NumberedImagesNeverReplaceAFolder) {
+  fs::create_directories(folder_ / "frames");
+  write_file(folder_ / "frames/user.txt", "mine");
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 in.mp4");
+  Reader reader(folder_ / "in.mp4");
+  EXPECT_THROW(Writer(folder_ / "frames", reader.info(), {.format = Format::kPng}), Error);
+  EXPECT_EQ(read_file(folder_ / "frames/user.txt"), "mine");
 }
 
 TEST_F(Video, WriterLeavesNothingUnlessFinished) {

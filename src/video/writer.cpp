@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <thread>
@@ -40,8 +41,9 @@ Colour stored_colour(const Colour& colour, Format format, const fs::path& path) 
     stored.range = Range::kFull;  // JPEG has no other
     if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
   }
-  if (format == Format::kMp4 && stored.chroma == Chroma::k440)
-    throw Error("H.264 has no 4:4:0; expected output.video = \"mkv\" or \"png\"", {path.string()});
+  if (stored.chroma == Chroma::k440)
+    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"",
+                {path.string()});
   return stored;
 }
 
@@ -81,9 +83,9 @@ Picture with_full_range(const Picture& picture, const Colour& to) {
       }
       const std::uint8_t* source = picture.planes[i].row(y);
       for (int x = 0; x < result.planes[i].width; ++x) {
-        const int value =
-            i == 0 ? (source[x] - 16) * 255 * 2 / 219 : (source[x] - 128) * 255 * 2 / 224 + 256;
-        target[x] = static_cast<std::uint8_t>(std::clamp((value + 1) >> 1, 0, 255));
+        const double value =
+            i == 0 ? (source[x] - 16) * 255.0 / 219 : (source[x] - 128) * 255.0 / 224 + 128;
+        target[x] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
       }
     }
   }
@@ -149,7 +151,6 @@ void Writer::State::set_codec_options(AVDictionary** settings) const {
   } else if (options.format == Format::kMkv) {
     av_dict_set_int(settings, "level", 3, 0);
     av_dict_set_int(settings, "slicecrc", 1, 0);
-    av_dict_set_int(settings, "slices", 4, 0);
   }
 }
 
@@ -257,6 +258,8 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   try {
     if (options.format == Format::kPng) {
       std::error_code failed;
+      if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
+        state_->fail("exists already; expected the name of a new folder for the images");
       fs::remove_all(state_->part, failed);
       fs::create_directories(state_->part, failed);
       if (failed) state_->fail("cannot create: " + failed.message());
@@ -331,7 +334,7 @@ void Writer::finish() {
       s.fail("cannot write: " + reason(closed));
   }
   std::error_code failed;
-  if (s.options.format == Format::kPng) fs::remove_all(s.path, failed);
+  if (s.options.format == Format::kPng && fs::exists(s.path)) fs::remove(s.path, failed);  // empty
   fs::rename(s.part, s.path, failed);
   if (failed) s.fail("cannot create: " + failed.message());
   s.finished = true;

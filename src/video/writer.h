@@ -36,6 +36,7 @@ struct WriterOptions {
 // High 4:4:4 profile; odd sizes as they are where the layout allows it, else Error that names a
 // format that can); RGB becomes 4:4:4 BT.709 full range in mp4 and avi, and stays RGB in mkv and
 // png. avi has one frame rate and full-range samples alone; png is sRGB.
+// mkv keeps time stamps in whole milliseconds.
 class Writer {
  public:
   Writer(const std::filesystem::path& path, const StreamInfo& info, const WriterOptions& options);
