@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the program as its users do: python3 cli_test.py AIRTRUTH"""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import wave
+
+AIRTRUTH = ""
+ROOT = ""
+
+SCENE = """name = "clip"
+[background]
+video = "{video}"
+{background}
+[lens]
+model = "pinhole"
+{lens}
+[camera]
+position_ned_m = [0, 0, -150]
+[motion]
+model = "none"
+{more}
+[[intruder]]
+id = "one"
+aircraft = "{aircraft}"
+waypoints_ned_m = {waypoints}
+speed_mps = 50
+[output]
+video = "{output}"
+"""
+
+
+def scene(**change):
+    """The text of a scene that renders, but for what `change` says."""
+    keys = {
+        "video": "flight.mkv",
+        "background": "",
+        "lens": "vertical_fov_deg = 75",
+        "more": "",
+        "aircraft": "c172/news",
+        "waypoints": "[[60, -8, -150], [60, 100, -150]]",
+        "output": "mkv",
+    }
+    keys.update(change)
+    return SCENE.format(**keys)
+
+
+def path(*names):
+    return os.path.join(ROOT, *names)
+
+
+def write(name, content):
+    with open(path(name), "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+    return path(name)
+
+
+def run(*arguments, prefix=()):
+    return subprocess.run(
+        [*prefix, AIRTRUTH, *arguments], cwd=ROOT, capture_output=True, text=True, errors="replace", timeout=120
+    )
+
+
+def make_inputs():
+    made = run("synth", "-o", "flight.mkv", "--width", "160", "--height", "120", "--frames", "12", "--no-own-aircraft")
+    assert made.returncode == 0, made.stderr
+    made = run("synth", "-o", "flight.mp4", "--width", "160", "--height", "120", "--frames", "12", "--no-own-aircraft")
+    assert made.returncode == 0, made.stderr
+    write("empty.mkv", b"")
+    write("text.mkv", "This is a letter and not a video.\n" * 50)
+    with wave.open(path("audio.wav"), "wb") as audio:
+        audio.setnchannels(1)
+        audio.setsampwidth(2)
+        audio.setframerate(8000)
+        audio.writeframes(bytes(16000))
+    with open(path("flight.mp4"), "rb") as video:
+        write("cut.mp4", video.read()[:200])
+    # Binary PGM pictures, which need no library to write.
+    write("small.pgm", b"P5\n16 12\n255\n" + b"\xff" * (16 * 12))
+    write("black.pgm", b"P5\n160 120\n255\n" + b"\x00" * (160 * 120))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.out = os.path.join(ROOT, "out-" + self.id().split(".")[-1])
+        os.mkdir(self.out)
+
+    def render(self, text, *arguments, out=None):
+        return run("render", write("scene.toml", text), "--out", out or self.out, "--no-cache", *arguments)
+
+    def assert_refused(self, result, *words):
+        """One line that says what is wrong, exit code 2, and nothing left."""
+        self.assertEqual(result.returncode, 2, result.stderr)
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("airtruth: error: "), lines[0])
+        for word in words:
+            self.assertIn(word.lower(), lines[0].lower())
+        self.assertEqual(os.listdir(self.out), [])
+
+
+class Help(Case):
+    def test_every_subcommand_explains_itself(self):
+        for words in (["demo"], ["render"], ["overlay"], ["inspect"], ["motion"], ["synth"], ["aircraft"],
+                      ["aircraft", "list"], ["aircraft", "show"]):
+            result = run(*words, "--help")
+            self.assertEqual(result.returncode, 0, words)
+            self.assertRegex(result.stdout, rf"airtruth.* {words[-1]}\b", words)
+            self.assertEqual(result.stderr, "", words)
+
+    def test_version_and_no_arguments(self):
+        self.assertRegex(run("--version").stdout, r"^airtruth \d+\.\d+")
+        self.assert_refused(run())
+        self.assert_refused(run("rendre"))
+        self.assert_refused(run("render", "scene.toml", "--no-such-option"))
+
+
+class BadVideo(Case):
+    def test_is_refused_in_one_line(self):
+        for video in ("missing.mkv", "empty.mkv", "text.mkv", "audio.wav", "cut.mp4"):
+            with self.subTest(video):
+                self.assert_refused(self.render(scene(video=video)), video)
+
+
+class BadScene(Case):
+    def test_unknown_key_gets_the_nearest_spelling(self):
+        self.assert_refused(self.render(scene(background="first_frmae = 1")), "first_frmae", "first_frame", "scene.toml:4")
+
+    def test_unknown_aircraft_gets_the_nearest_names(self):
+        result = self.render(scene(aircraft="c172/newz"))
+        self.assert_refused(result, "c172/newz", "scene.toml:")
+        self.assertRegex(result.stderr.replace("c172/newz", ""), r"\bc172\b")
+
+    def test_masks(self):
+        self.assert_refused(self.render(scene(background='mask = "small.pgm"')), "small.pgm", "16", "160")
+        self.assert_refused(self.render(scene(background='mask = "black.pgm"')), "black.pgm")
+        self.assert_refused(self.render(scene(background='mask = "none.png"')), "none.png")
+
+    def test_waypoints(self):
+        for waypoints in ("[]", "[[60, 0, -150]]", "[[60, 0], [60, 9]]", '"north"', "[[60, 0, -150], [60, 0, -150]]",
+                          "[[60, 0, nan], [60, 9, -150]]"):
+            with self.subTest(waypoints):
+                self.assert_refused(self.render(scene(waypoints=waypoints)), "scene.toml:")
+
+    def test_focal_length(self):
+        self.assert_refused(self.render(scene(lens="focal_px = [-480, 480]")), "focal_px", "-480", "scene.toml:")
+
+    def test_not_toml_not_utf8_not_there(self):
+        self.assert_refused(self.render("name = = 3\n"), "scene.toml:1")
+        self.assert_refused(run("render", write("bad.toml", b'name = "\xff\xfe"\n'), "--out", self.out), "bad.toml", "utf-8")
+        self.assert_refused(run("render", "no.toml", "--out", self.out), "no.toml")
+
+
+class Output(Case):
+    def test_that_exists_is_kept_until_overwrite(self):
+        self.assertEqual(self.render(scene()).returncode, 0)
+        record = os.path.join(self.out, "clip", "sequence.json")
+        before = os.stat(record)
+        again = self.render(scene())
+        self.assertEqual(again.returncode, 2)
+        self.assertEqual(len(again.stderr.splitlines()), 1)
+        self.assertIn("--overwrite", again.stderr)
+        after = os.stat(record)
+        self.assertEqual((before.st_ino, before.st_mtime_ns), (after.st_ino, after.st_mtime_ns))
+        replaced = self.render(scene(), "--overwrite")
+        self.assertEqual(replaced.returncode, 0, replaced.stderr)
+        self.assertNotEqual(os.stat(record).st_ino, before.st_ino)
+        self.assertEqual(os.listdir(self.out), ["clip"])
+
+    def test_folder_that_cannot_be_written(self):
+        write("a_file", "not a folder")
+        self.assert_refused(self.render(scene(), out=path("a_file", "below")))
+        closed = "/proc/airtruth"  # closed to root too
+        self.assert_refused(self.render(scene(), out=closed), closed)
+
+    def test_full_disk(self):
+        # A tiny disk in a mount namespace of its own, which goes when its shell does.
+        script = ('mount -t tmpfs -o size=16k tmpfs "$1" || exit 77; shift; dir=$1; shift; '
+                  '"$@"; code=$?; ls -A "$dir" | sed "s/^/left: /"; exit $code')
+        scene_file = write("scene.toml", scene())
+        result = subprocess.run(
+            ["unshare", "-m", "sh", "-c", script, "sh", self.out, self.out, AIRTRUTH, "render", scene_file, "--out",
+             self.out, "--no-cache"], cwd=ROOT, capture_output=True, text=True, timeout=120)
+        if result.returncode == 77 or "unshare" in result.stderr:
+            self.skipTest("a small disk cannot be mounted here")
+        self.assert_refused(result)
+        self.assertNotIn("left:", result.stdout)
+
+
+class Render(Case):
+    def test_leaves_a_whole_folder_that_overlay_and_inspect_read(self):
+        result = self.render(scene())
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr, "")
+        folder = os.path.join(self.out, "clip")
+        self.assertEqual(sorted(os.listdir(folder)), ["clip.mkv", "clip.xml", "preview.jpg", "sequence.json", "truth.jsonl"])
+        with open(os.path.join(folder, "truth.jsonl")) as file:
+            truth = [json.loads(line) for line in file]
+        frames = [line for line in truth if "frame" in line]
+        self.assertEqual([line["frame"] for line in frames], list(range(12)))
+        with open(os.path.join(folder, "sequence.json")) as file:
+            self.assertEqual(json.load(file)["summary"]["frames"], 12)
+
+        boxes = os.path.join(self.out, "boxes.mp4")
+        result = run("overlay", folder, "-o", boxes)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater(os.path.getsize(boxes), 1000)
+        picture = os.path.join(self.out, "closeup.png")
+        result = run("inspect", folder, "--frame", "3", "-o", picture)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        beyond = run("inspect", folder, "--frame", "12", "-o", os.path.join(self.out, "no.png"))
+        self.assertEqual(beyond.returncode, 2)
+        self.assertIn("expected 0 to 11", beyond.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.out, "no.png")))
+
+    def test_an_intruder_never_in_view_is_a_warning(self):
+        result = self.render(scene(waypoints="[[-60, -8, -150], [-60, 100, -150]]"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stderr, r"^airtruth: warning: .*'one' is never visible")
+
+    def test_ctrl_c_ends_within_two_seconds_and_leaves_nothing(self):
+        long = path("long.mkv")
+        made = run("synth", "-o", long, "--width", "320", "--height", "240", "--frames", "120", "--no-own-aircraft")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        # The oracle's quality close by: far more than two seconds of work.
+        text = scene(video="long.mkv", more="[render]\nquality = 5", waypoints="[[15, -4, -150], [15, 400, -150]]")
+        text = text.replace("speed_mps = 50", "speed_mps = 1")
+        program = subprocess.Popen(
+            [AIRTRUTH, "render", write("long.toml", text), "--out", self.out, "--no-cache"], cwd=ROOT,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 30
+        part = os.path.join(self.out, ".clip.part")
+        while not os.path.exists(os.path.join(part, "truth.jsonl")) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertIsNone(program.poll(), "the run was over before it could be interrupted")
+        program.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        _, errors = program.communicate(timeout=30)
+        self.assertLess(time.monotonic() - start, 2)
+        self.assertEqual(program.returncode, 130, errors)
+        self.assertEqual(len(errors.splitlines()), 1, errors)
+        self.assertEqual(os.listdir(self.out), [])
+
+
+class Others(Case):
+    def test_motion(self):
+        table = os.path.join(self.out, "motion.csv")
+        result = run("motion", "flight.mkv", "-o", table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(table) as file:
+            lines = file.read().splitlines()
+        self.assertTrue(lines[0].startswith("frame,time_s,h11"))
+        self.assertEqual(len(lines), 13)
+        self.assertIn("--overwrite", run("motion", "flight.mkv", "-o", table).stderr)
+        os.remove(table)
+        self.assert_refused(run("motion", "text.mkv", "-o", table), "text.mkv")
+
+    def test_synth(self):
+        for name in ("a", "b"):
+            result = run("synth", "-o", os.path.join(self.out, name + ".mkv"), "--width", "64", "--height", "64",
+                         "--frames", "2", "--truth", os.path.join(self.out, name + ".csv"))
+            self.assertEqual(result.returncode, 0, result.stderr)
+        tables = []
+        for name in ("a.csv", "b.csv"):
+            with open(os.path.join(self.out, name)) as file:
+                tables.append(file.read())
+        self.assertEqual(tables[0], tables[1])
+        self.assertEqual(len(tables[0].splitlines()), 3)
+
+    def test_aircraft(self):
+        result = run("aircraft", "list", "c172")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("c172/news", result.stdout.splitlines())
+        self.assert_refused(run("aircraft", "list", "zeppelin"))
+        result = run("aircraft", "show", "c172/news")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        size = re.search(r"length ([\d.]+) m, span ([\d.]+) m", result.stdout)
+        self.assertTrue(size, result.stdout)
+        self.assertAlmostEqual(float(size[1]), 8.3, delta=0.8)  # a Cessna 172: 8.28 m long, 11.0 m across
+        self.assert_refused(run("aircraft", "show", "c172/newz"), "c172/newz")
+
+
+if __name__ == "__main__":
+    AIRTRUTH = os.path.abspath(sys.argv.pop(1))
+    ROOT = tempfile.mkdtemp(prefix="airtruth_cli_test_")
+    os.environ["XDG_CACHE_HOME"] = os.path.join(ROOT, "cache")
+    try:
+        make_inputs()
+        unittest.main(verbosity=1)
+    finally:
+        shutil.rmtree(ROOT, ignore_errors=True)
