@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "aircraft/wrapper.h"
+#include "aircraft/wrapper_text.h"
 #include "base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto wrapper = airtruth::aircraft::parse_wrapper(text, "a.xml");
     for (const auto& animation : wrapper.animations) {
-      (void)airtruth::aircraft::animated_value(animation, {});
+      (void)airtruth::aircraft::value_of(animation.value, {});
       if (animation.condition) (void)airtruth::aircraft::holds(*animation.condition, {});
     }
   } catch (const airtruth::Error&) {

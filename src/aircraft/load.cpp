@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <set>
 
+#include "aircraft/ac_text.h"
 #include "aircraft/catalogue.h"
 #include "aircraft/osg_adapter.h"
+#include "aircraft/scope.h"
+#include "aircraft/tidy.h"
 #include "aircraft/wrapper.h"
 #include "base/error.h"
 
@@ -13,254 +17,241 @@ namespace airtruth::aircraft {
 namespace {
 
 // FlightGear: x back, y right, z up. Body: x forward, y right, z down.
-const Eigen::Affine3d kBodyFromFlightGear(Eigen::Matrix3d(Eigen::Vector3d(-1, 1, -1).asDiagonal()));
+Eigen::Affine3d body_from_flightgear() {
+  return Eigen::Affine3d(Eigen::Matrix3d(Vector3(-1, 1, -1).asDiagonal()));
+}
 
 // AC3D files have y up; FlightGear stands them up by a quarter turn about x.
 Eigen::Affine3d flightgear_from_ac() {
   Eigen::Matrix3d m;
-  m << 1, 0, 0,  //
-      0, 0, -1,  //
+  m << 1, 0, 0, //
+      0, 0, -1, //
       0, 1, 0;
   return Eigen::Affine3d(m);
 }
 
-Vector3 axis_vector(const std::string& text, const char* what) {
+Vector3 axis_vector(const std::string &text, const char *what) {
   const bool negative = !text.empty() && text[0] == '-';
-  const std::string letter =
-      !text.empty() && (text[0] == '-' || text[0] == '+') ? text.substr(1) : text;
+  const std::string letter = !text.empty() && (text[0] == '-' || text[0] == '+')
+                                 ? text.substr(1)
+                                 : text;
   if (letter != "x" && letter != "y" && letter != "z")
     throw Error(std::string(what) + " is '" + text +
                 "'; expected x, y or z, or one of them with a minus");
   return (negative ? -1.0 : 1.0) * Vector3::Unit(letter[0] - 'x');
 }
 
-Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
+Eigen::Affine3d body_from_axes(const ModelAxes &axes) {
   const Vector3 forward = axis_vector(axes.forward, "model_forward");
   const Vector3 up = axis_vector(axes.up, "model_up");
   if (std::abs(forward.dot(up)) > 0.5)
-    throw Error("model_forward and model_up are the same axis; expected two different ones");
+    throw Error("model_forward and model_up are the same axis; expected two "
+                "different ones");
   if (!std::isfinite(axes.scale) || axes.scale <= 0)
     throw Error("model_scale is not positive; expected metres per unit");
   Eigen::Matrix3d m;
   m.row(0) = forward;
-  m.row(1) = forward.cross(up);  // right
+  m.row(1) = forward.cross(up); // right
   m.row(2) = -up;
   return Eigen::Affine3d(axes.scale * m);
 }
 
-bool named(const std::vector<std::string>& names, const Animation& animation) {
-  if (animation.objects.empty()) return true;
-  return std::any_of(
-      animation.objects.begin(), animation.objects.end(), [&](const std::string& object) {
-        return std::find(names.begin(), names.end(), object) != names.end();
-      });
+// Lamps, their glow, shadows on the ground, smoke: drawn for the game, and no
+// part of an aircraft's body.
+bool is_effect(const std::string &object) {
+  static const std::array<const char *, 8> kWords = {
+      "halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"};
+  static const std::array<const char *, 3> kLamps = {"light", "beacon",
+                                                     "strobe"};
+  std::string name = object;
+  for (char &c : name)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto has = [&](const char *word) {
+    return name.find(word) != std::string::npos;
+  };
+  if (std::any_of(kWords.begin(), kWords.end(), has))
+    return true;
+  return object.ends_with("On") &&
+         std::any_of(kLamps.begin(), kLamps.end(), has);
 }
 
-bool ends_with_on(const std::string& name) {
-  return name.size() > 2 && name.ends_with("On") && name.find("ight") != std::string::npos;
+bool has_effect(const std::vector<std::string> &names) {
+  return std::any_of(names.begin(), names.end(), is_effect);
 }
 
-// Lamps, their glow, shadows on the ground, smoke: drawn for the game, and no part of an aircraft's
-// body.
-bool is_effect(const std::vector<std::string>& names) {
-  static const std::array<const char*, 9> kWords = {
-      "halo", "Halo", "glow", "Glow", "shadow", "contrail", "smoke", "lightbeam", "Beam"};
-  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    return ends_with_on(name) || std::any_of(kWords.begin(), kWords.end(), [&](const char* word) {
-             return name.find(word) != std::string::npos;
-           });
-  });
-}
-
-Eigen::Affine3d about(const Vector3& centre, const Eigen::Affine3d& map) {
-  return Eigen::Translation3d(centre) * map * Eigen::Translation3d(-centre);
-}
-
-Eigen::Affine3d motion_of(const Animation& animation, const Cruise& cruise) {
-  const double value = animated_value(animation, cruise);
-  const double length = animation.axis.norm();
-  if (animation.type == "rotate" && length > 1e-9)
-    return about(animation.centre,
-                 Eigen::Affine3d(Eigen::AngleAxisd(radians(value), animation.axis / length)));
-  if (animation.type == "translate" && length > 1e-9)
-    return Eigen::Affine3d(Eigen::Translation3d(value * animation.axis / length));
-  if (animation.type == "scale")
-    return about(animation.centre, Eigen::Affine3d(Eigen::Matrix3d(animation.scale.asDiagonal())));
-  return Eigen::Affine3d::Identity();
+// What the loader has no need to understand: lamps, and what shows in a cockpit
+// or by night alone.
+bool is_known(const std::string &type) {
+  static const std::set<std::string> kKnown = {
+      "",      "select",     "rotate",      "spin",         "translate",
+      "scale", "billboard",  "flash",       "blend",        "dist-scale",
+      "range", "material",   "timed",       "noshadow",     "shader",
+      "point", "alpha-test", "trail",       "light",        "none",
+      "pick",  "shadow",     "slider",      "textranslate", "texrotate",
+      "touch", "knob",       "interaction", "enable-hot",   "null"};
+  return kKnown.contains(type);
 }
 
 class Loader {
- public:
-  Loader(const LoadOptions& options, Aircraft& aircraft)
-      : cruise_{options.airspeed_kt, options.altitude_agl_ft}, aircraft_(aircraft) {
-    aircraft_.mesh.parts.push_back({.name = "airframe"});
+public:
+  Loader(const LoadOptions &options, Assembly &assembly)
+      : cruise_{options.airspeed_kt, options.altitude_agl_ft},
+        assembly_(assembly) {}
+
+  void add(const Wrapper &wrapper) {
+    add(wrapper, Scope(body_from_flightgear(), cruise_), {});
   }
 
-  void add(const Wrapper& wrapper,
-           const Eigen::Affine3d& body_from_parent,
-           std::vector<fs::path> folders) {
-    const Eigen::Affine3d body_from_model = body_from_parent * wrapper.parent_from_model;
-    folders.insert(folders.begin(), wrapper.texture_folders.begin(), wrapper.texture_folders.end());
-    note_unknown(wrapper);
-    for (const Animation& animation : wrapper.animations)
-      if (animation.type == "select" && animation.objects.empty() && animation.condition &&
-          !holds(*animation.condition, cruise_))
+  const std::set<std::string> &unknown() const { return unknown_; }
+
+private:
+  void add(const Wrapper &wrapper, const Scope &outside,
+           const std::vector<fs::path> &outer) {
+    for (const Condition &condition : wrapper.conditions)
+      if (!holds(condition, cruise_))
         return;
-    if (!wrapper.model.empty()) {
-      const bool ac = wrapper.model.extension() == ".ac";
-      const Eigen::Affine3d model_from_file =
-          ac ? flightgear_from_ac() : Eigen::Affine3d::Identity();
-      append_model(
-          aircraft_.mesh,
-          wrapper.model,
-          folders,
-          [&](const std::vector<std::string>& names) {
-            return choose(wrapper, names, body_from_model, model_from_file);
-          },
-          aircraft_.sources);
-    }
-    for (const Wrapper& nested : wrapper.nested) add(nested, body_from_model, folders);
+    note_unknown(wrapper);
+    const Scope scope = outside.inside(wrapper);
+    std::vector<fs::path> folders;
+    if (!wrapper.texture_folder.empty())
+      folders.push_back(wrapper.texture_folder);
+    folders.push_back(wrapper.file.parent_path());
+    if (!wrapper.model.empty())
+      folders.push_back(wrapper.model.parent_path());
+    folders.insert(folders.end(), outer.begin(), outer.end());
+    if (!wrapper.model.empty())
+      add_model(wrapper.model, scope, folders);
+    for (const Wrapper &nested : wrapper.nested)
+      add(nested, scope, folders);
   }
 
-  const std::set<std::string>& unknown() const { return unknown_; }
-
- private:
-  PartChoice choose(const Wrapper& wrapper,
-                    const std::vector<std::string>& names,
-                    const Eigen::Affine3d& body_from_model,
-                    const Eigen::Affine3d& model_from_file) {
-    PartChoice choice;
-    choice.hidden = is_effect(names);
-    Eigen::Affine3d model_from_rest = Eigen::Affine3d::Identity();
-    const Animation* spin = nullptr;
-    for (const Animation& animation : wrapper.animations) {
-      if (!named(names, animation)) continue;
-      const bool applies = !animation.condition || holds(*animation.condition, cruise_);
-      if (animation.type == "select") {
-        choice.hidden = choice.hidden || !applies;
-      } else if (animation.type == "billboard" || animation.type == "flash") {
-        choice.hidden = choice.hidden || !animation.objects.empty();  // lamps
-      } else if (animation.type == "spin" && applies && animation.axis.norm() > 1e-9) {
-        spin = &animation;
-      } else if (applies) {
-        model_from_rest = model_from_rest * motion_of(animation, cruise_);
-      }
-    }
-    choice.body_from_file = body_from_model * model_from_rest * model_from_file;
-    if (spin != nullptr) choice.part = part_of(*spin, body_from_model * model_from_rest);
-    return choice;
+  void add_model(const fs::path &file, const Scope &scope,
+                 const std::vector<fs::path> &folders) {
+    const bool is_ac = file.extension() == ".ac";
+    const Eigen::Affine3d model_from_file =
+        is_ac ? flightgear_from_ac() : Eigen::Affine3d::Identity();
+    append_model(
+        assembly_, file, folders, [&](const std::vector<std::string> &names) {
+          const Animated animated = scope.animated(names);
+          PartChoice choice;
+          choice.hidden = animated.hidden || has_effect(names);
+          if (choice.hidden)
+            return choice;
+          choice.body_from_file = animated.body_from_model * model_from_file;
+          choice.opacity = animated.opacity;
+          if (!animated.texture.empty())
+            choice.texture = find_texture(animated.texture, folders);
+          if (animated.spin)
+            choice.part = part_of(*animated.spin);
+          return choice;
+        });
   }
 
-  int part_of(const Animation& spin, const Eigen::Affine3d& body_from_model) {
-    const Eigen::Vector3f centre = (body_from_model * spin.centre).cast<float>();
-    const Eigen::Vector3f axis = (body_from_model.linear() * spin.axis).normalized().cast<float>();
-    const double rate = animated_value(spin, cruise_) / 60;
-    auto& parts = aircraft_.mesh.parts;
+  int part_of(const Spin &spin) {
+    auto &parts = assembly_.mesh.parts;
     for (std::size_t i = 1; i < parts.size(); ++i)
-      if (parts[i].centre_in_body == centre && parts[i].axis_in_body == axis)
+      if (parts[i].centre_in_body == spin.centre_in_body &&
+          parts[i].axis_in_body == spin.axis_in_body &&
+          parts[i].revolutions_per_s == spin.revolutions_per_s)
         return static_cast<int>(i);
-    const std::string name = spin.objects.empty() ? "spinning" : spin.objects.front();
-    parts.push_back({name, {}, true, axis, centre, rate});
+    parts.push_back({spin.name,
+                     {},
+                     true,
+                     spin.axis_in_body,
+                     spin.centre_in_body,
+                     spin.revolutions_per_s});
     return static_cast<int>(parts.size() - 1);
   }
 
-  void note_unknown(const Wrapper& wrapper) {
-    // Known, or of no meaning for how an aircraft in flight looks by day.
-    static const std::set<std::string> kKnown = {
-        "select",   "rotate", "spin",       "translate", "scale",      "billboard", "flash",
-        "noshadow", "shader", "dist-scale", "range",     "alpha-test", "blend",     "pick",
-        "timed",    "point",  "trail",      "light",     "none",       "",          "shadow"};
-    for (const Animation& animation : wrapper.animations)
-      if (!kKnown.contains(animation.type)) unknown_.insert(animation.type);
+  void note_unknown(const Wrapper &wrapper) {
+    for (const Animation &animation : wrapper.animations) {
+      if (!is_known(animation.type))
+        unknown_.insert(animation.type);
+      if (!animation.axis_object.empty() &&
+          value_of(animation.value, cruise_) != 0)
+        unknown_.insert(animation.type + " about the object " +
+                        animation.axis_object);
+    }
   }
 
   Cruise cruise_;
-  Aircraft& aircraft_;
+  Assembly &assembly_;
   std::set<std::string> unknown_;
 };
 
-// Faces drawn twice (from both sides) would shine through one another; slivers without area have no
-// normal.
-void drop_doubles(Mesh& mesh) {
-  for (Part& part : mesh.parts) {
-    std::set<std::array<std::array<float, 3>, 3>> seen;
-    std::erase_if(part.triangles, [&](const Triangle& triangle) {
-      std::array<std::array<float, 3>, 3> key;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Eigen::Vector3f& p = mesh.positions[triangle.vertex[i]];
-        key[i] = {p.x(), p.y(), p.z()};
-      }
-      const Eigen::Vector3f a =
-          mesh.positions[triangle.vertex[1]] - mesh.positions[triangle.vertex[0]];
-      const Eigen::Vector3f b =
-          mesh.positions[triangle.vertex[2]] - mesh.positions[triangle.vertex[0]];
-      if (!(a.cross(b).norm() > 1e-10f)) return true;
-      std::sort(key.begin(), key.end());
-      return !seen.insert(key).second;
-    });
-  }
+std::string joined(const std::set<std::string> &words) {
+  std::string text;
+  for (const std::string &word : words)
+    text += (text.empty() ? "" : ", ") + word;
+  return text;
 }
 
-bool is_model_file(const std::string& name) {
+bool is_model_file(const std::string &name) {
   const std::string extension = fs::path(name).extension().string();
-  return extension == ".ac" || extension == ".obj" || extension == ".3ds" || extension == ".osgt" ||
-         extension == ".xml";
+  return extension == ".ac" || extension == ".obj" || extension == ".3ds" ||
+         extension == ".osgt" || extension == ".xml";
 }
 
-void load_catalogued(const std::string& name,
-                     const fs::path& file,
-                     const LoadOptions& options,
-                     const Warn& warn_to,
-                     Aircraft& aircraft) {
+void load_wrapped(const LoadOptions &options, const Warn &warn_to,
+                  const Aircraft &aircraft, Assembly &assembly) {
   if (options.axes)
-    throw Error("model_forward, model_up and model_scale are for a model file; '" + name +
-                "' has its own axes and metres");
-  // AI/Aircraft/<folder>/<file>.xml: the data root is four up.
-  const fs::path root = fs::absolute(file).parent_path().parent_path().parent_path().parent_path();
+    throw Error(
+        "model_forward, model_up and model_scale are for a model file; '" +
+        aircraft.name + "' has its own axes and metres");
   std::set<std::string> missing;
-  const Wrapper wrapper = read_wrapper(file, root, aircraft.sources, missing);
-  Loader loader(options, aircraft);
-  loader.add(wrapper, kBodyFromFlightGear, {file.parent_path()});
-  std::string words;
-  for (const std::string& type : loader.unknown()) words += (words.empty() ? "" : ", ") + type;
-  if (!words.empty())
-    warn(warn_to, name + ": animations that are not known and are left out: " + words);
+  const Wrapper wrapper =
+      read_wrapper(aircraft.file, assembly.sources, missing);
+  Loader loader(options, assembly);
+  loader.add(wrapper);
+  if (!loader.unknown().empty())
+    warn(warn_to, aircraft.name +
+                      ": animations that are not known and are left out: " +
+                      joined(loader.unknown()));
+  if (!missing.empty())
+    warn(warn_to, aircraft.name +
+                      ": parts that are not installed and are left out: " +
+                      joined(missing));
 }
 
-void load_bare(const std::string& name, const LoadOptions& options, Aircraft& aircraft) {
-  const fs::path file = name;
-  if (!fs::is_regular_file(file)) throw Error("does not exist; expected a 3D model", {name});
-  const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(ModelAxes{}));
-  aircraft.mesh.parts.push_back({.name = "airframe"});
-  append_model(
-      aircraft.mesh,
-      file,
-      {},
-      [&](const std::vector<std::string>& names) {
-        return PartChoice{is_effect(names), body_from_file, 0};
-      },
-      aircraft.sources);
+void load_bare(const LoadOptions &options, const fs::path &file,
+               Assembly &assembly) {
+  const Eigen::Affine3d body_from_file =
+      body_from_axes(options.axes.value_or(ModelAxes{}));
+  append_model(assembly, file, {file.parent_path()},
+               [&](const std::vector<std::string> &names) {
+                 PartChoice choice;
+                 choice.hidden = has_effect(names);
+                 choice.body_from_file = body_from_file;
+                 return choice;
+               });
 }
 
-}  // namespace
+} // namespace
 
-Aircraft load_aircraft(const std::string& name, const LoadOptions& options, const Warn& warn_to) {
+Aircraft load_aircraft(const std::string &name, const LoadOptions &options,
+                       const Warn &warn_to) {
   Aircraft aircraft;
   aircraft.name = name;
-  if (is_model_file(name) && fs::path(name).extension() != ".xml") {
-    aircraft.file = name;
-    load_bare(name, options, aircraft);
+  Assembly assembly;
+  assembly.mesh.parts.push_back({.name = "airframe"});
+  aircraft.file =
+      is_model_file(name) ? fs::path(name) : find_aircraft(name).file;
+  if (aircraft.file.extension() == ".xml") {
+    load_wrapped(options, warn_to, aircraft, assembly);
   } else {
-    aircraft.file = is_model_file(name) ? fs::path(name) : find_aircraft(name).file;
-    load_catalogued(name, aircraft.file, options, warn_to, aircraft);
+    load_bare(options, aircraft.file, assembly);
   }
-  drop_doubles(aircraft.mesh);
+  aircraft.mesh = std::move(assembly.mesh);
+  aircraft.sources = std::move(assembly.sources);
+  tidy(aircraft.mesh);
   if (aircraft.mesh.triangle_count() == 0)
-    throw Error("holds no triangles; expected a 3D model", {aircraft.file.string()});
+    throw Error("holds no triangles; expected a 3D model",
+                {aircraft.file.string()});
   std::sort(aircraft.sources.begin(), aircraft.sources.end());
-  aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
-                         aircraft.sources.end());
+  aircraft.sources.erase(
+      std::unique(aircraft.sources.begin(), aircraft.sources.end()),
+      aircraft.sources.end());
   return aircraft;
 }
 
-}  // namespace airtruth::aircraft
+} // namespace airtruth::aircraft
