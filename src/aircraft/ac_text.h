@@ -13,17 +13,16 @@ namespace airtruth::aircraft {
 // leaves normals that oppose their face).
 struct PreparedAc {
   std::string text;
-  std::map<std::string, int> line_of_texture; // where a texture is first named
+  std::map<std::string, int> line_of_texture;  // where a texture is first named
 };
-PreparedAc prepared_ac(const std::filesystem::path &file);
+PreparedAc prepared_ac(const std::filesystem::path& file);
 
 // The file of that name, or of its bare file name, in the first folder that
 // holds it; empty path: nowhere.
-std::filesystem::path
-find_texture(const std::string &name,
-             const std::vector<std::filesystem::path> &folders);
+std::filesystem::path find_texture(const std::string& name,
+                                   const std::vector<std::filesystem::path>& folders);
 
 // "a, b, c".
-std::string listed(const std::vector<std::filesystem::path> &folders);
+std::string listed(const std::vector<std::filesystem::path>& folders);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

@@ -13,20 +13,19 @@ namespace airtruth::aircraft {
 namespace {
 
 class Models : public testing::Test {
-protected:
+ protected:
   Models()
-      : folder_(fs::temp_directory_path() /
-                ("airtruth_aircraft_" + std::to_string(::getpid()))) {
+      : folder_(fs::temp_directory_path() / ("airtruth_aircraft_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
   }
   ~Models() override { fs::remove_all(folder_); }
   fs::path folder_;
 };
 
-std::string error_of(const std::string &name, const LoadOptions &options = {}) {
+std::string error_of(const std::string& name, const LoadOptions& options = {}) {
   try {
     load_aircraft(name, options);
-  } catch (const Error &error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "no error";
@@ -50,10 +49,8 @@ std::string asymmetric_ac() {
 TEST_F(Models, NoseUpAndRightWingPointWhereTheyShould) {
   write_file(folder_ / "a.ac", asymmetric_ac());
   const Extents size = extents(load_aircraft((folder_ / "a.ac").string()).mesh);
-  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0)))
-      << size.high_in_body.transpose();
-  EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4)))
-      << size.low_in_body.transpose();
+  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0))) << size.high_in_body.transpose();
+  EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4))) << size.low_in_body.transpose();
 }
 
 TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {
@@ -63,34 +60,28 @@ TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {
              "<PropertyList><path>a.ac</path><offsets><x-m>1</x-m><y-m>2</"
              "y-m><z-m>3</z-m></"
              "offsets></PropertyList>");
-  const Extents size =
-      extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh);
-  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(9, 4, -3)))
-      << size.high_in_body.transpose();
+  const Extents size = extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh);
+  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(9, 4, -3))) << size.high_in_body.transpose();
 }
 
 TEST_F(Models, AnObjFileTakesStatedAxesAndScale) {
-  write_file(folder_ / "a.obj",
-             "v 0 0 0\nv 0 5 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+  write_file(folder_ / "a.obj", "v 0 0 0\nv 0 5 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
   LoadOptions options;
   options.axes = ModelAxes{"y", "z", 2};
-  const Extents size =
-      extents(load_aircraft((folder_ / "a.obj").string(), options).mesh);
-  EXPECT_NEAR(size.high_in_body.x(), 10, 1e-5); // y is the nose
-  EXPECT_NEAR(size.high_in_body.y(), 4, 1e-5);  // x is right
-  EXPECT_NEAR(size.low_in_body.z(), -2, 1e-5);  // z is up
+  const Extents size = extents(load_aircraft((folder_ / "a.obj").string(), options).mesh);
+  EXPECT_NEAR(size.high_in_body.x(), 10, 1e-5);  // y is the nose
+  EXPECT_NEAR(size.high_in_body.y(), 4, 1e-5);   // x is right
+  EXPECT_NEAR(size.low_in_body.z(), -2, 1e-5);   // z is up
   options.axes = ModelAxes{"y", "-y", 1};
-  EXPECT_THAT(error_of((folder_ / "a.obj").string(), options),
-              testing::HasSubstr("the same axis"));
+  EXPECT_THAT(error_of((folder_ / "a.obj").string(), options), testing::HasSubstr("the same axis"));
 }
 
 TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   fs::create_directories(folder_ / "AI/Aircraft/t");
   write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());
-  const auto with = [&](const std::string &animation) {
+  const auto with = [&](const std::string& animation) {
     write_file(folder_ / "AI/Aircraft/t/a.xml",
-               "<PropertyList><path>a.ac</path>" + animation +
-                   "</PropertyList>");
+               "<PropertyList><path>a.ac</path>" + animation + "</PropertyList>");
     return (folder_ / "AI/Aircraft/t/a.xml").string();
   };
   const std::string hide =
@@ -99,11 +90,8 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
       "<property>velocities/true-airspeed-kt</property><value>180</value></"
       "less-than></condition></"
       "animation>";
-  EXPECT_THAT(error_of(with(hide), {.airspeed_kt = 250}),
-              testing::HasSubstr("no triangles"));
-  EXPECT_EQ(
-      load_aircraft(with(hide), {.airspeed_kt = 100}).mesh.triangle_count(),
-      3u);
+  EXPECT_THAT(error_of(with(hide), {.airspeed_kt = 250}), testing::HasSubstr("no triangles"));
+  EXPECT_EQ(load_aircraft(with(hide), {.airspeed_kt = 100}).mesh.triangle_count(), 3u);
   const std::string spin =
       "<animation><type>spin</type><object-name>body</"
       "object-name><property>engines/engine[0]/rpm</"
@@ -114,20 +102,18 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   EXPECT_TRUE(mesh.parts[1].spins);
   EXPECT_TRUE(mesh.parts[1].centre_in_body.isApprox(Eigen::Vector3f(10, 0, 0)));
   EXPECT_NEAR(mesh.parts[1].revolutions_per_s, 2300.0 / 60, 1e-9);
-  const std::string rotate = "<animation><type>rotate</type><object-name>body</"
-                             "object-name><offset-deg>90</"
-                             "offset-deg><axis><z>1</z></axis></animation>";
+  const std::string rotate =
+      "<animation><type>rotate</type><object-name>body</"
+      "object-name><offset-deg>90</"
+      "offset-deg><axis><z>1</z></axis></animation>";
   // A quarter turn about up, right-handed: the nose goes from forward to the
   // right (x back, y right, z up).
-  EXPECT_NEAR(extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10,
-              1e-4);
+  EXPECT_NEAR(extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
 }
 
 TEST_F(Models, SaysWhatIsWrong) {
-  EXPECT_THAT(error_of("738/738-Ryanar"),
-              testing::HasSubstr("738/738-Ryanair"));
-  EXPECT_THAT(error_of((folder_ / "none.ac").string()),
-              testing::HasSubstr("does not exist"));
+  EXPECT_THAT(error_of("738/738-Ryanar"), testing::HasSubstr("738/738-Ryanair"));
+  EXPECT_THAT(error_of((folder_ / "none.ac").string()), testing::HasSubstr("does not exist"));
   write_file(folder_ / "t.ac",
              "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 "
              "shi 0 trans "
@@ -138,19 +124,18 @@ TEST_F(Models, SaysWhatIsWrong) {
   EXPECT_THAT(error_of((folder_ / "t.ac").string()),
               testing::HasSubstr("t.ac:6: wants the texture gone.png"));
   write_file(folder_ / "e.ac", "AC3Db\nOBJECT world\nkids 0\n");
-  EXPECT_THAT(error_of((folder_ / "e.ac").string()),
-              testing::HasSubstr("e.ac: "));
+  EXPECT_THAT(error_of((folder_ / "e.ac").string()), testing::HasSubstr("e.ac: "));
   write_file(folder_ / "g.ac", "garbage");
-  EXPECT_THAT(error_of((folder_ / "g.ac").string()),
-              testing::HasSubstr("no AC3D file"));
+  EXPECT_THAT(error_of((folder_ / "g.ac").string()), testing::HasSubstr("no AC3D file"));
 }
 
 TEST(Texture, DecodesPremultipliesAndAverages) {
-  const Texture texture = texture_from_srgb(
-      2, 1, {{1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f}}, true, true);
+  const Texture texture =
+      texture_from_srgb(2, 1, {{1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f}}, true, true);
   EXPECT_TRUE(texture.has_translucency);
-  EXPECT_NEAR(texture.levels[0].texels[1][0], 0.5f * 0.2158605f,
-              1e-5f); // 128/255 decoded, times alpha
+  EXPECT_NEAR(texture.levels[0].texels[1][0],
+              0.5f * 0.2158605f,
+              1e-5f);  // 128/255 decoded, times alpha
   ASSERT_EQ(texture.levels.size(), 2u);
   EXPECT_NEAR(texture.levels[1].texels[0][3], 0.75f, 1e-6f);
 }
@@ -158,8 +143,7 @@ TEST(Texture, DecodesPremultipliesAndAverages) {
 // Boeing's published figures for the 737-800 with winglets: 39.5 m long, 35.8 m
 // span, 12.5 m high on its wheels.
 TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
-  const Aircraft aircraft =
-      load_aircraft("738/738-Ryanair", {.airspeed_kt = 270});
+  const Aircraft aircraft = load_aircraft("738/738-Ryanair", {.airspeed_kt = 270});
   const Extents size = extents(aircraft.mesh);
   EXPECT_NEAR(size.length_m(), 39.5, 0.8);
   EXPECT_NEAR(size.span_m(), 35.8, 1.2);
@@ -169,18 +153,16 @@ TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
   // The fin is aft and high: the highest point of all lies in the last fifth.
   double fin_x = 0;
   double top = 1e9;
-  for (const auto &part : silhouette_points(aircraft.mesh))
-    for (const auto &p : part)
-      if (p.z() < top)
-        top = p.z(), fin_x = p.x();
+  for (const auto& part : silhouette_points(aircraft.mesh))
+    for (const auto& p : part)
+      if (p.z() < top) top = p.z(), fin_x = p.x();
   EXPECT_LT(fin_x, size.low_in_body.x() + 0.25 * size.length_m());
 }
 
 // The model is 9.63 m wide where a Cessna 172 is 11.0 m: what its file holds
 // (wing vertices from z = -4.82 to 4.81).
 TEST(Catalogue, TheCessnaHasItsFilesSize) {
-  const Extents size =
-      extents(load_aircraft("c172/news", {.airspeed_kt = 110}).mesh);
+  const Extents size = extents(load_aircraft("c172/news", {.airspeed_kt = 110}).mesh);
   EXPECT_NEAR(size.length_m(), 8.2, 0.6);
   EXPECT_NEAR(size.span_m(), 9.63, 0.02);
 }
@@ -191,5 +173,5 @@ TEST(Catalogue, ListsHundredsAndTheirLiveries) {
   EXPECT_THAT(liveries("738/738-Ryanair"), testing::Contains("738/738-KLM"));
 }
 
-} // namespace
-} // namespace airtruth::aircraft
+}  // namespace
+}  // namespace airtruth::aircraft

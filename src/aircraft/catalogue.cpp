@@ -16,99 +16,88 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr const char *kDebianFolder = "/usr/share/games/flightgear/AI/Aircraft";
+constexpr const char* kDebianFolder = "/usr/share/games/flightgear/AI/Aircraft";
 
 std::vector<fs::path> folders() {
-  const char *stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
+  const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
   std::vector<fs::path> result;
-  std::istringstream list(stated != nullptr && *stated != '\0' ? stated
-                                                               : kDebianFolder);
+  std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianFolder);
   for (std::string folder; std::getline(list, folder, ':');)
-    if (!folder.empty() && fs::is_directory(folder))
-      result.emplace_back(folder);
+    if (!folder.empty() && fs::is_directory(folder)) result.emplace_back(folder);
   if (result.empty())
-    throw Error("no aircraft are installed: install the package "
-                "flightgear-data-ai, or set "
-                "AIRTRUTH_AIRCRAFT_PATH");
+    throw Error(
+        "no aircraft are installed: install the package "
+        "flightgear-data-ai, or set "
+        "AIRTRUTH_AIRCRAFT_PATH");
   return result;
 }
 
 // What the catalogue must know of a wrapper.
 struct Sketch {
   fs::path file;
-  bool deep = false; // in a folder below the aircraft's own
-  fs::path includes; // normal form; empty: none
+  bool deep = false;  // in a folder below the aircraft's own
+  fs::path includes;  // normal form; empty: none
   std::vector<fs::path> nests;
-  std::string path; // of its model; empty: none of its own
+  std::string path;  // of its model; empty: none of its own
   bool animated = false;
 };
 
 using Sketches = std::map<fs::path, Sketch>;
 
 // No answer for what is no wrapper: other XML lies in these folders too.
-std::optional<Sketch> sketch_of(const fs::path &file) {
+std::optional<Sketch> sketch_of(const fs::path& file) {
   const std::string name = file.filename().string();
-  if (is_effect_path(name))
-    return std::nullopt;
+  if (is_effect_path(name)) return std::nullopt;
   try {
     const WrapperText text = parse_wrapper(read_file(file), file);
     Sketch sketch;
     sketch.file = file;
     const fs::path folder = file.parent_path();
-    if (!text.include.empty())
-      sketch.includes = (folder / text.include).lexically_normal();
-    for (const WrapperText::Nested &nested : text.nested) {
-      if (is_effect_path(nested.path))
-        continue;
+    if (!text.include.empty()) sketch.includes = (folder / text.include).lexically_normal();
+    for (const WrapperText::Nested& nested : text.nested) {
+      if (is_effect_path(nested.path)) continue;
       const fs::path found = find_named_file(nested.path, folder);
-      if (!found.empty())
-        sketch.nests.push_back(found.lexically_normal());
+      if (!found.empty()) sketch.nests.push_back(found.lexically_normal());
     }
     sketch.path = text.path;
     sketch.animated = !text.animations.empty();
     return sketch;
-  } catch (const Error &) {
+  } catch (const Error&) {
     return std::nullopt;
   }
 }
 
 // The wrappers of one aircraft's folder and of the folders right below it.
-Sketches sketches_in(const fs::path &folder) {
+Sketches sketches_in(const fs::path& folder) {
   Sketches sketches;
-  const auto add = [&](const fs::path &file, bool deep) {
-    if (file.extension() != ".xml")
-      return;
+  const auto add = [&](const fs::path& file, bool deep) {
+    if (file.extension() != ".xml") return;
     if (auto sketch = sketch_of(file)) {
       sketch->deep = deep;
       sketches[file.lexically_normal()] = std::move(*sketch);
     }
   };
-  for (const auto &at : fs::directory_iterator(folder)) {
+  for (const auto& at : fs::directory_iterator(folder)) {
     add(at.path(), false);
-    if (!at.is_directory() ||
-        is_effect_path(at.path().filename().string() + "/"))
-      continue;
-    for (const auto &below : fs::directory_iterator(at.path()))
-      add(below.path(), true);
+    if (!at.is_directory() || is_effect_path(at.path().filename().string() + "/")) continue;
+    for (const auto& below : fs::directory_iterator(at.path())) add(below.path(), true);
   }
   return sketches;
 }
 
 // What a wrapper says itself or, failing that, through what it includes.
 template <typename Value>
-Value inherited(const Sketches &sketches, const Sketch &sketch,
-                Value Sketch::*field) {
-  const Sketch *at = &sketch;
+Value inherited(const Sketches& sketches, const Sketch& sketch, Value Sketch::*field) {
+  const Sketch* at = &sketch;
   for (std::size_t i = 0; at->*field == Value{} && i < sketches.size(); ++i) {
     const auto base = sketches.find(at->includes);
-    if (base == sketches.end())
-      break;
+    if (base == sketches.end()) break;
     at = &base->second;
   }
   return at->*field;
 }
 
-std::string model_of(const Sketches &sketches, const Sketch &sketch) {
+std::string model_of(const Sketches& sketches, const Sketch& sketch) {
   return inherited(sketches, sketch, &Sketch::path);
 }
 
@@ -116,99 +105,84 @@ std::string model_of(const Sketches &sketches, const Sketch &sketch) {
 // nests. Wrappers in folders below (Models/c182-ai.xml) count where the
 // aircraft's own folder holds none, and only with animations, since parts of
 // aircraft lie there too.
-std::vector<const Sketch *> aircraft_among(const Sketches &sketches) {
+std::vector<const Sketch*> aircraft_among(const Sketches& sketches) {
   std::set<fs::path> parts;
-  for (const auto &[file, sketch] : sketches) {
+  for (const auto& [file, sketch] : sketches) {
     parts.insert(sketch.includes);
     parts.insert(sketch.nests.begin(), sketch.nests.end());
   }
-  std::vector<const Sketch *> whole;
+  std::vector<const Sketch*> whole;
   bool any_shallow = false;
-  for (const auto &[file, sketch] : sketches) {
-    if (parts.contains(file))
-      continue;
-    if (model_of(sketches, sketch).empty() && sketch.nests.empty())
-      continue;
-    if (sketch.deep && !inherited(sketches, sketch, &Sketch::animated))
-      continue;
+  for (const auto& [file, sketch] : sketches) {
+    if (parts.contains(file)) continue;
+    if (model_of(sketches, sketch).empty() && sketch.nests.empty()) continue;
+    if (sketch.deep && !inherited(sketches, sketch, &Sketch::animated)) continue;
     whole.push_back(&sketch);
     any_shallow = any_shallow || !sketch.deep;
   }
-  if (any_shallow)
-    std::erase_if(whole, [](const Sketch *sketch) { return sketch->deep; });
+  if (any_shallow) std::erase_if(whole, [](const Sketch* sketch) { return sketch->deep; });
   return whole;
 }
 
-std::string name_of(const fs::path &file, const fs::path &root) {
+std::string name_of(const fs::path& file, const fs::path& root) {
   return file.lexically_relative(root).replace_extension().generic_string();
 }
 
-void list_folder(const fs::path &root, std::vector<Entry> &entries) {
-  for (const auto &folder : fs::directory_iterator(root)) {
-    if (!folder.is_directory())
-      continue;
+void list_folder(const fs::path& root, std::vector<Entry>& entries) {
+  for (const auto& folder : fs::directory_iterator(root)) {
+    if (!folder.is_directory()) continue;
     const Sketches sketches = sketches_in(folder.path());
-    for (const Sketch *sketch : aircraft_among(sketches))
+    for (const Sketch* sketch : aircraft_among(sketches))
       entries.push_back({name_of(sketch->file, root), sketch->file});
   }
 }
 
-std::string joined(const std::vector<std::string> &words) {
+std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string &word : words)
-    text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Entry> list_aircraft() {
   std::vector<Entry> entries;
-  for (const fs::path &folder : folders())
-    list_folder(folder, entries);
-  std::stable_sort(
-      entries.begin(), entries.end(),
-      [](const Entry &a, const Entry &b) { return a.name < b.name; });
-  entries.erase(std::unique(entries.begin(), entries.end(),
-                            [](const Entry &a, const Entry &b) {
-                              return a.name == b.name;
-                            }),
+  for (const fs::path& folder : folders()) list_folder(folder, entries);
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.name < b.name;
+  });
+  entries.erase(std::unique(entries.begin(),
+                            entries.end(),
+                            [](const Entry& a, const Entry& b) { return a.name == b.name; }),
                 entries.end());
   return entries;
 }
 
-Entry find_aircraft(const std::string &name) {
-  for (const fs::path &folder : folders()) {
+Entry find_aircraft(const std::string& name) {
+  for (const fs::path& folder : folders()) {
     const fs::path file = folder / (name + ".xml");
     std::error_code ignored;
-    const bool plain = !name.empty() && name.find("..") == std::string::npos &&
-                       name.front() != '/';
-    if (plain && fs::is_regular_file(file, ignored))
-      return {name, file};
+    const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
+    if (plain && fs::is_regular_file(file, ignored)) return {name, file};
   }
   std::vector<std::string> names;
-  for (const Entry &entry : list_aircraft())
-    names.push_back(entry.name);
+  for (const Entry& entry : list_aircraft()) names.push_back(entry.name);
   throw Error("unknown aircraft '" + name + "'; the nearest names are " +
-              joined(nearest_spellings(name, names, 3)) +
-              " (`airtruth aircraft list` shows all)");
+              joined(nearest_spellings(name, names, 3)) + " (`airtruth aircraft list` shows all)");
 }
 
-std::vector<std::string> liveries(const std::string &name) {
+std::vector<std::string> liveries(const std::string& name) {
   std::vector<std::string> result;
-  for (const fs::path &root : folders()) {
+  for (const fs::path& root : folders()) {
     const fs::path own = (root / (name + ".xml")).lexically_normal();
     const auto slash = name.find('/');
-    if (slash == std::string::npos || !fs::is_regular_file(own))
-      continue;
+    if (slash == std::string::npos || !fs::is_regular_file(own)) continue;
     const Sketches sketches = sketches_in(root / name.substr(0, slash));
     const auto known = sketches.find(own);
-    if (known == sketches.end())
-      continue;
+    if (known == sketches.end()) continue;
     const std::string model = model_of(sketches, known->second);
-    for (const Sketch *sketch : aircraft_among(sketches))
-      if (!model.empty() && sketch != &known->second &&
-          model_of(sketches, *sketch) == model)
+    for (const Sketch* sketch : aircraft_among(sketches))
+      if (!model.empty() && sketch != &known->second && model_of(sketches, *sketch) == model)
         result.push_back(name_of(sketch->file, root));
     break;
   }
@@ -216,4 +190,4 @@ std::vector<std::string> liveries(const std::string &name) {
   return result;
 }
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

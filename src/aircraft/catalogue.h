@@ -17,8 +17,8 @@ namespace airtruth::aircraft {
 namespace fs = std::filesystem;
 
 struct Entry {
-  std::string name; // "738/738-Ryanair": the wrapper XML under AI/Aircraft,
-                    // without its extension
+  std::string name;  // "738/738-Ryanair": the wrapper XML under AI/Aircraft,
+                     // without its extension
   std::filesystem::path file;
 };
 
@@ -28,30 +28,28 @@ struct Entry {
 std::vector<Entry> list_aircraft();
 
 // The entry of that name; Error with the nearest names otherwise.
-Entry find_aircraft(const std::string &name);
+Entry find_aircraft(const std::string& name);
 
 // How a bare .ac, .obj, .3ds or .osgt file lies: which of its axes point along
 // the body's, and its unit.
 struct ModelAxes {
-  std::string forward = "-x"; // one of x, y, z with an optional minus; as
-                              // FlightGear's .ac files: nose at -x
-  std::string up = "y";       // the same
-  double scale = 1;           // metres per unit
+  std::string forward = "-x";  // one of x, y, z with an optional minus; as
+                               // FlightGear's .ac files: nose at -x
+  std::string up = "y";        // the same
+  double scale = 1;            // metres per unit
 };
 
 struct LoadOptions {
-  double airspeed_kt =
-      150; // decides `select` conditions: gear is up above its speed
+  double airspeed_kt = 150;  // decides `select` conditions: gear is up above its speed
   double altitude_agl_ft = 1000;
-  std::optional<ModelAxes>
-      axes; // for a bare model file; Error when given for a catalogue name
+  std::optional<ModelAxes> axes;  // for a bare model file; Error when given for a catalogue name
 };
 
 struct Aircraft {
   std::string name;
   std::filesystem::path file;
   Mesh mesh;
-  std::vector<std::filesystem::path> sources; // every file read, for checksums
+  std::vector<std::filesystem::path> sources;  // every file read, for checksums
 };
 
 // `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .osgt,
@@ -59,11 +57,12 @@ struct Aircraft {
 // is unknown (nearest names), unreadable, without triangles, or lacks a
 // texture. Animations and properties that are not understood are named once in
 // a warning.
-Aircraft load_aircraft(const std::string &name, const LoadOptions &options = {},
-                       const Warn &warn = {});
+Aircraft load_aircraft(const std::string& name,
+                       const LoadOptions& options = {},
+                       const Warn& warn = {});
 
 // The other liveries of the same model folder: names that differ in the livery
 // alone.
-std::vector<std::string> liveries(const std::string &name);
+std::vector<std::string> liveries(const std::string& name);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

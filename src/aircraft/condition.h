@@ -23,24 +23,23 @@ struct Condition {
     kNotEquals,
     kTrue
   };
-  Kind kind = Kind::kAnd; // kAnd without parts is true
+  Kind kind = Kind::kAnd;  // kAnd without parts is true
   std::string property;
   std::optional<std::string> other_property;
   double value = 0;
-  bool compares_text =
-      false; // the value is a word: no property of ours equals it
+  bool compares_text = false;  // the value is a word: no property of ours equals it
   std::vector<Condition> parts;
 };
 
 // A number that follows a property: by a table, or factor * value + offset,
 // within bounds.
 struct Driven {
-  std::string property; // empty: the offset alone
+  std::string property;  // empty: the offset alone
   double factor = 1;
   double offset = 0;
   std::optional<double> least;
   std::optional<double> most;
-  std::vector<std::pair<double, double>> table; // by rising first number
+  std::vector<std::pair<double, double>> table;  // by rising first number
 };
 
 // Speed and height from the load options, gear down near the ground alone,
@@ -49,8 +48,8 @@ struct Cruise {
   double airspeed_kt = 150;
   double altitude_agl_ft = 1000;
 };
-double property_value(const std::string &property, const Cruise &cruise);
-bool holds(const Condition &condition, const Cruise &cruise);
-double value_of(const Driven &driven, const Cruise &cruise);
+double property_value(const std::string& property, const Cruise& cruise);
+bool holds(const Condition& condition, const Cruise& cruise);
+double value_of(const Driven& driven, const Cruise& cruise);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

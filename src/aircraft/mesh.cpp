@@ -7,15 +7,13 @@ namespace airtruth::aircraft {
 
 std::size_t Mesh::triangle_count() const {
   std::size_t count = 0;
-  for (const Part &part : parts)
-    count += part.triangles.size();
+  for (const Part& part : parts) count += part.triangles.size();
   return count;
 }
 
-Eigen::Affine3f body_from_part(const Part &part, double time_s) {
+Eigen::Affine3f body_from_part(const Part& part, double time_s) {
   Eigen::Affine3f result = Eigen::Affine3f::Identity();
-  if (!part.spins)
-    return result;
+  if (!part.spins) return result;
   const double turns = part.revolutions_per_s * time_s;
   const auto angle = static_cast<float>(2 * kPi * (turns - std::floor(turns)));
   result.translate(part.centre_in_body);
@@ -24,4 +22,4 @@ Eigen::Affine3f body_from_part(const Part &part, double time_s) {
   return result;
 }
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

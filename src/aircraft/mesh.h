@@ -19,23 +19,22 @@ struct Texture {
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::array<float, 4>>
-        texels; // linear premultiplied RGBA; row 0 is v = 0 (the bottom, as
-                // OpenGL's)
+    std::vector<std::array<float, 4>> texels;  // linear premultiplied RGBA; row 0 is v = 0 (the
+                                               // bottom, as OpenGL's)
   };
   std::vector<Level> levels;
   bool repeat_u = true;
   bool repeat_v = true;
-  bool has_translucency = false; // some texel has alpha below 0.996
+  bool has_translucency = false;  // some texel has alpha below 0.996
 };
 
 struct Material {
-  std::array<float, 3> diffuse = {1, 1, 1};  // linear
-  std::array<float, 3> emission = {0, 0, 0}; // linear
-  std::array<float, 3> specular = {0, 0, 0}; // linear
-  float shininess = 0;                       // Blinn-Phong exponent, 0..128
+  std::array<float, 3> diffuse = {1, 1, 1};   // linear
+  std::array<float, 3> emission = {0, 0, 0};  // linear
+  std::array<float, 3> specular = {0, 0, 0};  // linear
+  float shininess = 0;                        // Blinn-Phong exponent, 0..128
   float opacity = 1;
-  int texture = -1; // index into Mesh::textures, -1: none
+  int texture = -1;  // index into Mesh::textures, -1: none
 };
 
 struct Triangle {
@@ -55,9 +54,8 @@ struct Part {
 };
 
 struct Mesh {
-  std::vector<Eigen::Vector3f> positions; // in body
-  std::vector<Eigen::Vector3f>
-      normals; // unit, one per position, averaged over smooth edges
+  std::vector<Eigen::Vector3f> positions;  // in body
+  std::vector<Eigen::Vector3f> normals;    // unit, one per position, averaged over smooth edges
   std::vector<Eigen::Vector2f> uvs;
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -68,13 +66,13 @@ struct Mesh {
 
 // body_from_part at a time: the identity for the airframe, a rotation about the
 // axis for a spinning part.
-Eigen::Affine3f body_from_part(const Part &part, double time_s);
+Eigen::Affine3f body_from_part(const Part& part, double time_s);
 
 // The points whose projections bound what can be seen: vertices of opaque
 // triangles, and for translucent ones (a propeller disc drawn on a square)
 // points on the border of the texels with alpha >= 1/255, dense enough for 0.05
 // px at 400 px. One list per part, in part coordinates.
-std::vector<std::vector<Eigen::Vector3f>> silhouette_points(const Mesh &mesh);
+std::vector<std::vector<Eigen::Vector3f>> silhouette_points(const Mesh& mesh);
 
 // Extents in metres.
 struct Extents {
@@ -84,6 +82,6 @@ struct Extents {
   double span_m() const { return high_in_body.y() - low_in_body.y(); }
   double height_m() const { return high_in_body.z() - low_in_body.z(); }
 };
-Extents extents(const Mesh &mesh);
+Extents extents(const Mesh& mesh);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

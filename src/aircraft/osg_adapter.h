@@ -18,26 +18,26 @@ namespace airtruth::aircraft {
 struct PartChoice {
   bool hidden = false;
   Eigen::Affine3d body_from_file = Eigen::Affine3d::Identity();
-  int part = 0;                  // index into mesh.parts
-  float opacity = 1;             // times the material's own
-  std::filesystem::path texture; // in place of the part's own; empty: its own
+  int part = 0;                   // index into mesh.parts
+  float opacity = 1;              // times the material's own
+  std::filesystem::path texture;  // in place of the part's own; empty: its own
 };
-using ChoosePart =
-    std::function<PartChoice(const std::vector<std::string> &names)>;
+using ChoosePart = std::function<PartChoice(const std::vector<std::string>& names)>;
 
 // What is being put together: the mesh, and what several model files of one
 // aircraft share.
 struct Assembly {
   Mesh mesh;
-  std::vector<std::filesystem::path> sources; // every file read
-  std::map<std::string, int> texture_of_file; // index into mesh.textures
+  std::vector<std::filesystem::path> sources;  // every file read
+  std::map<std::string, int> texture_of_file;  // index into mesh.textures
 };
 
 // Appends a model file's triangles. Textures are looked for in `folders`, in
 // their order. Throws Error for a file that no loader can read or whose texture
 // is missing or unreadable.
-void append_model(Assembly &assembly, const std::filesystem::path &file,
-                  const std::vector<std::filesystem::path> &folders,
-                  const ChoosePart &choose);
+void append_model(Assembly& assembly,
+                  const std::filesystem::path& file,
+                  const std::vector<std::filesystem::path>& folders,
+                  const ChoosePart& choose);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

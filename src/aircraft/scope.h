@@ -25,35 +25,34 @@ struct Animated {
   Eigen::Affine3d body_from_model = Eigen::Affine3d::Identity();
   std::optional<Spin> spin;
   float opacity = 1;
-  std::string texture; // in place of the object's own
+  std::string texture;  // in place of the object's own
 };
 
 // FlightGear puts an animation into the tree of named nodes right above the
 // node it names (or, where it names none, above all of its wrapper's), in the
 // order of the file, nested wrappers first.
 class Scope {
-public:
-  Scope(const Eigen::Affine3d &body_from_outside, const Cruise &cruise);
+ public:
+  Scope(const Eigen::Affine3d& body_from_outside, const Cruise& cruise);
 
   // The scope inside a wrapper that stands in this one.
-  Scope inside(const Wrapper &wrapper) const;
+  Scope inside(const Wrapper& wrapper) const;
   // An object of the innermost wrapper's model, by the names of its nodes,
   // outermost first.
-  Animated animated(const std::vector<std::string> &names) const;
+  Animated animated(const std::vector<std::string>& names) const;
 
-private:
+ private:
   struct Link {
     std::string name;
-    const Animation *animation = nullptr;
+    const Animation* animation = nullptr;
     Eigen::Affine3d parent_from_here = Eigen::Affine3d::Identity();
   };
   struct Level {
-    const Wrapper *wrapper;
-    std::size_t begin; // its content's first link
+    const Wrapper* wrapper;
+    std::size_t begin;  // its content's first link
   };
-  static void install(const Animation &animation, std::size_t begin,
-                      std::vector<Link> &links);
-  void apply(const Animation &animation, Animated &result) const;
+  static void install(const Animation& animation, std::size_t begin, std::vector<Link>& links);
+  void apply(const Animation& animation, Animated& result) const;
 
   Eigen::Affine3d body_from_outside_;
   Cruise cruise_;
@@ -61,4 +60,4 @@ private:
   std::vector<Level> levels_;
 };
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

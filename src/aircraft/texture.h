@@ -13,11 +13,10 @@ float linear_channel(float srgb);
 
 // A texture from straight-alpha sRGB texels (0..1, row 0 at the bottom):
 // decoded, premultiplied, with its mip chain.
-Texture texture_from_srgb(int width, int height,
-                          std::vector<std::array<float, 4>> texels,
-                          bool repeat_u, bool repeat_v);
+Texture texture_from_srgb(
+    int width, int height, std::vector<std::array<float, 4>> texels, bool repeat_u, bool repeat_v);
 
 // Alpha of the full-size level, bilinear, at (u, v).
-float alpha_at(const Texture &texture, float u, float v);
+float alpha_at(const Texture& texture, float u, float v);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

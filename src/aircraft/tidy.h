@@ -8,6 +8,6 @@ namespace airtruth::aircraft {
 // Drops triangles without area (they have no normal), triangles drawn twice in
 // the same place from either side (they would shine through one another where
 // translucent), and the vertices and parts that this leaves unused.
-void tidy(Mesh &mesh);
+void tidy(Mesh& mesh);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft

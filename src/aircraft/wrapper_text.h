@@ -19,27 +19,27 @@ namespace airtruth::aircraft {
 namespace fs = std::filesystem;
 
 struct Animation {
-  std::string type; // "select", "rotate", "spin", "translate", "scale", ...
-  std::string name; // by which later animations may call what this one moves
-  std::vector<std::string> objects; // empty: the whole model
+  std::string type;                  // "select", "rotate", "spin", "translate", "scale", ...
+  std::string name;                  // by which later animations may call what this one moves
+  std::vector<std::string> objects;  // empty: the whole model
   std::optional<Condition> condition;
-  Driven value;                // degrees, metres, turns a minute, or a share
-  std::array<Driven, 3> scale; // of scale animations, along x, y, z
-  std::string table_file;      // the value's table comes from this file
+  Driven value;                 // degrees, metres, turns a minute, or a share
+  std::array<Driven, 3> scale;  // of scale animations, along x, y, z
+  std::string table_file;       // the value's table comes from this file
   Vector3 centre{0, 0, 0};
   Vector3 axis{0, 0, 0};
-  std::string axis_object; // the axis is an object of the model, which is not
-                           // looked for
-  double least_m = 0;      // of range animations
+  std::string axis_object;  // the axis is an object of the model, which is not
+                            // looked for
+  double least_m = 0;       // of range animations
   double most_m = 1e9;
-  std::string texture; // of material animations: replaces the objects' own
+  std::string texture;  // of material animations: replaces the objects' own
 };
 
 struct WrapperText {
   std::string path;
   std::string texture_path;
   std::string include;
-  std::optional<Eigen::Affine3d> parent_from_model; // of <offsets>
+  std::optional<Eigen::Affine3d> parent_from_model;  // of <offsets>
   std::vector<Animation> animations;
   struct Nested {
     std::string path;
@@ -51,11 +51,10 @@ struct WrapperText {
 };
 
 // Error with line for what is not XML, or has no <PropertyList>.
-WrapperText parse_wrapper(std::string_view text, const fs::path &name);
+WrapperText parse_wrapper(std::string_view text, const fs::path& name);
 
 // The <entry> children of a file that an <interpolation> includes, by rising
 // <ind>.
-std::vector<std::pair<double, double>> parse_table(std::string_view text,
-                                                   const fs::path &name);
+std::vector<std::pair<double, double>> parse_table(std::string_view text, const fs::path& name);
 
-} // namespace airtruth::aircraft
+}  // namespace airtruth::aircraft
