@@ -10,38 +10,36 @@
 #include "aircraft/mesh.h"
 #include "base/log.h"
 
-// The aircraft of Debian's flightgear-data-ai, by name ("738/738-Ryanair"), and
-// bare model files.
+// The aircraft of Debian's flightgear-data-ai, by name ("738/738-Ryanair"), and bare model files.
 namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
 
 struct Entry {
-  std::string name;  // "738/738-Ryanair": the wrapper XML under AI/Aircraft,
-                     // without its extension
+  std::string name;  // "738/738-Ryanair": the wrapper XML under AI/Aircraft, without its extension
   std::filesystem::path file;
 };
 
 // Folders searched: $AIRTRUTH_AIRCRAFT_PATH (colon-separated), else
-// /usr/share/games/flightgear/AI/Aircraft. Sorted by name. Throws Error, saying
-// which package to install, where there is no such folder.
+// /usr/share/games/flightgear/AI/Aircraft. Sorted by name. Throws Error, saying which package to
+// install, where there is no such folder.
 std::vector<Entry> list_aircraft();
 
 // The entry of that name; Error with the nearest names otherwise.
 Entry find_aircraft(const std::string& name);
 
-// How a bare .ac, .obj, .3ds or .osgt file lies: which of its axes point along
-// the body's, and its unit.
+// How a bare .ac, .obj, .3ds or .osgt file lies: which of its axes point along the body's, and its
+// unit.
 struct ModelAxes {
-  std::string forward = "-x";  // one of x, y, z with an optional minus; as
-                               // FlightGear's .ac files: nose at -x
-  std::string up = "y";        // the same
-  double scale = 1;            // metres per unit
+  std::string forward =
+      "-x";  // one of x, y, z with an optional minus; as FlightGear's .ac files: nose at -x
+  std::string up = "y";  // the same
+  double scale = 1;      // metres per unit
 };
 
 struct LoadOptions {
-  double airspeed_kt = 150;  // decides `select` conditions: gear is up above its speed
-  double altitude_agl_ft = 1000;
+  double airspeed_kt = 250;  // decides `select` conditions: gear is up above its speed
+  double altitude_agl_ft = 3000;
   std::optional<ModelAxes> axes;  // for a bare model file; Error when given for a catalogue name
 };
 
@@ -52,17 +50,15 @@ struct Aircraft {
   std::vector<std::filesystem::path> sources;  // every file read, for checksums
 };
 
-// `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .osgt,
-// or a FlightGear .xml) when it has one of those endings. Throws Error for what
-// is unknown (nearest names), unreadable, without triangles, or lacks a
-// texture. Animations and properties that are not understood are named once in
-// a warning.
+// `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .osgt, or a FlightGear .xml)
+// when it has one of those endings. Throws Error for what is unknown (nearest names), unreadable,
+// without triangles, or lacks a texture. Animations and properties that are not understood are
+// named once in a warning.
 Aircraft load_aircraft(const std::string& name,
                        const LoadOptions& options = {},
                        const Warn& warn = {});
 
-// The other liveries of the same model folder: names that differ in the livery
-// alone.
+// The other liveries of the same model folder: names that differ in the livery alone.
 std::vector<std::string> liveries(const std::string& name);
 
 }  // namespace airtruth::aircraft

@@ -45,8 +45,8 @@ struct Driven {
 // Speed and height from the load options, gear down near the ground alone,
 // engines running, surfaces and switches at rest, daylight.
 struct Cruise {
-  double airspeed_kt = 150;
-  double altitude_agl_ft = 1000;
+  double airspeed_kt = 250;
+  double altitude_agl_ft = 3000;
 };
 double property_value(const std::string& property, const Cruise& cruise);
 bool holds(const Condition& condition, const Cruise& cruise);

@@ -8,19 +8,19 @@
 
 #include "geometry/transform.h"
 
-// An aircraft as triangles with what they look like. Body frame: x forward, y
-// right, z down, metres, double-free floats (an aircraft is small). The origin
-// is the model's own reference point, which the path moves along.
+// An aircraft as triangles with what they look like. Body frame: x forward, y right, z down,
+// metres, double-free floats (an aircraft is small). The origin is the model's own reference point,
+// which the path moves along.
 namespace airtruth::aircraft {
 
-// sRGB texture, decoded to linear and premultiplied before its mip chain is
-// built (level 0 is the full size, each further level half of it, down to 1x1).
+// sRGB texture, decoded to linear and premultiplied before its mip chain is built (level 0 is the
+// full size, each further level half of it, down to 1x1).
 struct Texture {
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::array<float, 4>> texels;  // linear premultiplied RGBA; row 0 is v = 0 (the
-                                               // bottom, as OpenGL's)
+    std::vector<std::array<float, 4>>
+        texels;  // linear premultiplied RGBA; row 0 is v = 0 (the bottom, as OpenGL's)
   };
   std::vector<Level> levels;
   bool repeat_u = true;
@@ -42,8 +42,8 @@ struct Triangle {
   std::uint32_t material = 0;
 };
 
-// Triangles that move together. part 0 is the airframe; a spinning part
-// (propeller, rotor) turns about its axis.
+// Triangles that move together. part 0 is the airframe; a spinning part (propeller, rotor) turns
+// about its axis.
 struct Part {
   std::string name;
   std::vector<Triangle> triangles;
@@ -64,14 +64,13 @@ struct Mesh {
   std::size_t triangle_count() const;
 };
 
-// body_from_part at a time: the identity for the airframe, a rotation about the
-// axis for a spinning part.
+// body_from_part at a time: the identity for the airframe, a rotation about the axis for a spinning
+// part.
 Eigen::Affine3f body_from_part(const Part& part, double time_s);
 
-// The points whose projections bound what can be seen: vertices of opaque
-// triangles, and for translucent ones (a propeller disc drawn on a square)
-// points on the border of the texels with alpha >= 1/255, dense enough for 0.05
-// px at 400 px. One list per part, in part coordinates.
+// The points whose projections bound what can be seen: vertices of opaque triangles, and for
+// translucent ones (a propeller disc drawn on a square) points on the border of the texels with
+// alpha >= 1/255, dense enough for 0.05 px at 400 px. One list per part, in part coordinates.
 std::vector<std::vector<Eigen::Vector3f>> silhouette_points(const Mesh& mesh);
 
 // Extents in metres.

@@ -11,8 +11,8 @@ namespace airtruth::aircraft {
 // sRGB, 0..1, to linear by the exact curve of IEC 61966-2-1.
 float linear_channel(float srgb);
 
-// A texture from straight-alpha sRGB texels (0..1, row 0 at the bottom):
-// decoded, premultiplied, with its mip chain.
+// A texture from straight-alpha sRGB texels (0..1, row 0 at the bottom): decoded, premultiplied,
+// with its mip chain.
 Texture texture_from_srgb(
     int width, int height, std::vector<std::array<float, 4>> texels, bool repeat_u, bool repeat_v);
 

@@ -180,11 +180,14 @@ class Run {
                                                  }) &
               tbb::make_filter<WorkPtr, WorkPtr>(paint_mode,
                                                  [&](WorkPtr work) {
-                                                   paint(*work);
+                                                   if (!options_.stop.stop_requested()) paint(*work);
                                                    return work;
                                                  }) &
               tbb::make_filter<WorkPtr, void>(tbb::filter_mode::serial_in_order,
-                                              [&](const WorkPtr& work) { write(*work); }));
+                                              [&](const WorkPtr& work) {
+                                                // A frame that was not painted comes after the stop.
+                                                if (!options_.stop.stop_requested()) write(*work);
+                                              }));
     });
   }
 
