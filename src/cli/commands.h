@@ -23,6 +23,5 @@ void add_overlay(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
-void add_evision(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli
