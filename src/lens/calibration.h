@@ -16,6 +16,7 @@ struct Calibration {
   std::array<double, 9> camera_matrix{};  // row by row
   std::vector<double> distortion;
   ImageSize size;
+  double max_angle_rad = kPi;  // of a fisheye, where the file states it
 };
 
 Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name);

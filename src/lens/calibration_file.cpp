@@ -2,6 +2,7 @@
 #include "lens/calibration_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/error.h"
@@ -66,7 +67,8 @@ std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const 
 
 Lens parse_calibration(std::string_view text, const std::filesystem::path& name, ImageSize size) {
   const std::string file = name.string();
-  const std::string extension = name.extension().string();
+  std::string extension = name.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   Calibration c;
   if (extension == ".json") {
     c = parse_gyroflow_profile(text, name);
@@ -85,7 +87,7 @@ Lens parse_calibration(std::string_view text, const std::filesystem::path& name,
                      (c.camera_matrix[5] + 0.5) * scale.y());
   const std::vector<double> distortion = trimmed(c.distortion, c.fisheye, file);
   try {
-    if (c.fisheye) return Lens(Fisheye{focal, centre, distortion}, size);
+    if (c.fisheye) return Lens(Fisheye{focal, centre, distortion, c.max_angle_rad}, size);
     if (std::all_of(distortion.begin(), distortion.end(), [](double k) { return k == 0; }))
       return Lens(Pinhole{focal, centre}, size);
     return Lens(BrownConrady{focal, centre, distortion}, size);

@@ -51,8 +51,19 @@ TEST(Gyroflow, NamesTheFieldItCannotHonour) {
               testing::HasSubstr("digital_lens"));
   EXPECT_THAT(error_of(profile("\"distortion_model\": \"insta360\",\n"), "a.json"),
               testing::HasSubstr("distortion_model"));
+  EXPECT_THAT(error_of(profile("\"interpolations\": {\"24\": {}},\n"), "a.json"),
+              testing::HasSubstr("interpolations is set"));
+  EXPECT_THAT(error_of(profile("\"use_opencv_standard\": true,\n"), "a.json"),
+              testing::HasSubstr("use_opencv_standard"));
+  EXPECT_THAT(error_of("{\"a\": 1e999}", "a.json"), testing::HasSubstr("too large"));
   EXPECT_THAT(error_of("{\"a\": ", "a.json"), testing::HasSubstr("is not JSON"));
   EXPECT_THAT(error_of("{}", "a.json"), testing::HasSubstr("fisheye_params"));
+}
+
+TEST(Gyroflow, EndsAtItsStatedRadius) {
+  std::string text = profile();
+  text.replace(text.find("\"distortion_coeffs\""), 0, "\"radial_distortion_limit\": 1.0, ");
+  EXPECT_NEAR(parse_calibration(text, "a.JSON", kSize).max_angle_rad(), radians(45), 1e-12);
 }
 
 TEST(Gyroflow, ReadsARealProfile) {
@@ -91,6 +102,14 @@ TEST(OpenCv, FisheyeWhereTheFileSaysSo) {
   EXPECT_STREQ(parse_calibration(text, "a.yml", kSize).name(), "fisheye");
 }
 
+TEST(OpenCv, ReadsAMatrixOfRowsOverSeveralLines) {
+  const Lens lens = parse_calibration(
+      "K: [[900, 0, 639.5],\n    [0, 905, 479.5],\n    [0, 0, 1]]\nD: [0, 0, 0, 0]\n",
+      "a.yml",
+      kSize);
+  EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
+}
+
 TEST(OpenCv, RefusesSkewPrismAndGarbage) {
   const auto yml = [](const std::string& matrix, const std::string& distortion) {
     return "camera_matrix: [" + matrix + "]\ndistortion_coefficients: [" + distortion + "]\n";
@@ -102,6 +121,10 @@ TEST(OpenCv, RefusesSkewPrismAndGarbage) {
               testing::StartsWith("a.yml:1: camera_matrix holds 'x'"));
   EXPECT_THAT(error_of(yml("-900,0,640,0,900,480,0,0,1", "0"), "a.yml"),
               testing::HasSubstr("focal_px"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "image_width: 1280\n", "a.yml"),
+              testing::HasSubstr("only one of image_width"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "fisheye_model: maybe\n", "a.yml"),
+              testing::StartsWith("a.yml:3: fisheye_model is 'maybe'"));
   EXPECT_THAT(error_of("<a", "a.xml"), testing::HasSubstr("is not XML"));
   EXPECT_THAT(error_of("", "a.yml"), testing::HasSubstr("no camera_matrix"));
   EXPECT_THAT(error_of("", "a.txt"), testing::HasSubstr("is no calibration file"));

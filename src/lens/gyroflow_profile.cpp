@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -60,7 +61,21 @@ void refuse_what_cannot_be_honoured(const Profile& profile) {
   for (const char* key : {"digital_lens", "digital_lens_params"})
     if (!profile.absent_or(key, empty_text))
       profile.fail(key, "is set; a digital lens cannot be honoured");
+  if (!profile.absent_or("interpolations", [](const json& v) { return v.empty(); }))
+    profile.fail("interpolations", "is set; a lens that changes with its zoom cannot be honoured");
+  if (!profile.absent_or("use_opencv_standard",
+                         [](const json& v) { return v.is_boolean() && !v.get<bool>(); }))
+    profile.fail("use_opencv_standard", "is set; no other model than the fisheye can be honoured");
   if (!profile.absent_or("crop", one)) profile.fail("crop", "is set; a crop cannot be honoured");
+}
+
+// Gyroflow's limit is a radius on the plane at distance 1, tan(angle); 0 says that there is none.
+double stated_max_angle(const Profile& profile, const json& fisheye) {
+  const char* key = "radial_distortion_limit";
+  if (!fisheye.contains(key) || fisheye.at(key).is_null()) return kPi;
+  const double limit = profile.number(fisheye.at(key), key);
+  if (limit < 0) profile.fail(key, "is below 0; expected the tangent of an angle");
+  return limit == 0 ? kPi : std::atan(limit);
 }
 
 }  // namespace
@@ -73,6 +88,9 @@ Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem:
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(text.size(), error.byte));
     throw Error("is not JSON",
                 {name.string(), 1 + static_cast<int>(std::count(text.begin(), end, '\n'))});
+  } catch (const json::exception&) {  // a number beyond double
+    throw Error("holds a number that is too large; expected a Gyroflow lens profile",
+                {name.string()});
   }
   const Profile profile{object, text, name.string()};
   refuse_what_cannot_be_honoured(profile);
@@ -89,10 +107,11 @@ Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem:
       c.camera_matrix[3 * row + column] = profile.number(matrix[row][column], "camera_matrix");
   }
   const json& coefficients = profile.at(fisheye, "distortion_coeffs");
-  if (!coefficients.is_array() || coefficients.size() > 16)
+  if (!coefficients.is_array() || coefficients.size() != 4)
     profile.fail("distortion_coeffs", "is not a list of four numbers");
   for (const json& value : coefficients)
     c.distortion.push_back(profile.number(value, "distortion_coeffs"));
+  c.max_angle_rad = stated_max_angle(profile, fisheye);
   const json& size = profile.at(object, "calib_dimension");
   const double width = profile.number(profile.at(size, "w"), "calib_dimension");
   const double height = profile.number(profile.at(size, "h"), "calib_dimension");

@@ -38,28 +38,30 @@ void validate_distortion(const std::vector<double>& distortion,
     if (!std::isfinite(k)) throw Error("distortion holds a number that is not finite");
 }
 
-double checked_limit(double max_angle_rad) {
-  if (max_angle_rad < radians(0.5))
+template <typename AModel>
+Field checked_field(const AModel& lens) {
+  const Field field = field_of(lens);
+  if (!(field.max_angle_rad >= radians(0.5)))
     throw Error("distortion makes the radial curve fall from the axis on; expected one that rises");
-  return max_angle_rad;
+  return field;
 }
 
 struct Validate {
   ImageSize size;
-  double operator()(const Pinhole& lens) const {
+  Field operator()(const Pinhole& lens) const {
     validate(lens.focal_px, lens.principal_point_px, size);
-    return kPi / 2;
+    return field_of(lens);
   }
-  double operator()(const BrownConrady& lens) const {
+  Field operator()(const BrownConrady& lens) const {
     validate(lens.focal_px, lens.principal_point_px, size);
     const std::size_t n = lens.distortion.size();
     validate_distortion(lens.distortion, n == 4 || n == 5 || n == 8, "4, 5 or 8");
-    return checked_limit(max_angle(lens));
+    return checked_field(lens);
   }
-  double operator()(const Fisheye& lens) const {
+  Field operator()(const Fisheye& lens) const {
     validate(lens.focal_px, lens.principal_point_px, size);
     validate_distortion(lens.distortion, lens.distortion.size() == 4, "4");
-    return checked_limit(max_angle(lens));
+    return checked_field(lens);
   }
 };
 
@@ -75,18 +77,20 @@ Lens::Lens(Model model, ImageSize size) : model_(std::move(model)), size_(size) 
   if (auto* fisheye = std::get_if<Fisheye>(&model_);
       fisheye != nullptr && fisheye->distortion.size() < 4)
     fisheye->distortion.resize(4, 0.0);
-  max_angle_rad_ = std::visit(Validate{size}, model_);
+  const Field field = std::visit(Validate{size}, model_);
+  max_angle_rad_ = field.max_angle_rad;
+  max_radius_ = field.max_radius;
 }
 
 std::optional<Pixel> Lens::pixel_from_cam(const Vector3& p_in_cam) const {
-  return std::visit([&](const auto& lens) { return project(lens, p_in_cam, max_angle_rad_); },
-                    model_);
+  const Field field{max_angle_rad_, max_radius_};
+  return std::visit([&](const auto& lens) { return project(lens, p_in_cam, field); }, model_);
 }
 
 std::optional<Vector3> Lens::ray_from_pixel(const Pixel& pixel) const {
   if (!finite(pixel)) return std::nullopt;
-  return std::visit([&](const auto& lens) { return unproject(lens, pixel, max_angle_rad_); },
-                    model_);
+  const Field field{max_angle_rad_, max_radius_};
+  return std::visit([&](const auto& lens) { return unproject(lens, pixel, field); }, model_);
 }
 
 double Lens::focal_px() const {

@@ -42,7 +42,8 @@ struct BrownConrady {
 struct Fisheye {
   Pixel focal_px{0, 0};
   Pixel principal_point_px{0, 0};
-  std::vector<double> distortion;  // 4 numbers (missing ones are 0)
+  std::vector<double> distortion;     // 4 numbers (missing ones are 0)
+  double stated_max_angle_rad = kPi;  // a calibration may know that its curve ends earlier
 };
 
 using Model = std::variant<Pinhole, BrownConrady, Fisheye>;
@@ -79,6 +80,7 @@ class Lens {
   Model model_;
   ImageSize size_;
   double max_angle_rad_ = 0;
+  double max_radius_ = 0;  // bound on the distorted radius, for a quick "no" outside it
 };
 
 // A pinhole with the axis through the image's centre and square pixels. 0 < fov < 180, else Error.

@@ -72,6 +72,52 @@ TEST(EveryLens, RoundTripsOverItsWholeValidField) {
   }
 }
 
+// Calibrations that nobody chose: up to the very edge of the field, where the curve has gone flat.
+TEST(EveryLens, RoundTripsForRandomCoefficients) {
+  Random random(7);
+  double worst = 0;
+  for (int i = 0; i < 120; ++i) {
+    const auto k = [&](double most) { return random.uniform(-most, most); };
+    const std::vector<double> tangential = {k(0.5), k(0.3), k(0.01), k(0.01), k(0.2)};
+    const Lens lens =
+        i % 2 == 0 ? Lens(Fisheye{{500, 510}, {640, 480}, {k(0.3), k(0.2), k(0.1), k(0.05)}}, kSize)
+                   : Lens(BrownConrady{{500, 510}, {640, 480}, tangential}, kSize);
+    for (int j = 0; j < 100; ++j) {
+      const double edge = j % 4 == 0 ? std::pow(10, random.uniform(-9, -2)) : random.uniform(0, 1);
+      const double angle = lens.max_angle_rad() * (1 - edge);
+      const double turn = random.uniform(0, 2 * kPi);
+      const Vector3 ray(
+          std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
+      const auto pixel = lens.pixel_from_cam(ray);
+      ASSERT_TRUE(pixel);
+      const auto back = lens.ray_from_pixel(*pixel);
+      ASSERT_TRUE(back) << lens.name() << " " << i << " at 1 - " << edge;
+      worst = std::max(worst, std::atan2(back->cross(ray).norm(), back->dot(ray)));
+    }
+  }
+  EXPECT_LT(worst, 1e-9);
+}
+
+// Newton's method alone circles around the bend of this curve for ever.
+TEST(Fisheye, InverseDoesNotCircle) {
+  const Lens lens(Fisheye{{500, 510}, {640, 480}, {0.2700, 0.1117, -0.0664, 0.0017}}, kSize);
+  for (int i = 1; i < 5000; ++i) {
+    const double angle = lens.max_angle_rad() * i / 5000;
+    const auto back =
+        lens.ray_from_pixel(*lens.pixel_from_cam({std::sin(angle), 0, std::cos(angle)}));
+    ASSERT_TRUE(back);
+    ASSERT_NEAR(std::atan2(back->x(), back->z()), angle, 1e-9);
+  }
+}
+
+TEST(Fisheye, EndsWhereItsCalibrationSaysSo) {
+  const Lens lens(Fisheye{{500, 500}, {640, 480}, {0, 0, 0, 0}, radians(60)}, kSize);
+  EXPECT_TRUE(lens.pixel_from_cam({std::sin(radians(59.9)), 0, std::cos(radians(59.9))}));
+  EXPECT_FALSE(lens.pixel_from_cam({std::sin(radians(60.1)), 0, std::cos(radians(60.1))}));
+  EXPECT_TRUE(lens.ray_from_pixel({640 + 500 * radians(59.9), 480}));
+  EXPECT_FALSE(lens.ray_from_pixel({640 + 500 * radians(60.1), 480}));
+}
+
 TEST(EveryLens, HasNoPixelBeyondItsField) {
   for (const Lens& lens : every_lens()) {
     if (lens.max_angle_rad() >= kPi) continue;
@@ -120,6 +166,43 @@ TEST(EveryLens, ProjectsAsOpenCvDoes) {
       EXPECT_NEAR(ours->y() - 0.5, projected[0].y, 1e-8) << lens.name();
     }
   }
+}
+
+// The root mean square, and the worst pixel, of the best homography for a turn about y.
+// docs/lenses.md.
+std::pair<double, double> misfit_of_a_plane(const Lens& lens, double yaw_deg) {
+  const Eigen::AngleAxisd turn(radians(yaw_deg), Vector3::UnitY());
+  std::vector<cv::Point2d> from;
+  std::vector<cv::Point2d> to;
+  for (int y = 0; y <= kSize.height; y += 20)
+    for (int x = 0; x <= kSize.width; x += 20) {
+      const auto ray = lens.ray_from_pixel({double(x), double(y)});
+      const auto pixel = ray ? lens.pixel_from_cam(turn * *ray) : std::nullopt;
+      if (!pixel || pixel->x() < 0 || pixel->x() > kSize.width || pixel->y() < 0 ||
+          pixel->y() > kSize.height)
+        continue;
+      from.emplace_back(x, y);
+      to.emplace_back(pixel->x(), pixel->y());
+    }
+  std::vector<cv::Point2d> moved;
+  cv::perspectiveTransform(from, moved, cv::findHomography(from, to, 0));
+  double sum = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const double miss = cv::norm(moved[i] - to[i]);
+    sum += miss * miss;
+    worst = std::max(worst, miss);
+  }
+  return {std::sqrt(sum / static_cast<double>(to.size())), worst};
+}
+
+TEST(Lens, APlaneFitsATurnThroughAPinholeAlone) {
+  EXPECT_LT(misfit_of_a_plane(pinhole_from_vertical_fov(90, kSize), 5).second, 1e-3);
+  const double focal = 640 / radians(60);
+  const Lens wide(Fisheye{{focal, focal}, {640, 480}, {0, 0, 0, 0}}, kSize);
+  const auto [rms, worst] = misfit_of_a_plane(wide, 5);
+  EXPECT_NEAR(rms, 5.22, 0.1);
+  EXPECT_NEAR(worst, 16.15, 0.3);
 }
 
 TEST(Lens, RefusesNonsense) {

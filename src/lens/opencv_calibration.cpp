@@ -63,11 +63,14 @@ Values values_of_yaml(std::string_view text) {
   std::string parent;
   int number = 0;
   std::string* open_list = nullptr;  // a flow list that goes on over several lines
+  const auto is_open = [](const std::string& list) {
+    return std::count(list.begin(), list.end(), '[') > std::count(list.begin(), list.end(), ']');
+  };
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (open_list != nullptr) {
       *open_list += " " + line;
-      if (line.find(']') != std::string::npos) open_list = nullptr;
+      if (line.find(']') != std::string::npos && !is_open(*open_list)) open_list = nullptr;
       continue;
     }
     const std::string content = trimmed(line.substr(0, line.find(" #")));
@@ -81,8 +84,7 @@ Values values_of_yaml(std::string_view text) {
     if (value.rfind("!!", 0) == 0) value.clear();  // !!opencv-matrix
     const std::string name = nested ? parent + "." + key : key;
     values[name] = {value, number};
-    if (value.find('[') != std::string::npos && value.find(']') == std::string::npos)
-      open_list = &values[name].text;
+    if (is_open(value)) open_list = &values[name].text;
   }
   return values;
 }
@@ -133,8 +135,12 @@ int whole(const Values& values, const std::vector<std::string>& keys, const std:
 
 bool says_fisheye(const Values& values, const std::string& file) {
   std::string key;
-  if (const Value* value = find(values, {"fisheye_model", "fisheye"}, &key))
-    return value->text == "1" || value->text == "true";
+  if (const Value* value = find(values, {"fisheye_model", "fisheye"}, &key)) {
+    const std::string flag = trimmed(value->text);
+    if (flag == "1" || flag == "true") return true;
+    if (flag == "0" || flag == "false") return false;
+    throw Error(key + " is '" + flag.substr(0, 40) + "'; expected 0 or 1", {file, value->line});
+  }
   const Value* model = find(values, {"distortion_model", "camera_model", "model"}, &key);
   if (model == nullptr) return false;
   const std::string& name = model->text;
@@ -177,6 +183,8 @@ Calibration parse_opencv_calibration(std::string_view text, const std::filesyste
   if (distortion != nullptr) c.distortion = numbers(*distortion, key, file);
   c.size.width = whole(values, {"image_width", "image_Width", "width"}, file);
   c.size.height = whole(values, {"image_height", "image_Height", "height"}, file);
+  if ((c.size.width == 0) != (c.size.height == 0))
+    throw Error("has only one of image_width and image_height; expected both or none", {file});
   c.fisheye = says_fisheye(values, file);
   return c;
 }

@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kGravityMps2 = 9.80665;
 constexpr double kHorizontalMps = 1e-6;  // below it a heading means nothing
+constexpr double kSamePointM = 1e-6;
+constexpr double kFarthestM = 1e9;  // squares and lengths stay far from overflow
+constexpr double kShortestStep_s = 1e-6;
 
 std::string text_of(const Vector3& p) {
   char text[96];
@@ -29,16 +32,38 @@ std::string text_of(double x) {
   return text;
 }
 
+bool has_heading(const Vector3& v) {
+  return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
+}
+
+// The heading to keep where the path goes straight up or down or stands still: the last one before
+// u, else the first one after it.
+double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
+  constexpr int kSteps = 1024;
+  const double step = (spline.end() - spline.begin()) / kSteps;
+  const auto here = static_cast<int>((u - spline.begin()) / step);
+  const auto heading = [&](int i) -> std::optional<double> {
+    const Vector3 v = spline.at(spline.begin() + step * i, 1);
+    if (!has_heading(v)) return std::nullopt;
+    return degrees(std::atan2(v.y(), v.x()));
+  };
+  for (int i = std::min(here, kSteps); i >= 0; --i)
+    if (const auto before = heading(i)) return *before;
+  for (int i = std::max(here, 0); i <= kSteps; ++i)
+    if (const auto after = heading(i)) return *after;
+  return 0;
+}
+
 // Heading and climb from the velocity, bank from a coordinated turn: tan(bank) = v_h * turn rate /
 // g.
 YawPitchRoll attitude_along(const Vector3& velocity,
                             const Vector3& acceleration,
-                            double fallback_yaw_deg) {
+                            double kept_yaw_deg) {
   const double horizontal = std::hypot(velocity.x(), velocity.y());
   YawPitchRoll attitude;
   attitude.pitch_deg = velocity.norm() > 0 ? degrees(std::atan2(-velocity.z(), horizontal)) : 0.0;
-  attitude.yaw_deg = fallback_yaw_deg;
-  if (horizontal < kHorizontalMps) return attitude;
+  attitude.yaw_deg = kept_yaw_deg;
+  if (!has_heading(velocity)) return attitude;
   attitude.yaw_deg = degrees(std::atan2(velocity.y(), velocity.x()));
   const double turn_rate = (velocity.x() * acceleration.y() - velocity.y() * acceleration.x()) /
                            (horizontal * horizontal);
@@ -50,41 +75,29 @@ State state_along(const Vector3& position,
                   const Vector3& velocity,
                   const Vector3& acceleration,
                   const AttitudeOverride& stated,
-                  double fallback_yaw_deg) {
-  YawPitchRoll attitude = attitude_along(velocity, acceleration, fallback_yaw_deg);
+                  const CubicSpline<Vector3>& spline,
+                  double u) {
+  const double kept_yaw_deg = has_heading(velocity) ? 0.0 : heading_near_deg(spline, u);
+  YawPitchRoll attitude = attitude_along(velocity, acceleration, kept_yaw_deg);
   attitude.yaw_deg = stated.yaw_deg.value_or(attitude.yaw_deg);
   attitude.pitch_deg = stated.pitch_deg.value_or(attitude.pitch_deg);
   attitude.roll_deg = stated.roll_deg.value_or(attitude.roll_deg);
   return {position, velocity, world_from_body(attitude)};
 }
 
-// The heading where the path first has one, for a path that begins straight up or down.
-double first_heading_deg(const CubicSpline<Vector3>& spline) {
-  constexpr int kSteps = 256;
-  for (int i = 0; i <= kSteps; ++i) {
-    const Vector3 v = spline.at(spline.begin() + (spline.end() - spline.begin()) * i / kSteps, 1);
-    if (std::hypot(v.x(), v.y()) > 1e-9 * (1 + v.norm())) return degrees(std::atan2(v.y(), v.x()));
-  }
-  return 0;
-}
-
 class AtTimes : public Path::Impl {
  public:
   AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
-      : spline_(std::move(times), std::move(points)),
-        stated_(stated),
-        first_yaw_deg_(first_heading_deg(spline_)) {}
+      : spline_(std::move(times), std::move(points)), stated_(stated) {}
   double start_s() const override { return spline_.begin(); }
   double end_s() const override { return spline_.end(); }
   State at(double t) const override {
-    return state_along(
-        spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, first_yaw_deg_);
+    return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, spline_, t);
   }
 
  private:
   CubicSpline<Vector3> spline_;
   AttitudeOverride stated_;
-  double first_yaw_deg_;
 };
 
 // Arc length by Gauss-Legendre quadrature of five points on equal parts of each span (Abramowitz
@@ -95,10 +108,7 @@ class AtSpeed : public Path::Impl {
           std::vector<Vector3> points,
           double speed,
           const AttitudeOverride& stated)
-      : spline_(std::move(knots), std::move(points)),
-        speed_(speed),
-        stated_(stated),
-        first_yaw_deg_(first_heading_deg(spline_)) {
+      : spline_(std::move(knots), std::move(points)), speed_(speed), stated_(stated) {
     constexpr int kParts = 64;
     u_.push_back(spline_.begin());
     length_.push_back(0);
@@ -119,13 +129,12 @@ class AtSpeed : public Path::Impl {
     const Vector3 bend = spline_.at(u, 2);
     const double rate = slope.norm();
     if (rate < 1e-12)
-      return state_along(
-          spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, first_yaw_deg_);
+      return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, spline_, u);
     const Vector3 tangent = slope / rate;
     const Vector3 curvature =
         (bend - tangent * tangent.dot(bend)) / (rate * rate);  // d tangent / d arc length
     return state_along(
-        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, first_yaw_deg_);
+        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, spline_, u);
   }
 
  private:
@@ -159,7 +168,6 @@ class AtSpeed : public Path::Impl {
   CubicSpline<Vector3> spline_;
   double speed_;
   AttitudeOverride stated_;
-  double first_yaw_deg_;
   std::vector<double> u_;
   std::vector<double> length_;
 };
@@ -197,10 +205,10 @@ void check_waypoints(std::span<const Vector3> points) {
     throw Error("waypoints_ned_m has " + std::to_string(points.size()) +
                 "; expected at least two waypoints");
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite())
+    if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestM) || !points[i].allFinite())
       throw Error("waypoint " + std::to_string(i + 1) + " is " + text_of(points[i]) +
-                  "; expected finite numbers");
-    if (i > 0 && points[i] == points[i - 1])
+                  "; expected finite numbers within 1e9 m");
+    if (i > 0 && (points[i] - points[i - 1]).norm() < kSamePointM)
       throw Error("waypoints " + std::to_string(i) + " and " + std::to_string(i + 1) +
                   " are the same point " + text_of(points[i]) + "; expected different points");
   }
@@ -211,6 +219,7 @@ void check_waypoints(std::span<const Vector3> points) {
 std::optional<State> Path::at(double time_s) const {
   // A frame's time is rounded to the stream's clock; the ends belong to the path.
   constexpr double kClock = 1e-9;
+  if (!std::isfinite(time_s)) return std::nullopt;
   if (!(time_s >= start_s() - kClock && time_s <= end_s() + kClock)) return std::nullopt;
   return impl_->at(std::clamp(time_s, start_s(), end_s()));
 }
@@ -241,10 +250,11 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
     throw Error("times_s has " + std::to_string(times_s.size()) + " numbers for " +
                 std::to_string(waypoints_ned_m.size()) + " waypoints; expected one each");
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    if (!std::isfinite(times_s[i])) throw Error("times_s holds a number that is not finite");
-    if (i > 0 && times_s[i] <= times_s[i - 1])
-      throw Error("times_s goes from " + text_of(times_s[i - 1]) + " to " + text_of(times_s[i]) +
-                  "; expected times that increase");
+    const std::string name = "times_s[" + std::to_string(i) + "] = " + text_of(times_s[i]);
+    if (!std::isfinite(times_s[i])) throw Error(name + " is not finite; expected a number");
+    if (i > 0 && !(times_s[i] - times_s[i - 1] >= kShortestStep_s))
+      throw Error(name + " is not after times_s[" + std::to_string(i - 1) +
+                  "] = " + text_of(times_s[i - 1]) + "; expected times that increase");
   }
   return Path(std::make_shared<AtTimes>(
       std::vector<double>(times_s.begin(), times_s.end()),

@@ -20,6 +20,8 @@ constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 const std::vector<std::string> kColumns = {
     "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
 constexpr std::size_t kRequired = 4;
+constexpr double kLargest = 1e9;  // metres, seconds or degrees: squares stay far from overflow
+constexpr double kShortestStep_s = 1e-6;
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
@@ -63,8 +65,8 @@ double number_of(const std::string& cell, const std::string& column, const Where
   double value = 0;
   const char* end = cell.data() + cell.size();
   const auto [rest, failed] = std::from_chars(cell.data(), end, value);
-  if (failed != std::errc() || rest != end || !std::isfinite(value))
-    throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a finite number", where);
+  if (failed != std::errc() || rest != end || !(std::abs(value) <= kLargest))
+    throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a number up to 1e9", where);
   return value;
 }
 
@@ -86,6 +88,7 @@ Samples read_samples(std::string_view text, const std::string& file) {
     throw Error("is empty; expected a header and at least two rows", {file});
   if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
   const auto place = columns_of(line, file);
+  const std::size_t columns = cells_of(line).size();
   Samples samples;
   for (std::size_t i = 0; i < 3; ++i) samples.given[i] = place[kRequired + i] != std::string::npos;
   int number = 1;
@@ -94,13 +97,17 @@ Samples read_samples(std::string_view text, const std::string& file) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const auto cells = cells_of(line);
     const Where where{file, number};
+    if (cells.size() > columns)
+      throw Error("has " + std::to_string(cells.size()) + " cells for " + std::to_string(columns) +
+                      " columns; expected one each",
+                  where);
     const auto value = [&](std::size_t column) {
       if (place[column] == std::string::npos) return 0.0;
       if (place[column] >= cells.size()) throw Error("has no value for " + kColumns[column], where);
       return number_of(cells[place[column]], kColumns[column], where);
     };
     const double time = value(0);
-    if (!samples.times.empty() && time <= samples.times.back())
+    if (!samples.times.empty() && time - samples.times.back() < kShortestStep_s)
       throw Error("time_s is " + cells[place[0]] +
                       ", not after the row before; expected times that increase",
                   where);

@@ -87,6 +87,43 @@ TEST(AtTimes, PassesThroughItsWaypointsAndIsSmooth) {
   }
 }
 
+TEST(AtTimes, VelocityIsTheDerivativeOfPosition) {
+  const Path path = spline_at_times(Points{{0, 0, 0}, {10, 5, -1}, {30, 0, 2}, {35, -20, 0}},
+                                    std::vector<double>{0, 1, 2.5, 4});
+  const double h = 1e-5;
+  for (double t = 0.01; t < 3.99; t += 0.083) {
+    const Vector3 difference =
+        (path.at(t + h)->position_in_world - path.at(t - h)->position_in_world) / (2 * h);
+    EXPECT_LT((difference - path.at(t)->velocity_in_world_mps).norm(), 1e-7);
+  }
+}
+
+TEST(AtTimes, KeepsTheLastHeadingWhereItFliesStraightUp) {
+  // A quarter circle from north to east in closed form would need many samples; three straight
+  // legs do: north, east, then up for ever. Along the last leg the horizontal speed dies out.
+  Points points;
+  std::vector<double> times;
+  const auto add = [&](double north, double east, double up) {
+    times.push_back(static_cast<double>(times.size()));
+    points.emplace_back(north, east, -up);
+  };
+  for (int i = 0; i < 8; ++i) add(10.0 * i, 0, 0);
+  for (int i = 1; i < 40; ++i) add(70, 10.0 * i, 0);
+  for (int i = 1; i < 60; ++i) add(70, 390, 10.0 * i);
+  const Path path = spline_at_times(points, times);
+  const State state = *path.at(path.end_s() - 0.5);
+  ASSERT_LT(state.velocity_in_world_mps.head<2>().norm(), 1e-6);
+  const Vector3 right_wing = state.world_from_body * Vector3(0, 1, 0);
+  EXPECT_GT(std::abs(right_wing.x()), 0.999);  // across east, as before the climb, not across north
+  const Vector3 nose = state.world_from_body * Vector3(1, 0, 0);
+  EXPECT_NEAR(nose.z(), -1, 1e-9);
+}
+
+TEST(AtSpeed, FliesStraightUpWithoutAnyHeading) {
+  const Path up = spline_at_speed(Points{{0, 0, 0}, {0, 0, -100}}, 10);
+  EXPECT_NEAR((up.at(5)->world_from_body * Vector3(1, 0, 0)).z(), -1, 1e-9);
+}
+
 TEST(AttitudeOverride, TakesThePathsPlace) {
   const Path path =
       spline_at_speed(Points{{0, 0, 0}, {100, 0, 0}}, 50, {.yaw_deg = 90.0, .roll_deg = -20.0});
@@ -128,7 +165,7 @@ TEST(Waypoints, SayWhatIsWrong) {
       error_of([] {
         spline_at_times(Points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, std::vector<double>{0, 2, 2});
       }),
-      testing::HasSubstr("from 2 to 2"));
+      testing::HasSubstr("times_s[2] = 2 is not after times_s[1] = 2"));
 }
 
 TEST(PathFile, ReadsPositionsAndAnglesInAnyOrder) {
@@ -148,6 +185,12 @@ TEST(PathFile, PointsAtTheLineThatIsWrong) {
               testing::StartsWith("a.csv:3: north_m is 'x'"));
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n0,1,0,0\n", "a.csv"); }),
               testing::StartsWith("a.csv:3: time_s"));
+  EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,1,1,1,1\n", "a.csv"); }),
+              testing::StartsWith("a.csv:3: has 5 cells for 4 columns"));
+  EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,1e300,0,0\n", "a.csv"); }),
+              testing::StartsWith("a.csv:3: north_m is '1e300'"));
+  EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,nan,0,0\n", "a.csv"); }),
+              testing::StartsWith("a.csv:3: north_m is 'nan'"));
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,1\n", "a.csv"); }),
               testing::HasSubstr("no value for down_m"));
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n", "a.csv"); }),
