@@ -17,9 +17,6 @@ pkg_check_modules(libcrypto REQUIRED IMPORTED_TARGET libcrypto)
 if(AIRTRUTH_TESTS)
   find_package(GTest REQUIRED)
 endif()
-if(AIRTRUTH_BENCHMARKS)
-  find_package(benchmark REQUIRED)
-endif()
 
 # OpenCV's headers are noisy under C++20; take them as system headers.
 add_library(airtruth_opencv INTERFACE)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <clocale>
+#include <malloc.h>
+
 #include <exception>
 #include <optional>
 
@@ -18,6 +19,12 @@ constexpr int kInterrupted = 130;
 constexpr const char* kAbout =
     "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the exact truth of\n"
     "every frame. Start with `airtruth demo`, then `airtruth render SCENE.toml --out DIR`.";
+
+// Frames come and go all the time: keep their memory, in place of taking it from the kernel and clearing it anew.
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+}
 
 int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std::optional<cli::Console>& console) {
   const auto say = [&](const std::string& message) {
@@ -47,6 +54,7 @@ int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std:
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_memory();
   const cli::StopOnSignal signals;
   CLI::App app(kAbout, "airtruth");
   app.set_version_flag("--version", std::string("airtruth ") + kVersion);

@@ -7,19 +7,7 @@
 namespace airtruth::image {
 namespace {
 
-std::uint8_t code(float value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
-
-Ycc ycc_at(const Picture& picture, int x, int y) {
-  Ycc ycc;
-  ycc.y = picture.planes[0].row(y)[x];
-  if (picture.plane_count == 3) {
-    const int cx = x >> log2_chroma_width(picture.colour.chroma);
-    const int cy = y >> log2_chroma_height(picture.colour.chroma);
-    ycc.cb = picture.planes[1].row(cy)[cx];
-    ycc.cr = picture.planes[2].row(cy)[cx];
-  }
-  return ycc;
-}
+std::uint8_t code(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f); }
 
 }  // namespace
 
@@ -48,31 +36,22 @@ ColourCode::ColourCode(const Colour& colour) {
   c_scale_ = limited ? 224.0f : 255.0f;
 }
 
-Rgb ColourCode::rgb_from_ycc(const Ycc& ycc) const {
-  if (rgb_planes_) {
-    return {(ycc.cr - y_offset_) / y_scale_, (ycc.y - y_offset_) / y_scale_, (ycc.cb - y_offset_) / y_scale_};
-  }
-  const float y = (ycc.y - y_offset_) / y_scale_;
-  const float r = y + 2 * (1 - kr_) * (ycc.cr - 128) / c_scale_;
-  const float b = y + 2 * (1 - kb_) * (ycc.cb - 128) / c_scale_;
-  return {r, (y - kr_ * r - kb_ * b) / kg_, b};
-}
-
-Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
-  if (rgb_planes_)
-    return {rgb[1] * y_scale_ + y_offset_, rgb[2] * y_scale_ + y_offset_, rgb[0] * y_scale_ + y_offset_};
-  const float y = kr_ * rgb[0] + kg_ * rgb[1] + kb_ * rgb[2];
-  return {y * y_scale_ + y_offset_, (rgb[2] - y) / (2 * (1 - kb_)) * c_scale_ + 128,
-          (rgb[0] - y) / (2 * (1 - kr_)) * c_scale_ + 128};
-}
-
 Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int height) {
   Rgb8 result = make_rgb8(width, height);
   const ColourCode colour_code(picture.colour);
+  const int sx = log2_chroma_width(picture.colour.chroma);
+  const int sy = log2_chroma_height(picture.colour.chroma);
+  const bool grey = picture.plane_count == 1;
   for (int y = std::max(0, -y0); y < std::min(height, picture.height - y0); ++y) {
+    const std::uint8_t* luma = picture.planes[0].row(y0 + y) + x0;
+    const std::uint8_t* cb = grey ? nullptr : picture.planes[1].row((y0 + y) >> sy);
+    const std::uint8_t* cr = grey ? nullptr : picture.planes[2].row((y0 + y) >> sy);
     for (int x = std::max(0, -x0); x < std::min(width, picture.width - x0); ++x) {
-      const Rgb rgb = colour_code.rgb_from_ycc(ycc_at(picture, x0 + x, y0 + y));
-      for (std::size_t c = 0; c < 3; ++c) result.at(x, y)[c] = code(rgb[c] * 255.0f);
+      Ycc ycc{static_cast<float>(luma[x]), 128, 128};
+      if (!grey) ycc.cb = cb[(x0 + x) >> sx], ycc.cr = cr[(x0 + x) >> sx];
+      const Rgb rgb = colour_code.rgb_from_ycc(ycc);
+      std::uint8_t* target = result.at(x, y);
+      for (std::size_t c = 0; c < 3; ++c) target[c] = code(rgb[c] * 255.0f);
     }
   }
   return result;

@@ -37,6 +37,24 @@ class ColourCode {
   float y_scale_ = 0, y_offset_ = 0, c_scale_ = 0;
 };
 
+inline Rgb ColourCode::rgb_from_ycc(const Ycc& ycc) const {
+  if (rgb_planes_) {
+    return {(ycc.cr - y_offset_) / y_scale_, (ycc.y - y_offset_) / y_scale_, (ycc.cb - y_offset_) / y_scale_};
+  }
+  const float y = (ycc.y - y_offset_) / y_scale_;
+  const float r = y + 2 * (1 - kr_) * (ycc.cr - 128) / c_scale_;
+  const float b = y + 2 * (1 - kb_) * (ycc.cb - 128) / c_scale_;
+  return {r, (y - kr_ * r - kb_ * b) / kg_, b};
+}
+
+inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
+  if (rgb_planes_)
+    return {rgb[1] * y_scale_ + y_offset_, rgb[2] * y_scale_ + y_offset_, rgb[0] * y_scale_ + y_offset_};
+  const float y = kr_ * rgb[0] + kg_ * rgb[1] + kb_ * rgb[2];
+  return {y * y_scale_ + y_offset_, (rgb[2] - y) / (2 * (1 - kb_)) * c_scale_ + 128,
+          (rgb[0] - y) / (2 * (1 - kr_)) * c_scale_ + 128};
+}
+
 // The whole picture as packed sRGB, chroma held over its block, for previews and stills.
 Rgb8 rgb8_from_picture(const Picture& picture);
 

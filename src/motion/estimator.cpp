@@ -15,6 +15,7 @@ namespace airtruth::motion {
 namespace {
 
 constexpr int kPyramidLevels = 4;
+constexpr int kBackLevels = 1;         // the way back starts where the corner was: the fine levels say enough
 constexpr int kWindowPx = 15;
 constexpr int kGrid = 8;               // corners are spread over kGrid x kGrid cells
 constexpr double kMinKeptShare = 0.5;  // of a key frame's corners, before a new key frame is made
@@ -157,7 +158,7 @@ bool Estimator::Impl::track(const Pyramid& now,
                            found_back,
                            unused,
                            window,
-                           kPyramidLevels,
+                           kBackLevels,
                            enough,
                            cv::OPTFLOW_USE_INITIAL_FLOW,
                            1e-4);

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "aircraft/mesh.h"
@@ -60,6 +62,8 @@ struct Options {
   // Samples: 1 draft, 2, 3 (default: alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px
   // of size, 1/40 above), 4, 5 (the oracle: 4,096 rays a pixel everywhere).
   int quality = 3;
+  // Once asked to stop, render returns soon; what it returns is then unfinished and to be dropped.
+  std::stop_token stop = {};
 };
 
 // `search` boxes (one per instance, in frame pixels, not clipped; empty: not in view) say where an

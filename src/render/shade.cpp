@@ -36,8 +36,7 @@ Texel bilinear(const aircraft::Texture& texture, std::size_t index, float u, flo
   return result;
 }
 
-// Trilinear (Williams 1983). Several samples fall in a pixel, so each takes a quarter of a pixel's
-// width.
+// Trilinear (Williams 1983).
 Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
   const auto part = static_cast<std::size_t>(hit.part);
@@ -49,7 +48,7 @@ Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const Eigen::Vector2f uv =
       (1 - hit.u - hit.v) * mesh.uvs[a] + hit.u * mesh.uvs[b] + hit.v * mesh.uvs[c];
   if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return {1, 1, 1, 1};
-  const float texels = 0.25f * footprint_m * placed.model->texels_per_m[part][hit.triangle];
+  const float texels = footprint_m * placed.model->texels_per_m[part][hit.triangle];
   const float deepest = static_cast<float>(texture.levels.size() - 1);
   const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
   const auto low = static_cast<std::size_t>(level);
@@ -86,7 +85,9 @@ bool in_shadow(const Placed& placed, const Eigen::Vector3f& point_in_body) {
 
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
-  const auto& triangle = mesh.parts[static_cast<std::size_t>(hit.part)].triangles[hit.triangle];
+  const auto part = static_cast<std::size_t>(hit.part);
+  if (placed.model->opaque[part][hit.triangle] != 0) return 1;
+  const auto& triangle = mesh.parts[part].triangles[hit.triangle];
   const aircraft::Material& material = mesh.materials[triangle.material];
   const bool textured = material.texture >= 0 &&
                         mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
@@ -128,7 +129,12 @@ Shaded shade(const Placed& placed,
     // Normalised so that a shinier surface is smaller and brighter, not brighter alone.
     glint = (exponent + 8) / 25.0f * std::pow(std::max(0.0f, normal.dot(half)), exponent) * sun;
   }
-  const Texel texel = texel_at(placed, hit, footprint_m);
+  Texel texel = texel_at(placed, hit, footprint_m);
+  // A coarse level mixes in the holes beside an opaque triangle's own texels.
+  if (placed.model->opaque[part][hit.triangle] != 0 && texel[3] > 0 && texel[3] < 1) {
+    const float alpha = texel[3];
+    for (float& channel : texel) channel = std::min(1.0f, channel / alpha);
+  }
   Shaded result;
   result.alpha = material.opacity * texel[3];
   if (result.alpha >= 0.996f) result.alpha = 1;

@@ -6,18 +6,21 @@
 #include "backdrop/backdrop.h"
 #include "base/error.h"
 #include "composite/chroma_key.h"
+#include "sequence/stopwatch.h"
 
 namespace airtruth::sequence {
 namespace {
 
 class Matte : public Painter {
  public:
-  Matte(const scene::Scene& scene, const World& world, const image::Mask* mask)
-      : scene_(scene), world_(world), mask_(mask) {}
+  Matte(const scene::Scene& scene, const World& world, const image::Mask* mask, std::stop_token stop)
+      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
 
   Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
     Painted painted;
-    painted.layer = render_layer(scene_, world_, moment, ambient);
+    const Stopwatch rendering;
+    painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
+    painted.render_s = rendering.seconds();
     if (!painted.layer.empty())
       painted.visible = composite::composite_matte(picture, painted.layer, {.own_aircraft = mask_});
     return painted;
@@ -27,12 +30,13 @@ class Matte : public Painter {
   const scene::Scene& scene_;
   const World& world_;
   const image::Mask* mask_;
+  std::stop_token stop_;
 };
 
 class ChromaKey : public Painter {
  public:
   ChromaKey(const scene::Scene& scene, const World& world, const image::Mask* mask, const Options& options)
-      : scene_(scene), world_(world), mask_(mask) {
+      : scene_(scene), world_(world), mask_(mask), stop_(options.stop) {
     if (!std::holds_alternative<lens::Pinhole>(world.lens.model()))
       throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole alone; the lens is ") +
                       world.lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
@@ -46,7 +50,9 @@ class ChromaKey : public Painter {
 
   Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
     Painted painted;
-    painted.layer = render_layer(scene_, world_, moment, ambient);
+    const Stopwatch rendering;
+    painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
+    painted.render_s = rendering.seconds();
     const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
     std::vector<backdrop::Instance> instances;
     for (std::size_t i = 0; i < world_.actors.size(); ++i) {
@@ -72,6 +78,7 @@ class ChromaKey : public Painter {
   const scene::Scene& scene_;
   const World& world_;
   const image::Mask* mask_;
+  std::stop_token stop_;
   std::unique_ptr<backdrop::Backdrop> backdrop_;
 };
 
@@ -116,8 +123,8 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
 
 }  // namespace
 
-image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment,
-                          const Ambient& ambient) {
+image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient,
+                          const std::stop_token& stop) {
   const render::View view{&world.lens, moment.sight.cam_from_world.inverse(),
                           moment.sight.frame_from_nominal.inverse(), world.lens.size().width,
                           world.lens.size().height};
@@ -132,13 +139,13 @@ image::Layer render_layer(const scene::Scene& scene, const World& world, const M
     instances.push_back(instance);
   }
   if (!any) return {};
-  return render::render(view, light, instances, moment.search, {.quality = scene.render.quality});
+  return render::render(view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
                                       const Options& options) {
   if (scene.composite.method == "chroma-key") return std::make_unique<ChromaKey>(scene, world, mask, options);
-  return std::make_unique<Matte>(scene, world, mask);
+  return std::make_unique<Matte>(scene, world, mask, options.stop);
 }
 
 }  // namespace airtruth::sequence

@@ -18,6 +18,7 @@ namespace airtruth::sequence {
 struct Painted {
   image::Layer layer;                         // what the ray tracer drew (for chroma-key: what it would draw)
   std::vector<composite::Visible> visible;    // per intruder; empty where none is in view
+  double render_s = 0;                        // of the time that painting took, the ray tracer's
 };
 
 class Painter {
@@ -31,7 +32,8 @@ class Painter {
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
                                       const Options& options);
 
-// The layer of one moment, as the matte uses it.
-image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient);
+// The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
+image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient,
+                          const std::stop_token& stop = {});
 
 }  // namespace airtruth::sequence

@@ -7,7 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
 #include <cmath>
 #include <memory>
 
@@ -18,6 +18,7 @@
 #include "sequence/outputs.h"
 #include "sequence/paint.h"
 #include "sequence/staging.h"
+#include "sequence/stopwatch.h"
 #include "sequence/world.h"
 #include "video/still.h"
 
@@ -65,7 +66,7 @@ class Run {
   }
 
   Summary run() {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch running;
     run_pipeline();
     if (options_.stop.stop_requested()) throw Interrupted();
     motion_.store();
@@ -74,7 +75,8 @@ class Run {
     outputs_->finish(inputs(), summary_);
     outputs_.reset();
     staged_.commit();
-    summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary_.seconds = running.seconds();
+    summary_.stages = {clocks_.read, clocks_.move, clocks_.render, clocks_.composite, clocks_.write};
     return summary_;
   }
 
@@ -114,6 +116,7 @@ class Run {
 
   WorkPtr read() {
     if (options_.stop.stop_requested()) return nullptr;
+    const Timed timed(clocks_.read);
     auto frame = reader_.next();
     if (!frame) return nullptr;
     auto work = std::make_shared<Work>();
@@ -122,13 +125,16 @@ class Run {
   }
 
   void move(Work& work) {
+    const Timed timed(clocks_.move);
     work.motion = motion_.next(work.frame);
     work.moment = moment_at(world_, work.frame.time_s, work.motion.frame_from_reference);
     work.ambient = ambient_.next(work.frame.picture, around_intruders(work.moment));
   }
 
-  void paint(Work& work) const {
+  void paint(Work& work) {
+    const Stopwatch painting;
     const Painted painted = painter_->paint(work.frame.picture, work.moment, work.ambient);
+    clocks_.render += painted.render_s;
     annotation::Frame& truth = work.truth;
     truth.frame = work.frame.index;
     truth.time_s = work.frame.time_s;
@@ -138,9 +144,11 @@ class Run {
     truth.frame_from_reference = work.motion.frame_from_reference;
     truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
     truth.intruders = truth_of(world_, work.moment, painted.layer, painted.visible);
+    clocks_.composite += painting.seconds() - painted.render_s;
   }
 
   void write(const Work& work) {
+    const Timed timed(clocks_.write);
     outputs_->write(work.frame, work.truth);
     ++summary_.frames;
     last_time_s_ = work.frame.time_s;
@@ -257,6 +265,9 @@ class Run {
   Summary summary_;
   double last_time_s_ = 0;
   mutable std::int64_t total_ = 0;
+  struct {
+    std::atomic<double> read = 0, move = 0, render = 0, composite = 0, write = 0;
+  } clocks_;
 };
 
 }  // namespace

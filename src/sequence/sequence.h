@@ -33,13 +33,24 @@ struct Options {
   std::stop_token stop;
 };
 
+// Where the time of a run went: seconds inside each stage, summed over its frames. The stages overlap, so that their
+// sum is more than the wall time. The codecs' own threads are not in it, only the wait for them.
+struct StageSeconds {
+  double read = 0;       // decode
+  double move = 0;       // the camera's motion, the light around the intruder, where everything is
+  double render = 0;     // the intruder's rays
+  double composite = 0;  // into the picture, and its truth
+  double write = 0;      // encode, truth.jsonl, preview
+};
+
 struct Summary {
   fs::path folder;                    // <out>/<name>
   std::int64_t frames = 0;
   std::int64_t frames_visible = 0;    // at least one intruder visible
   std::int64_t frames_bridged = 0;    // motion not measured
   std::int64_t frames_damaged = 0;
-  double seconds = 0;
+  double seconds = 0;                 // of the frames: without opening the inputs and loading the aircraft
+  StageSeconds stages;
   bool motion_from_cache = false;
 };
 

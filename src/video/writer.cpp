@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <thread>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -175,9 +174,7 @@ void Writer::State::open_codec() {
   codec->chroma_sample_location = stored.siting == image::Siting::kCenter    ? AVCHROMA_LOC_CENTER
                                   : stored.siting == image::Siting::kTopLeft ? AVCHROMA_LOC_TOPLEFT
                                                                              : AVCHROMA_LOC_LEFT;
-  codec->thread_count = options.threads > 0
-                            ? options.threads
-                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  codec->thread_count = std::max(0, options.threads);  // 0: as many as the encoder likes
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0)
     codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

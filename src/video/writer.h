@@ -27,7 +27,7 @@ struct WriterOptions {
   int quality = 18;  // H.264: CRF 0..51; MJPEG: qscale 1..31 is derived from the same scale;
                      // lossless: ignored
   std::string preset = "veryfast";  // x264's speed against size
-  int threads = 0;                  // 0 = one per core
+  int threads = 0;                  // 0: as many as the encoder likes
 };
 
 // Writes pictures of one size and colour with their time stamps, tagged with the colour they have.
