@@ -22,6 +22,7 @@ void add_aircraft(CLI::App& app, Context& context);
 void add_overlay(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
+void add_evision(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli

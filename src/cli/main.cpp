@@ -78,5 +78,6 @@ int main(int argc, char** argv) {
   cli::add_motion(app, context);
   cli::add_aircraft(app, context);
   cli::add_synth(app, context);
+  cli::add_evision(app, context);
   return run(app, argc, argv, options, console);
 }
