@@ -9,7 +9,7 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kEstimatorVersion = 2;  // raise it whenever the estimator's numbers change
+constexpr int kEstimatorVersion = 3;  // raise it whenever the estimator's numbers change
 
 }  // namespace
 

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int kPyramidLevels = 4;
 constexpr int kBackLevels = 1;         // the way back starts where the corner was: the fine levels say enough
-constexpr int kWindowPx = 15;
+constexpr int kWindowPx = 13;
 constexpr int kGrid = 8;               // corners are spread over kGrid x kGrid cells
-constexpr double kMinKeptShare = 0.5;  // of a key frame's corners, before a new key frame is made
+constexpr double kMinKeptShare = 0.4;  // of a key frame's corners, before a new key frame is made
 constexpr int kPatience = 15;          // bridged frames in a row before tracking starts anew
 constexpr int kMaskMarginPx = 9;       // corners keep this far from the own aircraft
 constexpr double kCutShare =
@@ -143,7 +143,7 @@ bool Estimator::Impl::track(const Pyramid& now,
                             std::vector<cv::Point2f>& moved) const {
   if (now_corners.empty()) return false;
   const cv::Size window(kWindowPx, kWindowPx);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.01);
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.03);
   std::vector<cv::Point2f> forward;
   std::vector<cv::Point2f> back = now_corners;
   std::vector<unsigned char> found;

@@ -43,7 +43,7 @@ struct FrameMotion {
 enum class Reference { kFirstFrame, kSmoothed };
 
 struct Options {
-  int max_corners = 400;
+  int max_corners = 320;
   double min_corner_distance_px = 0;  // 0: chosen from the image's size
   double forward_backward_px = 0.5;   // largest disagreement of a track with its own way back
   double ransac_px = 1.0;
