@@ -2,9 +2,11 @@
 #include "video/libav.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
+#include "geometry/transform.h"
 
 namespace airtruth::video {
 namespace {
@@ -104,6 +106,44 @@ std::optional<Layout> layout_of(AVPixelFormat format) {
   return layout;
 }
 
+AVPixelFormat plain_kin(AVPixelFormat format) {
+  const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(format);
+  if (d == nullptr || layout_of(format)) return AV_PIX_FMT_NONE;
+  if ((d->flags & (AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT)) != 0 ||
+      sws_isSupportedInput(format) == 0)
+    return AV_PIX_FMT_NONE;
+  const bool one_bit = format == AV_PIX_FMT_MONOBLACK || format == AV_PIX_FMT_MONOWHITE;
+  if (format == AV_PIX_FMT_PAL8 || (d->flags & AV_PIX_FMT_FLAG_RGB) != 0) return AV_PIX_FMT_RGB24;
+  return one_bit || d->nb_components <= 2 ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_NONE;
+}
+
+FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
+  struct FreeScaler {
+    void operator()(SwsContext* p) const { sws_freeContext(p); }
+  };
+  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_alloc_context());
+  FramePtr result(av_frame_alloc());
+  check(scaler != nullptr && result != nullptr, "memory is at hand");
+  av_opt_set_int(scaler.get(), "srcw", frame.width, 0);
+  av_opt_set_int(scaler.get(), "srch", frame.height, 0);
+  av_opt_set_int(scaler.get(), "src_format", frame.format, 0);
+  av_opt_set_int(scaler.get(), "dstw", frame.width, 0);
+  av_opt_set_int(scaler.get(), "dsth", frame.height, 0);
+  av_opt_set_int(scaler.get(), "dst_format", format, 0);
+  av_opt_set_int(scaler.get(), "src_range", 1, 0);
+  av_opt_set_int(scaler.get(), "dst_range", 1, 0);
+  av_opt_set_int(scaler.get(), "sws_flags", SWS_POINT | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, 0);
+  av_opt_set(scaler.get(), "sws_dither", "none", 0);
+  check(sws_init_context(scaler.get(), nullptr, nullptr) >= 0, "libswscale knows what it said it knows");
+  av_frame_copy_props(result.get(), &frame);
+  result->format = format;
+  result->width = frame.width;
+  result->height = frame.height;
+  check(av_frame_get_buffer(result.get(), 0) >= 0, "memory is at hand");
+  sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, result->data, result->linesize);
+  return result;
+}
+
 image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed) {
   *guessed = false;
   switch (space) {
@@ -153,6 +193,32 @@ Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colo
   return picture;
 }
 
+Orientation orientation_of(const std::int32_t* m) {
+  // x' = a x + c y, y' = b x + d y, with y down.
+  double a = m[0];
+  double b = m[1];
+  const double c = m[3];
+  const double d = m[4];
+  Orientation result;
+  const double area = a * d - b * c;
+  if (area == 0) return result;
+  result.mirrored = area < 0;
+  if (result.mirrored) a = -a, b = -b;
+  const int quarter = static_cast<int>(std::lround(std::atan2(b, a) / (kPi / 2)));
+  result.clockwise_deg = ((quarter % 4) + 4) % 4 * 90;
+  return result;
+}
+
+namespace {
+
+Picture mirrored(Picture picture) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
+    image::Plane& plane = picture.planes[i];
+    for (int y = 0; y < plane.height; ++y) std::reverse(plane.row(y), plane.row(y) + plane.width);
+  }
+  return picture;
+}
+
 Picture rotated(Picture picture, int clockwise_deg) {
   if (clockwise_deg == 0) return picture;
   Picture turned;
@@ -167,6 +233,13 @@ Picture rotated(Picture picture, int clockwise_deg) {
     if (picture.colour.chroma == Chroma::k440) turned.colour.chroma = Chroma::k422;
   }
   return turned;
+}
+
+}  // namespace
+
+Picture oriented(Picture picture, const Orientation& orientation) {
+  if (orientation.mirrored) picture = mirrored(std::move(picture));
+  return rotated(std::move(picture), orientation.clockwise_deg);
 }
 
 }  // namespace airtruth::video

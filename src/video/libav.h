@@ -8,6 +8,7 @@ extern "C" {
 #include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
 }
 
 #include <memory>
@@ -53,13 +54,27 @@ struct Layout {
 };
 std::optional<Layout> layout_of(AVPixelFormat format);
 
+// The nearest format that layout_of knows, for those that stills come in: palettes, 1 bit, 16-bit grey and RGB (grey with
+// alpha too). AV_PIX_FMT_NONE for others.
+AVPixelFormat plain_kin(AVPixelFormat format);
+// A frame in that format (libswscale, no dithering); alpha is dropped.
+FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
+
 image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed);
 AVColorSpace space_of(image::Matrix matrix);
 
 // Samples of a decoded frame as a Picture of that colour (which fits the layout).
 image::Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour);
 
-// Turned clockwise by 0, 90, 180 or 270 degrees; every sample kept.
-image::Picture rotated(image::Picture picture, int clockwise_deg);
+// How a stored picture is to be shown: left and right exchanged first, then turned.
+struct Orientation {
+  bool mirrored = false;
+  int clockwise_deg = 0;  // 0, 90, 180, 270: the nearest
+};
+// From a display matrix of libav's (nine numbers, 16.16); as it is where the matrix is nonsense.
+Orientation orientation_of(const std::int32_t* display_matrix);
+
+// The picture so turned; every sample kept.
+image::Picture oriented(image::Picture picture, const Orientation& orientation);
 
 }  // namespace airtruth::video

@@ -15,14 +15,9 @@ namespace {
 
 Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
 
-int rotation_of(const AVStream& stream) {
+Orientation orientation_of_stream(const AVStream& stream) {
   const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
-  if (matrix == nullptr) return 0;
-  const double counter_clockwise =
-      av_display_rotation_get(reinterpret_cast<const std::int32_t*>(matrix));
-  if (!std::isfinite(counter_clockwise)) return 0;
-  const int quarter = static_cast<int>(std::lround(-counter_clockwise / 90.0));
-  return ((quarter % 4) + 4) % 4 * 90;
+  return matrix == nullptr ? Orientation{} : orientation_of(reinterpret_cast<const std::int32_t*>(matrix));
 }
 
 image::Siting siting_of(AVChromaLocation location) {
@@ -49,6 +44,7 @@ struct Reader::State {
   int stream_index = -1;
   StreamInfo info;
   Layout layout;
+  Orientation orientation;
   image::Colour coded_colour;
   bool draining = false;
   bool finished = false;
@@ -72,6 +68,7 @@ struct Reader::State {
   bool decode_one();  // fills `frame`; false at the end
   std::optional<Frame> next();
   Frame to_frame();
+  void make_plain();
 };
 
 void Reader::State::open_input() {
@@ -132,7 +129,8 @@ void Reader::State::open_codec() {
   info.variable_frame_rate =
       stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
       std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
-  info.rotation_deg = rotation_of(stream);
+  orientation = orientation_of_stream(stream);
+  info.rotation_deg = orientation.clockwise_deg;
   info.frame_count_estimate = stream.nb_frames;
   if (info.frame_count_estimate <= 0 && input->duration > 0)
     info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
@@ -228,6 +226,16 @@ Frame Reader::State::to_frame() {
   return result;
 }
 
+// Stills come in formats that no plane of ours holds.
+void Reader::State::make_plain() {
+  const auto format = static_cast<AVPixelFormat>(frame->format);
+  const AVPixelFormat plain = plain_kin(format);
+  if (plain == AV_PIX_FMT_NONE) return;
+  if (decoded == 0 && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
+    airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
+  frame = in_format(*frame, plain);
+}
+
 std::optional<Frame> Reader::State::next() {
   if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
   for (;;) {
@@ -236,6 +244,7 @@ std::optional<Frame> Reader::State::next() {
       return std::nullopt;
     }
     Frame result = to_frame();
+    make_plain();
     if (decoded++ == 0) describe(*frame);
     if (decoded <= options.first_frame) continue;
     const bool same =
@@ -248,7 +257,7 @@ std::optional<Frame> Reader::State::next() {
     if (!first_pts) first_pts = result.pts;
     result.index = handed++;
     result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
-    result.picture = rotated(picture_of(*frame, layout, coded_colour), info.rotation_deg);
+    result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
     return result;
   }
 }

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/seed.h"
+#include "video/libav.h"
 #include "video/reader.h"
 #include "video/still.h"
 #include "video/writer.h"
@@ -348,6 +349,73 @@ TEST_F(Video, DecodesTheRealClipsAsFfmpegDoes) {
     ffmpeg("-i '" + path.string() + "' -frames:v 20 -f rawvideo -fps_mode passthrough real.bin");
     Reader reader(path, {.frame_count = 20});
     EXPECT_TRUE(all_planes(reader) == read_file(folder_ / "real.bin")) << clip;
+  }
+}
+
+// Largest difference of two lots of samples; 256 where their numbers differ.
+int worst(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return 256;
+  int most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])));
+  return most;
+}
+
+// The planes G, B, R of packed R, G, B.
+std::string planar(const std::string& packed) {
+  std::string result;
+  for (const std::size_t channel : {1u, 2u, 0u})
+    for (std::size_t i = channel; i < packed.size(); i += 3) result += packed[i];
+  return result;
+}
+
+// Each of them against what ffmpeg makes of it, to one step: sixteen bits may be rounded either way.
+TEST_F(Video, ReadsStillsOfEveryDepth) {
+  const std::string source = "-f lavfi -i testsrc=size=46x30:rate=1 -frames:v 1 ";
+  for (const char* format : {"pal8", "rgb48be", "rgba64be", "rgba", "rgb24"}) {
+    ffmpeg(source + "-pix_fmt " + format + " still.png");
+    Reader reader(folder_ / "still.png");
+    ASSERT_EQ(reader.info().colour.matrix, image::Matrix::kRgb) << format;
+    EXPECT_LE(worst(all_planes(reader), planar(raw("still.png", "rgb24"))), 1) << format;
+  }
+  for (const char* format : {"monob", "gray16be", "gray", "ya8"}) {
+    ffmpeg(source + "-pix_fmt " + format + " still.png");
+    Reader reader(folder_ / "still.png");
+    ASSERT_EQ(reader.info().colour.chroma, image::Chroma::kNone) << format;
+    EXPECT_LE(worst(all_planes(reader), raw("still.png", "gray")), 1) << format;
+  }
+}
+
+TEST_F(Video, AMaskOfOneBitIsAMask) {
+  ffmpeg("-f lavfi -i color=white:size=16x8,drawbox=x=0:y=0:w=4:h=8:color=black:t=fill -frames:v 1 -pix_fmt monob m.png");
+  const image::Mask mask = read_mask(folder_ / "m.png", 16, 8);
+  EXPECT_FALSE(mask.is_free(3, 4));
+  EXPECT_TRUE(mask.is_free(4, 4));
+}
+
+// Where the matrix sends the unit vectors says where the picture's corners must go.
+TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
+  for (const double degrees : {0.0, 90.0, 180.0, 270.0}) {
+    for (const bool flip : {false, true}) {
+      std::array<std::int32_t, 9> matrix{};
+      av_display_rotation_set(matrix.data(), degrees);
+      av_display_matrix_flip(matrix.data(), flip ? 1 : 0, 0);
+      image::Picture picture = image::make_picture(3, 2, {image::Chroma::kNone});
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x) picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(10 * y + x);
+      const image::Picture shown = oriented(picture.clone(), orientation_of(matrix.data()));
+      const bool turned = matrix[0] == 0;
+      ASSERT_EQ(shown.width, turned ? 2 : 3);
+      // A step in the shown picture along where the matrix sends x (y) is a step along x (y) in the stored one.
+      const auto sign = [](std::int32_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
+      const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]), cy = sign(matrix[4]);
+      const int x0 = (ax < 0 || cx < 0) ? shown.width - 1 : 0;
+      const int y0 = (ay < 0 || cy < 0) ? shown.height - 1 : 0;
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+          EXPECT_EQ(shown.planes[0].row(y0 + ay * x + cy * y)[x0 + ax * x + cx * y], 10 * y + x)
+              << degrees << (flip ? " flipped" : "");
+    }
   }
 }
 
