@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <malloc.h>
 
+#include <algorithm>
 #include <exception>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "base/version.h"
 #include "cli/commands.h"
 
@@ -26,6 +30,17 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
+// CLI11 would answer an unknown word with --help as if nothing were wrong.
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  const auto nearest = nearest_spelling(argv[1], names);
+  throw Error("there is no command '" + std::string(argv[1]) + "'" + (nearest ? "; did you mean '" + *nearest + "'?" : "") +
+              " (see --help)");
+}
+
 int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std::optional<cli::Console>& console) {
   const auto say = [&](const std::string& message) {
     if (!console) console.emplace(options);
@@ -33,6 +48,7 @@ int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std:
     console->error(message);
   };
   try {
+    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {

@@ -58,6 +58,8 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 }  // namespace
 
+constexpr int kCaptionPx = 360;  // that the long caption needs
+
 image::Rgb8 closeup(const Closeup& what, const annotation::Frame& truth, const PixelBox& area, int zoom) {
   check(what.background != nullptr && what.result != nullptr && zoom > 0, "a closeup has its pictures");
   const image::Rgb8 before = image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
@@ -69,7 +71,7 @@ image::Rgb8 closeup(const Closeup& what, const annotation::Frame& truth, const P
   const std::array<std::string, 3> names = {
       fmt::format("background  frame {}", truth.frame),
       what.layer != nullptr ? "alpha" : "difference x4",
-      fmt::format("result  {}x  green visible, amber exact", zoom)};
+      panel >= kCaptionPx ? fmt::format("result  {}x  green visible, amber exact", zoom) : fmt::format("result  {}x", zoom)};
   const std::array<const image::Rgb8*, 3> pictures = {&before, &middle, &after};
   for (std::size_t i = 0; i < 3; ++i) {
     const int x = kGapPx + static_cast<int>(i) * (panel + kGapPx);

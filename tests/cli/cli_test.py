@@ -109,7 +109,7 @@ class Case(unittest.TestCase):
 
 class Help(Case):
     def test_every_subcommand_explains_itself(self):
-        for words in (["demo"], ["render"], ["overlay"], ["inspect"], ["motion"], ["synth"], ["aircraft"],
+        for words in (["demo"], ["render"], ["overlay"], ["inspect"], ["motion"], ["synth"], ["aircraft"], ["evision"],
                       ["aircraft", "list"], ["aircraft", "show"]):
             result = run(*words, "--help")
             self.assertEqual(result.returncode, 0, words)
@@ -119,7 +119,8 @@ class Help(Case):
     def test_version_and_no_arguments(self):
         self.assertRegex(run("--version").stdout, r"^airtruth \d+\.\d+")
         self.assert_refused(run())
-        self.assert_refused(run("rendre"))
+        self.assert_refused(run("rendre"), "did you mean 'render'")
+        self.assert_refused(run("rendre", "--help"), "did you mean 'render'")
         self.assert_refused(run("render", "scene.toml", "--no-such-option"))
 
 
