@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Includes go strictly downward: src/LAYERS gives each module its rank, and every include is read here.
-#include <gtest/gtest.h>
-
+// Includes go strictly downward: src/LAYERS gives each module its rank, and every include is read
+// here.
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
 #include <sstream>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -57,9 +58,11 @@ TEST(Layers, IncludesGoStrictlyDownward) {
       if (!std::regex_search(line, match, include)) continue;
       const std::string other = match[1];
       ++checked;
-      ASSERT_TRUE(rank_of.contains(other)) << entry.path() << ":" << number << ": unknown module " << other;
+      ASSERT_TRUE(rank_of.contains(other))
+          << entry.path() << ":" << number << ": unknown module " << other;
       if (other == module) continue;
-      EXPECT_GT(rank_of.at(module), rank_of.at(other)) << entry.path() << ":" << number << " includes " << match[1];
+      EXPECT_GT(rank_of.at(module), rank_of.at(other))
+          << entry.path() << ":" << number << " includes " << match[1];
     }
   }
   EXPECT_GT(checked, 50);

@@ -12,6 +12,7 @@ int main() {
   for (double t = 0; t <= path.end_s(); t += 1) {
     const auto state = path.at(t);
     const double range_m = state->position_in_world.norm();
-    std::printf("%4.1f s  %6.1f m  %5.2f px for 11 m\n", t, range_m, lens.focal_px() * 11 / range_m);
+    std::printf(
+        "%4.1f s  %6.1f m  %5.2f px for 11 m\n", t, range_m, lens.focal_px() * 11 / range_m);
   }
 }

@@ -10,8 +10,9 @@
 #include "geometry/box.h"
 #include "geometry/transform.h"
 
-// The paper's own annotation format (section II.E): OpenCV FileStorage XML with, per frame_N (N from 1),
-// CameraPos_m, IntruderPos_m, Distance_m and IntruderRect_pix (x, y, width, height; 0,0,0,0 where there is no box).
+// The paper's own annotation format (section II.E): OpenCV FileStorage XML with, per frame_N (N
+// from 1), CameraPos_m, IntruderPos_m, Distance_m and IntruderRect_pix (x, y, width, height;
+// 0,0,0,0 where there is no box).
 namespace airtruth::annotation {
 
 struct EvisionFrame {
@@ -22,12 +23,15 @@ struct EvisionFrame {
   PixelBox rect_px{};  // all zero: none
 };
 
-// Text in the form of the published files (but for the last digit of exact halves: docs/formats/evision.md). Where an intruder is not in the world (its path has not begun or is
-// over) the frame is written with the camera's position, an empty box, and no IntruderPos_m or Distance_m.
+// Text in the form of the published files (but for the last digit of exact halves:
+// docs/formats/evision.md). Where an intruder is not in the world (its path has not begun or is
+// over) the frame is written with the camera's position, an empty box, and no IntruderPos_m or
+// Distance_m.
 std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
                         const std::vector<Vector3>& camera_ned_m);
 
-// Reads the published files and ours. Errors carry file and line. Frames without IntruderPos_m come back empty.
+// Reads the published files and ours. Errors carry file and line. Frames without IntruderPos_m come
+// back empty.
 struct Evision {
   std::vector<std::optional<EvisionFrame>> frames;
   std::vector<Vector3> camera_ned_m;

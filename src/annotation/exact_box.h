@@ -18,7 +18,8 @@ struct Sight {
   Homography frame_from_nominal = Homography::Identity();
 };
 
-// Where a point of the world is seen; empty behind the camera, beyond the lens's field, or beyond H's horizon.
+// Where a point of the world is seen; empty behind the camera, beyond the lens's field, or beyond
+// H's horizon.
 std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world);
 
 // The silhouette points of a mesh, prepared once per aircraft.
@@ -28,12 +29,16 @@ struct Silhouette {
 };
 
 struct ExactBox {
-  std::optional<Box> box;       // of the points that have a pixel; empty when none has
-  bool partly_unseen = false;   // some points have no pixel (behind the camera or beyond the lens's field)
+  std::optional<Box> box;  // of the points that have a pixel; empty when none has
+  bool partly_unseen =
+      false;  // some points have no pixel (behind the camera or beyond the lens's field)
 };
 
-// Bounding box of the projected silhouette, in frame pixels, not clipped. Never looks at rendered pixels: it is the
-// other of the two roads to the box.
-ExactBox exact_box(const Sight& sight, const Silhouette& silhouette, const Rigid& world_from_body, double time_s);
+// Bounding box of the projected silhouette, in frame pixels, not clipped. Never looks at rendered
+// pixels: it is the other of the two roads to the box.
+ExactBox exact_box(const Sight& sight,
+                   const Silhouette& silhouette,
+                   const Rigid& world_from_body,
+                   double time_s);
 
 }  // namespace airtruth::annotation

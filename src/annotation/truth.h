@@ -17,7 +17,8 @@ namespace airtruth::annotation {
 
 enum class State {
   kVisible,  // at least one pixel of the frame shows it
-  kHidden,   // in the view, but not one pixel shows it: behind the own aircraft or another intruder, or too faint
+  kHidden,  // in the view, but not one pixel shows it: behind the own aircraft or another intruder,
+            // or too faint
   kOutside,  // in front of the camera, outside the image (or outside the lens's valid field)
   kBehind,   // behind the camera
   kEnded,    // its path has not begun or is over: it is not in the world
@@ -26,24 +27,25 @@ const char* name(State state);  // "visible", ...
 
 struct Intruder {
   std::string id;
-  std::string aircraft;         // catalogue name or file name of the model
+  std::string aircraft;  // catalogue name or file name of the model
   State state = State::kEnded;
   // All empty when the state is kEnded.
   std::optional<Vector3> position_ned_m;
   std::optional<Vector3> velocity_ned_mps;
   std::optional<YawPitchRoll> attitude_yaw_pitch_roll_deg;
-  std::optional<Vector3> position_in_cam_m;   // nominal camera: x right, y down, z forward
+  std::optional<Vector3> position_in_cam_m;  // nominal camera: x right, y down, z forward
   std::optional<double> range_m;
-  std::optional<double> range_rate_mps;       // negative: closing
-  std::optional<double> azimuth_deg;          // from the boresight, right positive
-  std::optional<double> elevation_deg;        // from the boresight, up positive
-  // From projected geometry, not clipped by the frame; empty behind the camera or beyond the lens's field.
+  std::optional<double> range_rate_mps;  // negative: closing
+  std::optional<double> azimuth_deg;     // from the boresight, right positive
+  std::optional<double> elevation_deg;   // from the boresight, up positive
+  // From projected geometry, not clipped by the frame; empty behind the camera or beyond the lens's
+  // field.
   std::optional<Box> exact_box_px;
   // From the pixels that changed; present exactly when the state is kVisible.
   std::optional<PixelBox> visible_box_px;
-  std::int64_t visible_area_px = 0;           // pixels that changed
-  double alpha_sum_px = 0;                    // coverage seen, in pixels
-  double hidden_by_own_aircraft = 0;          // fractions of its silhouette, 0..1
+  std::int64_t visible_area_px = 0;   // pixels that changed
+  double alpha_sum_px = 0;            // coverage seen, in pixels
+  double hidden_by_own_aircraft = 0;  // fractions of its silhouette, 0..1
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
 };
@@ -51,7 +53,7 @@ struct Intruder {
 struct Frame {
   std::int64_t frame = 0;
   double time_s = 0;
-  bool damaged = false;                       // the background's frame came from corrupt data
+  bool damaged = false;  // the background's frame came from corrupt data
   Vector3 camera_position_ned_m = Vector3::Zero();
   YawPitchRoll camera_attitude_yaw_pitch_roll_deg;
   Homography frame_from_reference = Homography::Identity();
@@ -68,8 +70,8 @@ struct LensFacts {
   int height = 0;
 };
 
-// One line of truth.jsonl, without the newline. Numbers are shortest round-trip; NaN and infinity never appear
-// (check()).
+// One line of truth.jsonl, without the newline. Numbers are shortest round-trip; NaN and infinity
+// never appear (check()).
 std::string jsonl_line(const Frame& frame, const LensFacts& lens);
 
 // Reads it back. Errors carry file and line.

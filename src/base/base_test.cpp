@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <fstream>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -101,12 +101,14 @@ TEST_F(Files, ReadRefusesWhatIsMissingAFolderOrTooLarge) {
 TEST(Utf8, FindsTheFirstFault) {
   EXPECT_EQ(utf8_fault("plain, \xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80"), std::string_view::npos);
   EXPECT_EQ(utf8_fault("ab\xff"), 2u);
-  EXPECT_EQ(utf8_fault("\xc0\xaf"), 0u);          // overlong
-  EXPECT_EQ(utf8_fault("a\xed\xa0\x80"), 1u);     // surrogate
-  EXPECT_EQ(utf8_fault("a\xe2\x82"), 1u);         // cut short
+  EXPECT_EQ(utf8_fault("\xc0\xaf"), 0u);       // overlong
+  EXPECT_EQ(utf8_fault("a\xed\xa0\x80"), 1u);  // surrogate
+  EXPECT_EQ(utf8_fault("a\xe2\x82"), 1u);      // cut short
 }
 
-TEST(PartPath, HidesAndKeepsTheExtension) { EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4")); }
+TEST(PartPath, HidesAndKeepsTheExtension) {
+  EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
+}
 
 }  // namespace
 }  // namespace airtruth

@@ -17,8 +17,9 @@ struct Where {
 // "scene.toml:12:3", "scene.toml", or "" where nothing is known.
 std::string to_string(const Where& where);
 
-// Something is wrong with what the user gave, or with the world around the program (a full disk). The message
-// is one line: what was found, what was expected, and what to do. The program ends with exit code 2.
+// Something is wrong with what the user gave, or with the world around the program (a full disk).
+// The message is one line: what was found, what was expected, and what to do. The program ends with
+// exit code 2.
 //
 //   throw Error("focal_px is -480; expected two positive numbers", {"scene.toml", 12, 3});
 //   what() == "scene.toml:12:3: focal_px is -480; expected two positive numbers"

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/files.h"
 
-#include <openssl/evp.h>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/error.h"
 
@@ -60,7 +59,8 @@ void read_blocks(const fs::path& path, Take take) {
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    check(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1, "SHA-256 is there");
+    check(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1,
+          "SHA-256 is there");
   }
   void add(std::string_view bytes) { EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()); }
   std::string hex() {
@@ -97,7 +97,8 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
     return bytes.size() <= max_bytes;
   });
   if (bytes.size() > max_bytes)
-    throw Error("is larger than " + std::to_string(max_bytes) + " bytes; expected a smaller file", {path.string()});
+    throw Error("is larger than " + std::to_string(max_bytes) + " bytes; expected a smaller file",
+                {path.string()});
   return bytes;
 }
 
@@ -110,7 +111,8 @@ void write_file(const fs::path& path, std::string_view bytes) {
     if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
       throw Error("cannot write: " + reason(), {path.string()});
     if (!file.close()) throw Error("cannot write: " + reason(), {path.string()});
-    if (::rename(part.c_str(), path.c_str()) != 0) throw Error("cannot create: " + reason(), {path.string()});
+    if (::rename(part.c_str(), path.c_str()) != 0)
+      throw Error("cannot create: " + reason(), {path.string()});
   } catch (...) {
     ::unlink(part.c_str());
     throw;
@@ -142,8 +144,11 @@ std::size_t utf8_fault(std::string_view text) {
   std::size_t i = 0;
   while (i < text.size()) {
     const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead < 0x80 ? 1 : lead >= 0xc2 && lead < 0xe0 ? 2 : (lead & 0xf0) == 0xe0 ? 3
-                               : lead >= 0xf0 && lead < 0xf5 ? 4 : 0;
+    const std::size_t length = lead < 0x80                   ? 1
+                               : lead >= 0xc2 && lead < 0xe0 ? 2
+                               : (lead & 0xf0) == 0xe0       ? 3
+                               : lead >= 0xf0 && lead < 0xf5 ? 4
+                                                             : 0;
     if (length == 0 || i + length > text.size()) return i;
     std::uint32_t code = length == 1 ? lead : lead & (0x7fu >> length);
     for (std::size_t k = 1; k < length; ++k) {
@@ -159,7 +164,8 @@ std::size_t utf8_fault(std::string_view text) {
 }
 
 fs::path cache_folder() {
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/') return fs::path(xdg) / "airtruth";
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')
+    return fs::path(xdg) / "airtruth";
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
     return fs::path(home) / ".cache" / "airtruth";
   return fs::temp_directory_path() / ("airtruth-cache-" + std::to_string(::getuid()));

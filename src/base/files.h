@@ -10,15 +10,17 @@ namespace airtruth {
 
 namespace fs = std::filesystem;
 
-// Whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than max_bytes.
+// Whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than
+// max_bytes.
 std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{1} << 30);
 
-// Writes beside the final name, flushes to disk and renames, so that `path` holds either what it held before or
-// all of `bytes`. Throws Error where that fails (folder missing, no permission, disk full) and leaves nothing.
+// Writes beside the final name, flushes to disk and renames, so that `path` holds either what it
+// held before or all of `bytes`. Throws Error where that fails (folder missing, no permission, disk
+// full) and leaves nothing.
 void write_file(const fs::path& path, std::string_view bytes);
 
-// The name under which a file is written before it is renamed: "dir/a.mp4" -> "dir/.a.part.mp4" (the extension
-// stays, since encoders choose by it).
+// The name under which a file is written before it is renamed: "dir/a.mp4" -> "dir/.a.part.mp4"
+// (the extension stays, since encoders choose by it).
 fs::path part_path(const fs::path& path);
 
 // SHA-256 of a file's content or of bytes, 64 lower-case hex digits (as sha256sum prints it).

@@ -35,7 +35,8 @@ Random Seed::stream(std::string_view name) const { return stream(name, 0); }
 Random Seed::stream(std::string_view name, std::uint64_t index) const {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
   for (const unsigned char c : name) hash = (hash ^ c) * 0x100000001b3ULL;
-  return Random(mixed(mixed(value_ + 0x9e3779b97f4a7c15ULL) ^ hash) + index * 0xd1342543de82ef95ULL);
+  return Random(mixed(mixed(value_ + 0x9e3779b97f4a7c15ULL) ^ hash) +
+                index * 0xd1342543de82ef95ULL);
 }
 
 }  // namespace airtruth

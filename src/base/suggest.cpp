@@ -10,8 +10,9 @@ namespace {
 
 std::string lower(std::string_view text) {
   std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
   return result;
 }
 
@@ -41,18 +42,23 @@ int edit_distance(std::string_view a, std::string_view b) {
   return without_case + (with_case - without_case) / 3;
 }
 
-std::vector<std::string> nearest_spellings(std::string_view word, std::span<const std::string> candidates,
+std::vector<std::string> nearest_spellings(std::string_view word,
+                                           std::span<const std::string> candidates,
                                            std::size_t count) {
   std::vector<std::pair<int, std::string>> ranked;
   ranked.reserve(candidates.size());
-  for (const auto& candidate : candidates) ranked.emplace_back(edit_distance(word, candidate), candidate);
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& candidate : candidates)
+    ranked.emplace_back(edit_distance(word, candidate), candidate);
+  std::stable_sort(
+      ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> result;
-  for (std::size_t i = 0; i < std::min(count, ranked.size()); ++i) result.push_back(ranked[i].second);
+  for (std::size_t i = 0; i < std::min(count, ranked.size()); ++i)
+    result.push_back(ranked[i].second);
   return result;
 }
 
-std::optional<std::string> nearest_spelling(std::string_view word, std::span<const std::string> candidates) {
+std::optional<std::string> nearest_spelling(std::string_view word,
+                                            std::span<const std::string> candidates) {
   const auto best = nearest_spellings(word, candidates, 1);
   if (best.empty()) return std::nullopt;
   const int limit = std::max<int>(2, static_cast<int>(word.size()) / 3);

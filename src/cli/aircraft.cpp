@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/catalogue.h"
+#include <memory>
 
 #include <fmt/format.h>
-
-#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "aircraft/catalogue.h"
 #include "base/error.h"
 #include "cli/commands.h"
 #include "sequence/portrait.h"
@@ -23,8 +22,10 @@ void list(const std::string& filter, Context& context) {
     ++shown;
   }
   if (shown == 0)
-    throw Error(fmt::format("no name among {} aircraft contains '{}'; `airtruth aircraft list` shows all",
-                            entries.size(), filter));
+    throw Error(
+        fmt::format("no name among {} aircraft contains '{}'; `airtruth aircraft list` shows all",
+                    entries.size(),
+                    filter));
   (void)context;
 }
 
@@ -53,9 +54,15 @@ void show(const ShowArguments& arguments, Context& context) {
       aircraft::load_aircraft(arguments.name, load_options(arguments), console.warn());
   const aircraft::Extents size = aircraft::extents(loaded.mesh);
   const auto liveries = aircraft::liveries(arguments.name);
-  console.result(fmt::format("{}\n  length {:.2f} m, span {:.2f} m, height {:.2f} m\n  {} triangles, {} textures, {}",
-                             loaded.name, size.length_m(), size.span_m(), size.height_m(),
-                             loaded.mesh.triangle_count(), loaded.mesh.textures.size(), loaded.file.string()));
+  console.result(fmt::format(
+      "{}\n  length {:.2f} m, span {:.2f} m, height {:.2f} m\n  {} triangles, {} textures, {}",
+      loaded.name,
+      size.length_m(),
+      size.span_m(),
+      size.height_m(),
+      loaded.mesh.triangle_count(),
+      loaded.mesh.textures.size(),
+      loaded.file.string()));
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
   for (const std::string& livery : liveries) console.result("    " + livery);
   if (arguments.out.empty()) return;
@@ -68,17 +75,25 @@ void show(const ShowArguments& arguments, Context& context) {
 void add_aircraft(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand("aircraft", "The aircraft that can be flown");
   command->require_subcommand(1);
-  auto* list_command = command->add_subcommand("list", "Print the name of every aircraft, a line each");
+  auto* list_command =
+      command->add_subcommand("list", "Print the name of every aircraft, a line each");
   auto filter = std::make_shared<std::string>();
   list_command->add_option("FILTER", *filter, "Show only names that contain this");
   list_command->callback([filter, &context] { list(*filter, context); });
-  auto* show_command = command->add_subcommand("show", "Size and liveries of one aircraft, and a contact sheet of pictures");
+  auto* show_command = command->add_subcommand(
+      "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
   auto arguments = std::make_shared<ShowArguments>();
-  show_command->add_option("NAME", arguments->name, "A name of `aircraft list`, or a model file (.ac .obj .3ds .osgt)")->required();
+  show_command
+      ->add_option("NAME",
+                   arguments->name,
+                   "A name of `aircraft list`, or a model file (.ac .obj .3ds .osgt)")
+      ->required();
   show_command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
-  show_command->add_option("--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
+  show_command->add_option(
+      "--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
   show_command->add_option("--up", arguments->up, "Model file: its axis that is up");
-  show_command->add_option("--scale", arguments->scale, "Model file: metres per unit")->check(CLI::PositiveNumber);
+  show_command->add_option("--scale", arguments->scale, "Model file: metres per unit")
+      ->check(CLI::PositiveNumber);
   show_command->callback([arguments, &context] { show(*arguments, context); });
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <stop_token>
 
+#include <CLI/CLI.hpp>
+
 #include "cli/console.h"
 
-// One function a subcommand: it declares its arguments on `app` and returns what to do once they are parsed.
+// One function a subcommand: it declares its arguments on `app` and returns what to do once they
+// are parsed.
 namespace airtruth::cli {
 
 struct Context {

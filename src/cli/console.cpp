@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/console.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <thread>
 
 namespace airtruth::cli {
 namespace {
@@ -22,12 +22,14 @@ double seconds(Clock::duration duration) { return std::chrono::duration<double>(
 
 std::string time_left(double left_s) {
   const auto whole = static_cast<std::int64_t>(left_s + 0.5);
-  return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+  return whole < 60 ? fmt::format("{} s", whole)
+                    : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
 }  // namespace
 
-Console::Console(const ConsoleOptions& options) : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Console::Console(const ConsoleOptions& options)
+    : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 void Console::progress(const std::string& stage, std::int64_t done, std::int64_t total) {
   if (options_.quiet || (!terminal_ && !options_.json_log)) return;
@@ -37,18 +39,25 @@ void Console::progress(const std::string& stage, std::int64_t done, std::int64_t
     start_ = last_ = now;
     return;
   }
-  if (now - last_ < (options_.json_log ? Clock::duration(kJsonEvery) : Clock::duration(kRedraw)) && done != total) return;
+  if (now - last_ < (options_.json_log ? Clock::duration(kJsonEvery) : Clock::duration(kRedraw)) &&
+      done != total)
+    return;
   last_ = now;
   const double rate = static_cast<double>(done - 1) / std::max(1e-9, seconds(now - start_));
   if (options_.json_log) {
-    nlohmann::ordered_json line = {{"level", "progress"}, {"stage", stage}, {"done", done}, {"total", total}, {"per_s", rate}};
+    nlohmann::ordered_json line = {
+        {"level", "progress"}, {"stage", stage}, {"done", done}, {"total", total}, {"per_s", rate}};
     fmt::print(stderr, "{}\n", line.dump());
     return;
   }
-  std::string text = total > 0 ? fmt::format("{}  {}/{} ({:.0f} %)", stage, done, total, 100.0 * double(done) / double(total))
-                               : fmt::format("{}  {}", stage, done);
+  std::string text =
+      total > 0
+          ? fmt::format(
+                "{}  {}/{} ({:.0f} %)", stage, done, total, 100.0 * double(done) / double(total))
+          : fmt::format("{}  {}", stage, done);
   text += fmt::format("  {:.1f} frames/s", rate);
-  if (total > done && rate > 0) text += fmt::format("  {} left", time_left(static_cast<double>(total - done) / rate));
+  if (total > done && rate > 0)
+    text += fmt::format("  {} left", time_left(static_cast<double>(total - done) / rate));
   fmt::print(stderr, "\r\x1b[K{}", text);
   std::fflush(stderr);
   line_open_ = true;

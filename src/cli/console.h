@@ -8,8 +8,8 @@
 
 #include "base/log.h"
 
-// All that the program prints goes through here. Results go to standard output; warnings, errors and progress to
-// standard error. Progress is drawn on a terminal alone and is quiet in a pipe.
+// All that the program prints goes through here. Results go to standard output; warnings, errors
+// and progress to standard error. Progress is drawn on a terminal alone and is quiet in a pipe.
 namespace airtruth::cli {
 
 struct ConsoleOptions {
@@ -41,8 +41,9 @@ class Console {
   std::chrono::steady_clock::time_point last_;
 };
 
-// Turns SIGINT and SIGTERM into a request to stop; a second signal ends the process at once with 130.
-// Made first thing in main, before any thread, so that every thread inherits the blocked signals.
+// Turns SIGINT and SIGTERM into a request to stop; a second signal ends the process at once with
+// 130. Made first thing in main, before any thread, so that every thread inherits the blocked
+// signals.
 class StopOnSignal {
  public:
   StopOnSignal();

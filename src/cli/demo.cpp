@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include "sequence/demo.h"
 
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "scene/scene.h"
-#include "sequence/demo.h"
 #include "sequence/finished.h"
 #include "sequence/sequence.h"
 
@@ -25,23 +26,30 @@ void demo(Arguments arguments, Context& context) {
   arguments.demo.overwrite = arguments.overwrite;
   arguments.demo.stop = context.stop;
   arguments.demo.warn = console.warn();
-  arguments.demo.progress = [&console](const std::string& stage, std::int64_t done, std::int64_t total) {
+  arguments.demo.progress = [&console](
+                                const std::string& stage, std::int64_t done, std::int64_t total) {
     console.progress(stage, done, total);
   };
   const sequence::Summary summary = sequence::make_demo(arguments.out, arguments.demo);
-  console.result(fmt::format("{}: {} frames, an intruder visible in {}", summary.folder.string(), summary.frames,
+  console.result(fmt::format("{}: {} frames, an intruder visible in {}",
+                             summary.folder.string(),
+                             summary.frames,
                              summary.frames_visible));
 }
 
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("demo", "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
+  auto* command = app.add_subcommand(
+      "demo", "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
-  command->add_option("--frames", arguments->demo.frame_count, "Length")->check(CLI::Range(2, 100000))->capture_default_str();
-  command->add_flag("--overwrite", arguments->overwrite, "Replace the folder's files where they exist");
+  command->add_option("--frames", arguments->demo.frame_count, "Length")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_flag(
+      "--overwrite", arguments->overwrite, "Replace the folder's files where they exist");
   command->callback([arguments, &context] { demo(*arguments, context); });
 }
 

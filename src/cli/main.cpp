@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <malloc.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <malloc.h>
 
 #include "base/error.h"
 #include "base/suggest.h"
@@ -21,10 +21,12 @@ constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;
 
 constexpr const char* kAbout =
-    "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the exact truth of\n"
+    "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the "
+    "exact truth of\n"
     "every frame. Start with `airtruth demo`, then `airtruth render SCENE.toml --out DIR`.";
 
-// Frames come and go all the time: keep their memory, in place of taking it from the kernel and clearing it anew.
+// Frames come and go all the time: keep their memory, in place of taking it from the kernel and
+// clearing it anew.
 void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
@@ -37,11 +39,15 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
   const auto nearest = nearest_spelling(argv[1], names);
-  throw Error("there is no command '" + std::string(argv[1]) + "'" + (nearest ? "; did you mean '" + *nearest + "'?" : "") +
-              " (see --help)");
+  throw Error("there is no command '" + std::string(argv[1]) + "'" +
+              (nearest ? "; did you mean '" + *nearest + "'?" : "") + " (see --help)");
 }
 
-int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std::optional<cli::Console>& console) {
+int run(CLI::App& app,
+        int argc,
+        char** argv,
+        cli::ConsoleOptions& options,
+        std::optional<cli::Console>& console) {
   const auto say = [&](const std::string& message) {
     if (!console) console.emplace(options);
     console->end_progress();
@@ -62,7 +68,8 @@ int run(CLI::App& app, int argc, char** argv, cli::ConsoleOptions& options, std:
     say(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    say(std::string(error.what()) + " (this is a fault of airtruth; please report it with what you ran)");
+    say(std::string(error.what()) +
+        " (this is a fault of airtruth; please report it with what you ran)");
     return kOurFailure;
   }
 }

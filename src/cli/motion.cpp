@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/motion.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 #include <optional>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -29,7 +29,9 @@ struct Arguments {
   bool overwrite = false;
 };
 
-void stabilise(const Arguments& arguments, const std::vector<motion::FrameMotion>& all, Context& context) {
+void stabilise(const Arguments& arguments,
+               const std::vector<motion::FrameMotion>& all,
+               Context& context) {
   const fs::path out = arguments.stabilised;
   const std::string extension = out.extension().string();
   video::WriterOptions options;
@@ -41,7 +43,8 @@ void stabilise(const Arguments& arguments, const std::vector<motion::FrameMotion
     const auto& motion = all[static_cast<std::size_t>(frame->index)];
     frame->picture = motion::stabilised(frame->picture, motion.frame_from_reference);
     writer.write(*frame);
-    context.console().progress("stabilising", frame->index + 1, static_cast<std::int64_t>(all.size()));
+    context.console().progress(
+        "stabilising", frame->index + 1, static_cast<std::int64_t>(all.size()));
   }
   writer.finish();
 }
@@ -58,15 +61,18 @@ void measure(const Arguments& arguments, Context& context) {
   motion::Options options;
   options.smoothing_s = arguments.smoothing_s;
   auto all = sequence::measure_motion(
-      reader, options, mask ? &*mask : nullptr, context.stop,
-      [&](std::int64_t done) { console.progress("measuring", done, info.frame_count_estimate); });
+      reader, options, mask ? &*mask : nullptr, context.stop, [&](std::int64_t done) {
+        console.progress("measuring", done, info.frame_count_estimate);
+      });
   if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
   write_file(arguments.out, motion::csv_from_motion(all));
-  if (!arguments.plot.empty()) video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
+  if (!arguments.plot.empty())
+    video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, context);
   std::size_t measured = 0;
   for (const auto& frame : all)
-    measured += frame.state == motion::State::kMeasured || frame.state == motion::State::kReference ? 1 : 0;
+    measured +=
+        frame.state == motion::State::kMeasured || frame.state == motion::State::kReference ? 1 : 0;
   console.result(fmt::format("{}: {} frames, measured in {}", arguments.out, all.size(), measured));
 }
 
@@ -76,14 +82,23 @@ void add_motion(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand("motion", "Measure how a video's camera moved");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("VIDEO", arguments->video, "The video")->required();
-  command->add_option("-o,--out", arguments->out, "Table to write: frame,time_s,h11..h33,inliers,rms_px,state (.csv)")->required();
+  command
+      ->add_option("-o,--out",
+                   arguments->out,
+                   "Table to write: frame,time_s,h11..h33,inliers,rms_px,state (.csv)")
+      ->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
-  command->add_option("--stabilised", arguments->stabilised, "Write a steadied copy of the video here");
+  command->add_option(
+      "--stabilised", arguments->stabilised, "Write a steadied copy of the video here");
   command->add_option("--reference", arguments->reference, "first_frame or smoothed")
-      ->check(CLI::IsMember({"first_frame", "smoothed"}))->capture_default_str();
-  command->add_option("--smoothing", arguments->smoothing_s, "smoothed: width of the window in seconds")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::IsMember({"first_frame", "smoothed"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--smoothing", arguments->smoothing_s, "smoothed: width of the window in seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
   command->callback([arguments, &context] { measure(*arguments, context); });
 }

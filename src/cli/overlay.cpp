@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -24,7 +24,9 @@ void overlay(const OverlayArguments& arguments, Context& context) {
   sequence::OverlayOptions options;
   options.overwrite = arguments.overwrite;
   options.stop = context.stop;
-  options.progress = [&console](std::int64_t done, std::int64_t total) { console.progress("overlay", done, total); };
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("overlay", done, total);
+  };
   sequence::write_overlay(finished, arguments.out, options);
   console.result(fmt::format("{}: {} frames", arguments.out, finished.truth.frames.size()));
 }
@@ -42,29 +44,38 @@ void inspect(const InspectArguments& arguments, Context& context) {
   if (fs::exists(arguments.out) && !arguments.overwrite)
     throw Error("exists already; give --overwrite to replace it", {arguments.out});
   const sequence::Finished finished = sequence::open_finished(arguments.folder);
-  video::write_still(arguments.out, sequence::inspect(finished, arguments.frame, arguments.intruder, arguments.zoom));
+  video::write_still(
+      arguments.out,
+      sequence::inspect(finished, arguments.frame, arguments.intruder, arguments.zoom));
   context.console().result(arguments.out);
 }
 
 }  // namespace
 
 void add_overlay(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("overlay", "Burn boxes, range and id into a copy of a finished video");
+  auto* command =
+      app.add_subcommand("overlay", "Burn boxes, range and id into a copy of a finished video");
   auto arguments = std::make_shared<OverlayArguments>();
-  command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")->required();
-  command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")->required();
+  command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
+      ->required();
+  command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")
+      ->required();
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
   command->callback([arguments, &context] { overlay(*arguments, context); });
 }
 
 void add_inspect(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("inspect", "Show a frame's intruder: background, alpha and result, enlarged");
+  auto* command = app.add_subcommand(
+      "inspect", "Show a frame's intruder: background, alpha and result, enlarged");
   auto arguments = std::make_shared<InspectArguments>();
-  command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")->required();
+  command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
+      ->required();
   command->add_option("--frame", arguments->frame, "Frame number, from 0")->required();
-  command->add_option("-o,--out", arguments->out, "The picture to write (.png or .jpg)")->required();
+  command->add_option("-o,--out", arguments->out, "The picture to write (.png or .jpg)")
+      ->required();
   command->add_option("--intruder", arguments->intruder, "Its id (default: the first in view)");
-  command->add_option("--zoom", arguments->zoom, "Enlargement (default 8)")->check(CLI::Range(1, 64));
+  command->add_option("--zoom", arguments->zoom, "Enlargement (default 8)")
+      ->check(CLI::Range(1, 64));
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
   command->callback([arguments, &context] { inspect(*arguments, context); });
 }

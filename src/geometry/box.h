@@ -8,7 +8,8 @@
 
 namespace airtruth {
 
-// An axis-parallel box in floating pixel coordinates (docs/conventions.md): it covers [x, x + width).
+// An axis-parallel box in floating pixel coordinates (docs/conventions.md): it covers [x, x +
+// width).
 struct Box {
   double x = 0;
   double y = 0;
@@ -30,7 +31,9 @@ struct PixelBox {
 
   int right() const { return x + width; }
   int bottom() const { return y + height; }
-  bool contains(int px, int py) const { return px >= x && py >= y && px < right() && py < bottom(); }
+  bool contains(int px, int py) const {
+    return px >= x && py >= y && px < right() && py < bottom();
+  }
   bool operator==(const PixelBox&) const = default;
 };
 

@@ -8,9 +8,12 @@ namespace airtruth {
 namespace {
 
 TEST(Attitude, AxesPointWhereTheConventionsSay) {
-  EXPECT_TRUE((world_from_body({90, 0, 0}) * Vector3::UnitX()).isApprox(Vector3::UnitY()));    // nose east
-  EXPECT_TRUE((world_from_body({0, 90, 0}) * Vector3::UnitX()).isApprox(-Vector3::UnitZ()));   // nose up
-  EXPECT_TRUE((world_from_body({0, 0, 90}) * Vector3::UnitY()).isApprox(Vector3::UnitZ()));    // right wing down
+  EXPECT_TRUE(
+      (world_from_body({90, 0, 0}) * Vector3::UnitX()).isApprox(Vector3::UnitY()));  // nose east
+  EXPECT_TRUE(
+      (world_from_body({0, 90, 0}) * Vector3::UnitX()).isApprox(-Vector3::UnitZ()));  // nose up
+  EXPECT_TRUE((world_from_body({0, 0, 90}) * Vector3::UnitY())
+                  .isApprox(Vector3::UnitZ()));  // right wing down
 }
 
 TEST(Attitude, RoundTripsOverAGrid) {

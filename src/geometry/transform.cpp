@@ -18,7 +18,9 @@ YawPitchRoll yaw_pitch_roll(const Quaternion& world_from_body) {
   const double sin_pitch = std::clamp(-r(2, 0), -1.0, 1.0);
   if (std::abs(sin_pitch) > 1.0 - 1e-12)
     return {degrees(std::atan2(-r(0, 1), r(1, 1))), std::copysign(90.0, sin_pitch), 0.0};
-  return {degrees(std::atan2(r(1, 0), r(0, 0))), degrees(std::asin(sin_pitch)), degrees(std::atan2(r(2, 1), r(2, 2)))};
+  return {degrees(std::atan2(r(1, 0), r(0, 0))),
+          degrees(std::asin(sin_pitch)),
+          degrees(std::atan2(r(2, 1), r(2, 2)))};
 }
 
 Quaternion cam_from_body() {

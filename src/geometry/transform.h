@@ -5,7 +5,8 @@
 
 // Rotations and rigid motions. Frames, axes and units: docs/conventions.md.
 //
-//   world  north-east-down, metres       body  x forward, y right, z down      cam  x right, y down, z forward
+//   world  north-east-down, metres       body  x forward, y right, z down      cam  x right, y
+//   down, z forward
 //
 // Names say both ends: p_in_cam = cam_from_world * p_in_world.
 namespace airtruth {
@@ -33,7 +34,8 @@ struct Rigid {
   }
 };
 
-// Attitude in files: yaw from north towards east, then pitch nose up, then roll right wing down; degrees.
+// Attitude in files: yaw from north towards east, then pitch nose up, then roll right wing down;
+// degrees.
 struct YawPitchRoll {
   double yaw_deg = 0;
   double pitch_deg = 0;
@@ -44,13 +46,15 @@ struct YawPitchRoll {
 //   world_from_body({90, 0, 0}) * (1, 0, 0) = (0, 1, 0): the nose points east.
 Quaternion world_from_body(const YawPitchRoll& attitude);
 
-// The inverse. Yaw in (-180, 180], pitch in [-90, 90], roll in (-180, 180]; at pitch = +-90 roll is 0.
+// The inverse. Yaw in (-180, 180], pitch in [-90, 90], roll in (-180, 180]; at pitch = +-90 roll is
+// 0.
 YawPitchRoll yaw_pitch_roll(const Quaternion& world_from_body);
 
 // A camera that looks along the body's x axis: x_cam = y_body, y_cam = z_body, z_cam = x_body.
 Quaternion cam_from_body();
 
-// A pixel's place. (0, 0) is the top-left corner of the image, the first pixel's centre is (0.5, 0.5).
+// A pixel's place. (0, 0) is the top-left corner of the image, the first pixel's centre is (0.5,
+// 0.5).
 using Pixel = Eigen::Vector2d;
 
 // A 3x3 projective map of pixel to pixel, b_from_a.

@@ -7,7 +7,9 @@
 namespace airtruth::image {
 namespace {
 
-std::uint8_t code(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f); }
+std::uint8_t code(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
+}
 
 }  // namespace
 
@@ -25,9 +27,15 @@ ColourCode::ColourCode(const Colour& colour) {
   rgb_planes_ = colour.matrix == Matrix::kRgb;
   switch (colour.matrix) {  // ITU-T H.273, table 4
     case Matrix::kRgb:
-    case Matrix::kBt601: kr_ = 0.299f, kb_ = 0.114f; break;
-    case Matrix::kBt709: kr_ = 0.2126f, kb_ = 0.0722f; break;
-    case Matrix::kBt2020: kr_ = 0.2627f, kb_ = 0.0593f; break;
+    case Matrix::kBt601:
+      kr_ = 0.299f, kb_ = 0.114f;
+      break;
+    case Matrix::kBt709:
+      kr_ = 0.2126f, kb_ = 0.0722f;
+      break;
+    case Matrix::kBt2020:
+      kr_ = 0.2627f, kb_ = 0.0593f;
+      break;
   }
   kg_ = 1 - kr_ - kb_;
   const bool limited = colour.range == Range::kLimited;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "image/colour.h"
 #include "image/picture.h"
@@ -20,11 +20,13 @@ TEST(Srgb, MatchesTheStandardAtKnownPoints) {
 
 // Rec. BT.709-6, item 3.4: red at 100 % in 8-bit limited range is Y 63, Cb 102, Cr 240.
 TEST(ColourCode, RedIsWhereTheStandardPutsIt) {
-  const Ycc red = ColourCode({Chroma::k444, Matrix::kBt709, Range::kLimited}).ycc_from_rgb({1, 0, 0});
+  const Ycc red =
+      ColourCode({Chroma::k444, Matrix::kBt709, Range::kLimited}).ycc_from_rgb({1, 0, 0});
   EXPECT_EQ(std::lround(red.y), 63);
   EXPECT_EQ(std::lround(red.cb), 102);
   EXPECT_EQ(std::lround(red.cr), 240);
-  const Ycc red601 = ColourCode({Chroma::k444, Matrix::kBt601, Range::kFull}).ycc_from_rgb({1, 0, 0});
+  const Ycc red601 =
+      ColourCode({Chroma::k444, Matrix::kBt601, Range::kFull}).ycc_from_rgb({1, 0, 0});
   EXPECT_EQ(std::lround(red601.y), 76);  // JFIF
   EXPECT_EQ(std::lround(red601.cb), 85);
   EXPECT_NEAR(red601.cr, 255.5f, 1e-3f);
@@ -69,9 +71,11 @@ TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
     rgb.samples[static_cast<std::size_t>(3 * i + 1)] = static_cast<std::uint8_t>(255 - i);
     rgb.samples[static_cast<std::size_t>(3 * i + 2)] = static_cast<std::uint8_t>((7 * i) % 256);
   }
-  const Rgb8 back = rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kBt601, Range::kFull}));
+  const Rgb8 back =
+      rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kBt601, Range::kFull}));
   for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_NEAR(back.samples[i], rgb.samples[i], 1);
-  const Rgb8 exact = rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kRgb, Range::kFull}));
+  const Rgb8 exact =
+      rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kRgb, Range::kFull}));
   for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
 }
 

@@ -8,8 +8,9 @@
 
 namespace airtruth::image {
 
-// What `render` makes and `composite` eats: the intruders of one frame on a patch of the frame's own pixel grid.
-// Colour is linear light with sRGB primaries, premultiplied by coverage: result = colour + (1 - alpha) * background.
+// What `render` makes and `composite` eats: the intruders of one frame on a patch of the frame's
+// own pixel grid. Colour is linear light with sRGB primaries, premultiplied by coverage: result =
+// colour + (1 - alpha) * background.
 struct LayerPixel {
   float red = 0;
   float green = 0;
@@ -18,13 +19,17 @@ struct LayerPixel {
 };
 
 struct Layer {
-  PixelBox patch{};                  // where in the frame; width == 0 means an empty layer
-  std::vector<LayerPixel> pixels;    // patch.height rows of patch.width
-  std::vector<float> depth_m;        // alpha-weighted mean distance from the camera; +inf where alpha is 0
+  PixelBox patch{};                // where in the frame; width == 0 means an empty layer
+  std::vector<LayerPixel> pixels;  // patch.height rows of patch.width
+  std::vector<float>
+      depth_m;  // alpha-weighted mean distance from the camera; +inf where alpha is 0
 
-  // Per intruder i (in the scene's order), coverage after occlusion by nearer intruders; alpha is their sum.
-  std::vector<std::vector<float>> coverage;  // [intruder][pixel]; an empty vector: nowhere in the patch
-  // Per intruder, the sum of the coverage it would have alone, over the patch and unclipped by the frame (pixels).
+  // Per intruder i (in the scene's order), coverage after occlusion by nearer intruders; alpha is
+  // their sum.
+  std::vector<std::vector<float>>
+      coverage;  // [intruder][pixel]; an empty vector: nowhere in the patch
+  // Per intruder, the sum of the coverage it would have alone, over the patch and unclipped by the
+  // frame (pixels).
   std::vector<double> area_alone_in_frame_px;
   std::vector<double> area_alone_px;  // the same, with what the frame cuts off counted too
 
@@ -35,13 +40,15 @@ struct Layer {
   }
 };
 
-// The own-aircraft mask: 1 byte a pixel, 0 = own aircraft (nothing can be seen through it), 255 = free.
+// The own-aircraft mask: 1 byte a pixel, 0 = own aircraft (nothing can be seen through it), 255 =
+// free.
 struct Mask {
   int width = 0;
   int height = 0;
   std::vector<unsigned char> free;  // width * height
   bool is_free(int x, int y) const {
-    return free[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] >= 128;
+    return free[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                static_cast<std::size_t>(x)] >= 128;
   }
 };
 

@@ -8,10 +8,19 @@
 namespace airtruth::image {
 
 // How a picture's samples stand for colour. All 8-bit.
-enum class Chroma { kNone, k420, k422, k440, k444 };      // kNone: grey
-enum class Matrix { kRgb, kBt601, kBt709, kBt2020 };      // kRgb: planes are G, B, R at full size (Chroma::k444)
-enum class Range { kLimited, kFull };                     // luma 16..235, chroma 16..240; or 0..255
-enum class Siting { kLeft, kCenter, kTopLeft };           // where a subsampled chroma sample sits (4:2:0 and 4:2:2)
+enum class Chroma { kNone, k420, k422, k440, k444 };  // kNone: grey
+enum class Matrix {
+  kRgb,
+  kBt601,
+  kBt709,
+  kBt2020
+};                                     // kRgb: planes are G, B, R at full size (Chroma::k444)
+enum class Range { kLimited, kFull };  // luma 16..235, chroma 16..240; or 0..255
+enum class Siting {
+  kLeft,
+  kCenter,
+  kTopLeft
+};  // where a subsampled chroma sample sits (4:2:0 and 4:2:2)
 
 struct Colour {
   Chroma chroma = Chroma::k420;
@@ -29,11 +38,13 @@ struct Plane {
   std::unique_ptr<std::uint8_t[]> samples;
 
   std::uint8_t* row(int y) { return samples.get() + static_cast<std::ptrdiff_t>(y) * stride; }
-  const std::uint8_t* row(int y) const { return samples.get() + static_cast<std::ptrdiff_t>(y) * stride; }
+  const std::uint8_t* row(int y) const {
+    return samples.get() + static_cast<std::ptrdiff_t>(y) * stride;
+  }
 };
 
-// A frame as its decoder left it: Y, Cb, Cr (or Y alone, or G, B, R). A chroma plane of an odd-sized picture is
-// (size + 1) / 2. Movable; copy with clone().
+// A frame as its decoder left it: Y, Cb, Cr (or Y alone, or G, B, R). A chroma plane of an
+// odd-sized picture is (size + 1) / 2. Movable; copy with clone().
 struct Picture {
   int width = 0;
   int height = 0;
@@ -59,7 +70,9 @@ struct Rgb8 {
   int width = 0;
   int height = 0;
   std::unique_ptr<std::uint8_t[]> samples;  // width * height * 3
-  std::uint8_t* at(int x, int y) { return samples.get() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x); }
+  std::uint8_t* at(int x, int y) {
+    return samples.get() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
+  }
   const std::uint8_t* at(int x, int y) const {
     return samples.get() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
   }

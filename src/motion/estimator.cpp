@@ -15,7 +15,8 @@ namespace airtruth::motion {
 namespace {
 
 constexpr int kPyramidLevels = 4;
-constexpr int kBackLevels = 1;         // the way back starts where the corner was: the fine levels say enough
+constexpr int kBackLevels =
+    1;  // the way back starts where the corner was: the fine levels say enough
 constexpr int kWindowPx = 13;
 constexpr int kGrid = 8;               // corners are spread over kGrid x kGrid cells
 constexpr double kMinKeptShare = 0.4;  // of a key frame's corners, before a new key frame is made
@@ -111,8 +112,7 @@ std::vector<cv::Point2f> Estimator::Impl::corners_of(const cv::Mat& grey) const 
   if (distance <= 0)
     distance = std::max(6.0, std::sqrt(double(width) * height / options.max_corners) * 0.35);
   std::vector<cv::Point2f> candidates;
-  cv::goodFeaturesToTrack(
-      image, candidates, 0, 0.0005, distance / scale, mask, 5);
+  cv::goodFeaturesToTrack(image, candidates, 0, 0.0005, distance / scale, mask, 5);
   const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
   std::vector<int> taken(kGrid * kGrid, 0);
   std::vector<cv::Point2f> chosen;

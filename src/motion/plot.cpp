@@ -53,7 +53,8 @@ double tidy_step(double range, int parts) {
 void shade_unmeasured(cv::Mat& canvas,
                       const std::vector<FrameMotion>& motion,
                       const cv::Rect& area) {
-  const double per_frame = double(area.width) / static_cast<double>(std::max<std::size_t>(1, motion.size()));
+  const double per_frame =
+      double(area.width) / static_cast<double>(std::max<std::size_t>(1, motion.size()));
   for (std::size_t i = 0; i < motion.size(); ++i) {
     if (motion[i].state != State::kBridged && motion[i].state != State::kCut) continue;
     const int x0 = area.x + static_cast<int>(static_cast<double>(i) * per_frame);

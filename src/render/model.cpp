@@ -71,23 +71,28 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
 
 constexpr float kOpaque = 0.996f;
 
-// How many of a texture's texels are translucent, over any rectangle (a summed-area table: Crow 1984).
+// How many of a texture's texels are translucent, over any rectangle (a summed-area table: Crow
+// 1984).
 class TranslucentTexels {
  public:
   explicit TranslucentTexels(const aircraft::Texture& texture)
-      : texture_(texture), width_(texture.levels.front().width), height_(texture.levels.front().height) {
+      : texture_(texture),
+        width_(texture.levels.front().width),
+        height_(texture.levels.front().height) {
     sums_.assign(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1), 0);
     for (int y = 0; y < height_; ++y) {
       std::uint32_t row = 0;
       for (int x = 0; x < width_; ++x) {
-        row += texture.levels.front().texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                             static_cast<std::size_t>(x)][3] < kOpaque;
+        row += texture.levels.front()
+                   .texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(x)][3] < kOpaque;
         sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + row;
       }
     }
   }
 
-  // Any among those that a bilinear look-up within the triangle reads? Yes, to be sure, where it wraps round.
+  // Any among those that a bilinear look-up within the triangle reads? Yes, to be sure, where it
+  // wraps round.
   bool any(const std::array<Eigen::Vector2f, 3>& uvs) const {
     Eigen::Vector2f low = uvs[0].cwiseMin(uvs[1]).cwiseMin(uvs[2]);
     Eigen::Vector2f high = uvs[0].cwiseMax(uvs[1]).cwiseMax(uvs[2]);
@@ -98,16 +103,18 @@ class TranslucentTexels {
     const float y0 = std::floor(low.y() * static_cast<float>(height_) - 0.5f);
     const float x1 = std::floor(high.x() * static_cast<float>(width_) - 0.5f) + 2;
     const float y1 = std::floor(high.y() * static_cast<float>(height_) - 0.5f) + 2;
-    if (!(x0 >= 0 && y0 >= 0 && x1 <= static_cast<float>(width_) && y1 <= static_cast<float>(height_)))
+    if (!(x0 >= 0 && y0 >= 0 && x1 <= static_cast<float>(width_) &&
+          y1 <= static_cast<float>(height_)))
       return sums_.back() > 0;
-    const auto [l, b, r, t] = std::array{static_cast<int>(x0), static_cast<int>(y0), static_cast<int>(x1),
-                                         static_cast<int>(y1)};
+    const auto [l, b, r, t] = std::array{
+        static_cast<int>(x0), static_cast<int>(y0), static_cast<int>(x1), static_cast<int>(y1)};
     return sums_[at(r, t)] - sums_[at(l, t)] - sums_[at(r, b)] + sums_[at(l, b)] > 0;
   }
 
  private:
   std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) +
+           static_cast<std::size_t>(x);
   }
   const aircraft::Texture& texture_;
   int width_;
@@ -115,11 +122,13 @@ class TranslucentTexels {
   std::vector<std::uint32_t> sums_;
 };
 
-// Which triangles nothing shines through. A livery's texture has holes for what is cut out elsewhere in it.
+// Which triangles nothing shines through. A livery's texture has holes for what is cut out
+// elsewhere in it.
 std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& mesh) {
   std::vector<std::unique_ptr<TranslucentTexels>> tables;
   for (const aircraft::Texture& texture : mesh.textures)
-    tables.push_back(texture.has_translucency ? std::make_unique<TranslucentTexels>(texture) : nullptr);
+    tables.push_back(texture.has_translucency ? std::make_unique<TranslucentTexels>(texture)
+                                              : nullptr);
   std::vector<std::vector<std::uint8_t>> result;
   for (const aircraft::Part& part : mesh.parts) {
     std::vector<std::uint8_t>& flags = result.emplace_back();

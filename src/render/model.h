@@ -26,7 +26,8 @@ struct Model::Impl {
   // One BVH per part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
   std::vector<std::vector<float>> texels_per_m;  // [part][triangle], 0 without a texture
-  std::vector<std::vector<std::uint8_t>> opaque;  // [part][triangle]: 1 where nothing shines through
+  std::vector<std::vector<std::uint8_t>>
+      opaque;  // [part][triangle]: 1 where nothing shines through
   Eigen::Vector3d centre_in_body{0, 0, 0};
   double radius_m = 0;  // of a sphere about the centre that holds every part at any turn
 };

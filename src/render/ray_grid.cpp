@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/ray_grid.h"
 
-#include <tbb/parallel_for.h>
-
 #include <limits>
+
+#include <tbb/parallel_for.h>
 
 namespace airtruth::render {
 
@@ -19,7 +19,8 @@ Vector3 RayGrid::direction(const View& view, const Pixel& pixel) {
   const Vector3 nominal = view.nominal_from_frame * Vector3(pixel.x(), pixel.y(), 1);
   const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!(nominal.z() > 0)) return nowhere;
-  const auto ray = view.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
+  const auto ray =
+      view.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
   return ray ? Vector3(view.world_from_cam.rotation * *ray) : nowhere;
 }
 

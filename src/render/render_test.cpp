@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-
-#include <cmath>
 
 #include "aircraft/catalogue.h"
 #include "annotation/exact_box.h"
@@ -14,17 +14,25 @@ namespace {
 constexpr int kSide = 200;
 
 lens::Lens pinhole(double focal_px) {
-  return lens::Lens(lens::Pinhole{{focal_px, focal_px}, {kSide / 2.0, kSide / 2.0}}, {kSide, kSide});
+  return lens::Lens(lens::Pinhole{{focal_px, focal_px}, {kSide / 2.0, kSide / 2.0}},
+                    {kSide, kSide});
 }
 
 // Looks north from the origin.
 View view_through(const lens::Lens& lens) {
-  return {&lens, Rigid{cam_from_body().conjugate(), Vector3::Zero()}, Homography::Identity(), kSide, kSide};
+  return {&lens,
+          Rigid{cam_from_body().conjugate(), Vector3::Zero()},
+          Homography::Identity(),
+          kSide,
+          kSide};
 }
 
-void add_quad(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corners, const aircraft::Material& material) {
+void add_quad(aircraft::Mesh& mesh,
+              const std::array<Eigen::Vector3f, 4>& corners,
+              const aircraft::Material& material) {
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  const Eigen::Vector3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  const Eigen::Vector3f normal =
+      (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   for (const auto& corner : corners) {
     mesh.positions.push_back(corner);
     mesh.normals.push_back(normal);
@@ -37,12 +45,16 @@ void add_quad(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corner
   mesh.parts[0].triangles.push_back({{base, base + 2, base + 3}, m});
 }
 
-// A square plate across the line of sight, `half` metres from its middle to its sides, at `north` metres.
+// A square plate across the line of sight, `half` metres from its middle to its sides, at `north`
+// metres.
 aircraft::Mesh plate(float half, float north, float opacity = 1) {
   aircraft::Mesh mesh;
   aircraft::Material material;
   material.opacity = opacity;
-  add_quad(mesh, {{{north, -half, -half}, {north, half, -half}, {north, half, half}, {north, -half, half}}}, material);
+  add_quad(
+      mesh,
+      {{{north, -half, -half}, {north, half, -half}, {north, half, half}, {north, -half, half}}},
+      material);
   return mesh;
 }
 
@@ -56,7 +68,8 @@ double alpha_sum(const image::Layer& layer) {
 
 Light white() { return {{-1, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.3f, 0.3f, 0.3f}, {0.1f, 0.1f, 0.1f}}; }
 
-// A plate of half-side h at distance d spans 2 f h / d pixels: its edges fall inside pixels, whose cover is exact.
+// A plate of half-side h at distance d spans 2 f h / d pixels: its edges fall inside pixels, whose
+// cover is exact.
 TEST(Render, APlateCoversWhatProjectionSays) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
@@ -75,11 +88,13 @@ TEST(Render, APlateCoversWhatProjectionSays) {
 TEST(Render, ASunlitPlateShinesAsLambertSays) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
-  // The sun stands behind the camera, square to the plate; a vertical face sees half sky, half ground.
+  // The sun stands behind the camera, square to the plate; a vertical face sees half sky, half
+  // ground.
   const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.5 + 0.2, 1e-4);
   Light aslant = white();
-  aslant.to_sun_in_world = Vector3(-1, 0, -std::sqrt(3.0)).normalized();  // 60 degrees off its normal
+  aslant.to_sun_in_world =
+      Vector3(-1, 0, -std::sqrt(3.0)).normalized();  // 60 degrees off its normal
   const image::Layer dimmer = render(view_through(lens), aslant, {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(dimmer.pixels[dimmer.index(100, 100)].red, 0.25 + 0.2, 1e-4);
 }
@@ -93,8 +108,9 @@ TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
   const lens::Lens lens = pinhole(300);
   const Model model(mesh);
   const image::Layer layer = render(view_through(lens), light, {{&model, {}, 0}}, {kAll});
-  EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.2, 1e-4);                            // in the shadow
-  EXPECT_NEAR(layer.pixels[layer.index(100, 120)].red, 0.5 * std::sqrt(0.5) + 0.2, 1e-4);     // out of it
+  EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.2, 1e-4);  // in the shadow
+  EXPECT_NEAR(
+      layer.pixels[layer.index(100, 120)].red, 0.5 * std::sqrt(0.5) + 0.2, 1e-4);  // out of it
 }
 
 TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
@@ -108,7 +124,7 @@ TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
   EXPECT_NEAR(layer.coverage[0][middle], 0.75, 1e-5);
   EXPECT_NEAR(layer.coverage[1][middle], 0.25, 1e-5);
   EXPECT_NEAR(layer.pixels[middle].red, 0.25 * 0.7 + 0.75 * 0.7, 1e-3);
-  EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);        // what it would show alone
+  EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);  // what it would show alone
   EXPECT_NEAR(layer.area_alone_px[1], 0.25 * 3600, 2);
 }
 
@@ -124,14 +140,18 @@ TEST(Render, AHomographyMovesTheLayer) {
   const image::Layer moved = render(view, white(), {{&model, {}, 0}}, {kAll});
   for (int y = 60; y < 140; ++y)
     for (int x = 60; x < 140; ++x)
-      ASSERT_NEAR(moved.pixels[moved.index(x + 7, y - 4)].alpha, still.pixels[still.index(x, y)].alpha, 1.0 / 64);
+      ASSERT_NEAR(moved.pixels[moved.index(x + 7, y - 4)].alpha,
+                  still.pixels[still.index(x, y)].alpha,
+                  1.0 / 64);
 }
 
 TEST(Render, WhatTheFrameCutsOffIsCounted) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
-  const Rigid aside{Quaternion::Identity(), Vector3(0, 100.0 / 3, 0)};  // its middle on the right border
-  const image::Layer layer = render(view_through(lens), white(), {{&model, aside, 0}}, {Box{169, 69, 62, 62}});
+  const Rigid aside{Quaternion::Identity(),
+                    Vector3(0, 100.0 / 3, 0)};  // its middle on the right border
+  const image::Layer layer =
+      render(view_through(lens), white(), {{&model, aside, 0}}, {Box{169, 69, 62, 62}});
   EXPECT_NEAR(layer.area_alone_in_frame_px[0], 1800, 5);
   EXPECT_NEAR(layer.area_alone_px[0], 3600, 80);
 }
@@ -139,7 +159,8 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
 struct Stand {
   aircraft::Aircraft aircraft;
   Model model;
-  explicit Stand(const char* name) : aircraft(aircraft::load_aircraft(name)), model(aircraft.mesh) {}
+  explicit Stand(const char* name)
+      : aircraft(aircraft::load_aircraft(name)), model(aircraft.mesh) {}
 };
 
 double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRoll& attitude) {
@@ -149,7 +170,8 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
   const double range_m = 2000 * std::max(extents.length_m(), extents.span_m()) / size_px;
   const Rigid world_from_body{airtruth::world_from_body(attitude), Vector3(range_m, 0.3, -0.2)};
   const annotation::Sight sight{&lens, view.world_from_cam.inverse(), Homography::Identity()};
-  const annotation::Silhouette silhouette{&stand.aircraft.mesh, aircraft::silhouette_points(stand.aircraft.mesh)};
+  const annotation::Silhouette silhouette{&stand.aircraft.mesh,
+                                          aircraft::silhouette_points(stand.aircraft.mesh)};
   Box box = *annotation::exact_box(sight, silhouette, world_from_body, 0).box;
   box = {box.x - 1.5, box.y - 1.5, box.width + 3, box.height + 3};
   const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};
@@ -166,7 +188,8 @@ TEST(Quality3, HoldsAlphaWithinOne64thOfTheOracleUpTo50PixelsAndOne40thAbove) {
     const Stand stand(name);
     for (const YawPitchRoll& attitude : {YawPitchRoll{90, 0, 0}, YawPitchRoll{37, 5, 12}}) {
       for (double size_px : {5.0, 20.0, 50.0})
-        EXPECT_LT(worst_against_oracle(stand, size_px, attitude), 1.0 / 64) << name << " at " << size_px << " px";
+        EXPECT_LT(worst_against_oracle(stand, size_px, attitude), 1.0 / 64)
+            << name << " at " << size_px << " px";
     }
     EXPECT_LT(worst_against_oracle(stand, 100, {37, 5, 12}), 1.0 / 40) << name;
   }
@@ -179,7 +202,8 @@ TEST(Render, OneThreadAndTwoGiveTheSameBytes) {
   std::vector<image::Layer> layers;
   for (std::size_t threads : {1u, 2u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    layers.push_back(render(view_through(lens), white(), {{&stand.model, world_from_body, 0}}, {Box{60, 60, 80, 80}}));
+    layers.push_back(render(
+        view_through(lens), white(), {{&stand.model, world_from_body, 0}}, {Box{60, 60, 80, 80}}));
   }
   ASSERT_EQ(layers[0].pixels.size(), layers[1].pixels.size());
   for (std::size_t i = 0; i < layers[0].pixels.size(); ++i) {

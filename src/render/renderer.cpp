@@ -148,8 +148,9 @@ class Refiner {
     // Where every pixel takes as many samples as an edge, rays do it all: the oracle.
     if (counts.edge == counts.base) return;
     for (const Actor& actor : actors)
-      silhouettes_.push_back(actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch)
-                                          : std::nullopt);
+      silhouettes_.push_back(
+          actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch)
+                       : std::nullopt);
   }
 
   void fill(const std::stop_token& stop) {
@@ -180,7 +181,8 @@ class Refiner {
   template <typename Body>
   void each_pixel(const std::stop_token& stop, const Body& body) {
     tbb::parallel_for(canvas_.patch.y, canvas_.patch.bottom(), [&](int y) {
-      for (int x = canvas_.patch.x; x < canvas_.patch.right() && !stop.stop_requested(); ++x) body(x, y);
+      for (int x = canvas_.patch.x; x < canvas_.patch.right() && !stop.stop_requested(); ++x)
+        body(x, y);
     });
   }
 
@@ -204,7 +206,9 @@ class Refiner {
     static const std::vector<std::int32_t> kEverySample(kRoughCover, -1);
     const Cover* found = edge ? &cover(x, y, only, counts_.outline) : nullptr;
     Sum& sum = canvas_.sums[canvas_.index(x, y)];
-    if (sum.hits == 0 || tracer_.shade_covered(x, y, only, found ? found->is_covered : kEverySample, sum)) return;
+    if (sum.hits == 0 ||
+        tracer_.shade_covered(x, y, only, found ? found->is_covered : kEverySample, sum))
+      return;
     forget(x, y, only);  // the outline met something, and no ray did
     sample_pixel(tracer_, canvas_, x, y, 0, counts_.edge);
   }
@@ -220,7 +224,8 @@ class Refiner {
     sample_pixel(tracer_, canvas_, x, y, done, counts_.edge);
   }
 
-  // A pixel by the outline of its one actor, without its light. The answer holds until this thread's next.
+  // A pixel by the outline of its one actor, without its light. The answer holds until this
+  // thread's next.
   const Cover& cover(int x, int y, int actor, int samples) {
     thread_local Cover found;
     found.covered = 0;
@@ -307,7 +312,8 @@ image::Layer render(const View& view,
   }
   layer.area_alone_px = layer.area_alone_in_frame_px;
   for (std::size_t a = 0; a < actors.size(); ++a)
-    if (search[a]) layer.area_alone_px[a] += area_outside(view, tracer, static_cast<int>(a), *search[a]);
+    if (search[a])
+      layer.area_alone_px[a] += area_outside(view, tracer, static_cast<int>(a), *search[a]);
   return layer;
 }
 

@@ -44,7 +44,8 @@ PixelSamples::PixelSamples(int x, int y)
 
 std::array<double, 2> PixelSamples::at(int i) const {
   const auto n = static_cast<std::size_t>(i);
-  return {((kPoints.x[n] ^ scramble_x_) + 0.5) * 0x1.0p-32, ((kPoints.y[n] ^ scramble_y_) + 0.5) * 0x1.0p-32};
+  return {((kPoints.x[n] ^ scramble_x_) + 0.5) * 0x1.0p-32,
+          ((kPoints.y[n] ^ scramble_y_) + 0.5) * 0x1.0p-32};
 }
 
 void PixelSamples::fill(int n, float* x, float* y) const {

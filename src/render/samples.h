@@ -7,8 +7,8 @@
 namespace airtruth::render {
 
 // Where a pixel is sampled, in units of its sides from its top left corner: the two-dimensional
-// Sobol sequence (Sobol 1967), xor-scrambled by the pixel (Kollig and Keller 2002). Any power of two
-// of its points is a (0, 2)-net, which is what keeps the error of an edge small at every slope.
+// Sobol sequence (Sobol 1967), xor-scrambled by the pixel (Kollig and Keller 2002). Any power of
+// two of its points is a (0, 2)-net, which is what keeps the error of an edge small at every slope.
 class PixelSamples {
  public:
   static constexpr int kMost = 4096;
@@ -25,16 +25,17 @@ class PixelSamples {
 
 // How many samples a pixel takes; powers of two.
 struct SampleCounts {
-  int base = 16;    // of every pixel that an aircraft may touch
-  int edge = 512;   // of one that an outline crosses, by rays
+  int base = 16;       // of every pixel that an aircraft may touch
+  int edge = 512;      // of one that an outline crosses, by rays
   int outline = 1024;  // of one that an outline crosses, by Silhouette
-  // Hits whose light is computed (the others only count): so many, or, where those are much alike, so
-  // few.
+  // Hits whose light is computed (the others only count): so many, or, where those are much alike,
+  // so few.
   int shaded = 16;
   int shaded_alike = 8;
 };
 
-// quality: Options::quality (Error outside 1..5). size_px: the longest side of the largest aircraft.
+// quality: Options::quality (Error outside 1..5). size_px: the longest side of the largest
+// aircraft.
 SampleCounts counts_for(int quality, double size_px);
 
 }  // namespace airtruth::render

@@ -29,7 +29,8 @@ struct Shaded {
   float alpha = 0;
 };
 
-// Opacity of the surface at a hit, texture included. `footprint_m`: the width that a sample stands for, there.
+// Opacity of the surface at a hit, texture included. `footprint_m`: the width that a sample stands
+// for, there.
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
 
 // Opacity and light: Lambert for the sun (with the aircraft's own shadow) and for a sky that goes

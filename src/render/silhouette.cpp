@@ -16,8 +16,10 @@ constexpr double kMarginPx = 0.02;
 // A side shorter than this is as good as straight under any lens.
 constexpr double kStraightPx = 4;
 
-std::optional<Pixel> frame_pixel(const View& view, const Homography& frame_from_nominal,
-                                 const Quaternion& cam_from_world, const Vector3& from_eye_in_world) {
+std::optional<Pixel> frame_pixel(const View& view,
+                                 const Homography& frame_from_nominal,
+                                 const Quaternion& cam_from_world,
+                                 const Vector3& from_eye_in_world) {
   const auto nominal = view.lens->pixel_from_cam(cam_from_world * from_eye_in_world);
   if (!nominal) return std::nullopt;
   const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
@@ -25,7 +27,8 @@ std::optional<Pixel> frame_pixel(const View& view, const Homography& frame_from_
   return Pixel(h.x() / h.z(), h.y() / h.z());
 }
 
-// The value of a side's product over a pixel: a + b x + c y + d x y, in units of its largest corner.
+// The value of a side's product over a pixel: a + b x + c y + d x y, in units of its largest
+// corner.
 struct Bilinear {
   float a = 0, b = 0, c = 0, d = 0;
 };
@@ -45,16 +48,17 @@ struct Places {
   alignas(32) std::array<float, PixelSamples::kMost> y;
 };
 
-// The same instructions in vectors of 16, 8 or 4, as the machine has them. No product is fused with its
-// sum (-ffp-contract=off), so that the answers are the same bits on all of them.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+// The same instructions in vectors of 16, 8 or 4, as the machine has them. No product is fused with
+// its sum (-ffp-contract=off), so that the answers are the same bits on all of them.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define AIRTRUTH_VECTORS __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define AIRTRUTH_VECTORS
 #endif
 
-// Marks the samples on the inner side of all three (an unused one is +1 everywhere); true where every
-// sample is marked by now.
+// Marks the samples on the inner side of all three (an unused one is +1 everywhere); true where
+// every sample is marked by now.
 AIRTRUTH_VECTORS
 bool mark(const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = sides[0];
@@ -77,7 +81,8 @@ bool mark(const Bilinear* sides, const float* px, const float* py, int n, std::i
 
 // The same for the only side that crosses the pixel.
 AIRTRUTH_VECTORS
-bool mark_one(const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
+bool mark_one(
+    const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = *side;
   std::int32_t all = -1;
   for (int i = 0; i < n; ++i) {
@@ -91,7 +96,8 @@ bool mark_one(const Bilinear* side, const float* px, const float* py, int n, std
 
 }  // namespace
 
-Silhouette::Silhouette(const Actor& actor, const View& view, const PixelBox& patch) : patch_(patch) {
+Silhouette::Silhouette(const Actor& actor, const View& view, const PixelBox& patch)
+    : patch_(patch) {
   std::vector<Reach> reaches;
   for (std::size_t part = 0; part < actor.placed.model->mesh.parts.size(); ++part)
     add_part(actor, part, view, reaches);
@@ -165,7 +171,8 @@ Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners
       const Pixel along = to.pixel - from.pixel;
       const Pixel off = *pixel - from.pixel;
       const double length = along.norm();
-      const double bend = length > 0 ? std::abs(along.x() * off.y() - along.y() * off.x()) / length : 0;
+      const double bend =
+          length > 0 ? std::abs(along.x() * off.y() - along.y() * off.x()) / length : 0;
       margin = std::max(margin, 2 * bend + kMarginPx);
     }
   }
@@ -215,11 +222,8 @@ std::span<const std::uint32_t> Silhouette::triangles_of(int x, int y) const {
 
 Silhouette::Touch Silhouette::touch(int x, int y) const { return touch_[index(x, y)]; }
 
-void Silhouette::cover(int x,
-                       int y,
-                       const std::array<Vector3, 4>& corners,
-                       int samples,
-                       Cover& result) const {
+void Silhouette::cover(
+    int x, int y, const std::array<Vector3, 4>& corners, int samples, Cover& result) const {
   result.samples = samples;
   result.is_covered.assign(static_cast<std::size_t>(samples), 0);
   std::int32_t* covered = result.is_covered.data();

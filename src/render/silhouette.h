@@ -11,12 +11,12 @@
 // An opaque aircraft's outline without rays. Seen from the eye, a direction d lies within triangle
 // (a, b, c) where it is on the inner side of the three planes through the eye and one side each:
 // d . (a x b) >= 0 and so on (Olano and Greer 1997, "Triangle scan conversion using 2D homogeneous
-// coordinates", eq. 1 to 4; any lens, since d is a sample's own ray). Inside a pixel d is bilinear in
-// the sample's place, and so is each product: four corners give it for every sample. A sample is
+// coordinates", eq. 1 to 4; any lens, since d is a sample's own ray). Inside a pixel d is bilinear
+// in the sample's place, and so is each product: four corners give it for every sample. A sample is
 // covered where any triangle covers it, so nothing needs to be sorted by depth.
 //
-// The samples, and what covers them, are those of the rays (Tracer::sample); this is some fifty times
-// faster where a pixel needs many.
+// The samples, and what covers them, are those of the rays (Tracer::sample); this is some fifty
+// times faster where a pixel needs many.
 namespace airtruth::render {
 
 // Which of a pixel's first n samples an aircraft covers.
@@ -56,7 +56,10 @@ class Silhouette {
   };
 
   Reach reach_of(const std::array<const Seen*, 3>& corners, const View& view) const;
-  void add_part(const Actor& actor, std::size_t part, const View& view, std::vector<Reach>& reaches);
+  void add_part(const Actor& actor,
+                std::size_t part,
+                const View& view,
+                std::vector<Reach>& reaches);
   void sort_by_pixel(const std::vector<Reach>& reaches);
   std::span<const std::uint32_t> triangles_of(int x, int y) const;
   std::size_t index(int x, int y) const {
@@ -66,7 +69,7 @@ class Silhouette {
 
   PixelBox patch_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> first_;   // of each pixel in by_pixel_; one more at the end
+  std::vector<std::uint32_t> first_;  // of each pixel in by_pixel_; one more at the end
   std::vector<std::uint32_t> by_pixel_;
   std::vector<Touch> touch_;
 };

@@ -7,9 +7,9 @@
 namespace airtruth::render {
 namespace {
 
-constexpr float kStep = 1e-4f;  // past a translucent surface, metres
+constexpr float kStep = 1e-4f;         // past a translucent surface, metres
 constexpr double kSampleShare = 0.25;  // of a pixel's side, for one of the many samples of opacity
-constexpr int kMaxLayers = 24;  // translucent surfaces along one ray
+constexpr int kMaxLayers = 24;         // translucent surfaces along one ray
 
 // The pixels that a search box touches, within the frame.
 std::optional<PixelBox> pixels_of(const Box& search, const View& view) {
@@ -148,7 +148,8 @@ bool Tracer::shade_covered(
   std::array<float, 3> high{};
   for (std::size_t i = 0; i < is_covered.size() && sum.opaque_shaded < counts_.shaded; ++i) {
     if (is_covered[i] == 0) continue;
-    if (sum.opaque_shaded > 0 && sum.opaque_shaded % counts_.shaded_alike == 0 && alike(low, high)) break;
+    if (sum.opaque_shaded > 0 && sum.opaque_shaded % counts_.shaded_alike == 0 && alike(low, high))
+      break;
     const Vector3 direction = interpolated(corners, samples.at(static_cast<int>(i)));
     const auto hit = nearest_hit(actor.placed, body_ray(actor, direction), 0);
     if (!hit) continue;  // a hair's breadth from an edge, where floats and doubles part
@@ -223,7 +224,8 @@ Shaded Tracer::colour(const Vector3& direction, double pixel_rad, const Fragment
 
 // Of one shaded sample on the surface: a pixel's width shared out among the samples of a side.
 float Tracer::footprint(double distance_m, double pixel_rad) const {
-  return static_cast<float>(distance_m * pixel_rad / std::sqrt(static_cast<double>(counts_.shaded)));
+  return static_cast<float>(distance_m * pixel_rad /
+                            std::sqrt(static_cast<double>(counts_.shaded)));
 }
 
 }  // namespace airtruth::render

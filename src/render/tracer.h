@@ -54,7 +54,10 @@ struct Fragment {
 // Shoots rays (Embree) and gathers what they meet.
 class Tracer {
  public:
-  Tracer(const Light& light, const std::vector<Actor>& actors, const RayGrid& grid, const SampleCounts& counts)
+  Tracer(const Light& light,
+         const std::vector<Actor>& actors,
+         const RayGrid& grid,
+         const SampleCounts& counts)
       : light_(light), actors_(actors), grid_(grid), counts_(counts) {}
 
   // Adds samples [from, to) of a pixel. `coverage` and `alone`: per actor.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
@@ -23,7 +23,9 @@ image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
   for (int y = common->y; y < common->bottom(); ++y) {
     for (int x = common->x; x < common->right(); ++x) {
       const float alpha = std::clamp(layer.pixels[layer.index(x, y)].alpha, 0.0f, 1.0f);
-      std::fill_n(result.at(x - area.x, y - area.y), 3, static_cast<std::uint8_t>(std::lround(alpha * 255)));
+      std::fill_n(result.at(x - area.x, y - area.y),
+                  3,
+                  static_cast<std::uint8_t>(std::lround(alpha * 255)));
     }
   }
   return result;
@@ -32,9 +34,11 @@ image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
 // How much each pixel changed, brightened fourfold.
 image::Rgb8 difference_picture(const image::Rgb8& a, const image::Rgb8& b) {
   image::Rgb8 result = image::make_rgb8(a.width, a.height);
-  const std::size_t count = static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height) * 3;
+  const std::size_t count =
+      static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height) * 3;
   for (std::size_t i = 0; i < count; ++i)
-    result.samples[i] = static_cast<std::uint8_t>(std::min(255, 4 * std::abs(int(a.samples[i]) - int(b.samples[i]))));
+    result.samples[i] = static_cast<std::uint8_t>(
+        std::min(255, 4 * std::abs(int(a.samples[i]) - int(b.samples[i]))));
   return result;
 }
 
@@ -51,7 +55,10 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
     }
     if (intruder.visible_box_px) {
       const PixelBox& v = *intruder.visible_box_px;
-      outline(panel, {double(v.x - area.x), double(v.y - area.y), double(v.width), double(v.height)}, zoom, kGreen);
+      outline(panel,
+              {double(v.x - area.x), double(v.y - area.y), double(v.width), double(v.height)},
+              zoom,
+              kGreen);
     }
   }
 }
@@ -60,18 +67,28 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 constexpr int kCaptionPx = 360;  // that the long caption needs
 
-image::Rgb8 closeup(const Closeup& what, const annotation::Frame& truth, const PixelBox& area, int zoom) {
-  check(what.background != nullptr && what.result != nullptr && zoom > 0, "a closeup has its pictures");
-  const image::Rgb8 before = image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
-  const image::Rgb8 after = image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
+image::Rgb8 closeup(const Closeup& what,
+                    const annotation::Frame& truth,
+                    const PixelBox& area,
+                    int zoom) {
+  check(what.background != nullptr && what.result != nullptr && zoom > 0,
+        "a closeup has its pictures");
+  const image::Rgb8 before =
+      image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
+  const image::Rgb8 after =
+      image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
   const image::Rgb8 middle =
       what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
   const int panel = area.width * zoom;
-  cv::Mat canvas(kHeaderPx + area.height * zoom + kGapPx, 4 * kGapPx + 3 * panel, CV_8UC3, cv::Scalar(28, 28, 30));
+  cv::Mat canvas(kHeaderPx + area.height * zoom + kGapPx,
+                 4 * kGapPx + 3 * panel,
+                 CV_8UC3,
+                 cv::Scalar(28, 28, 30));
   const std::array<std::string, 3> names = {
       fmt::format("background  frame {}", truth.frame),
       what.layer != nullptr ? "alpha" : "difference x4",
-      panel >= kCaptionPx ? fmt::format("result  {}x  green visible, amber exact", zoom) : fmt::format("result  {}x", zoom)};
+      panel >= kCaptionPx ? fmt::format("result  {}x  green visible, amber exact", zoom)
+                          : fmt::format("result  {}x", zoom)};
   const std::array<const image::Rgb8*, 3> pictures = {&before, &middle, &after};
   for (std::size_t i = 0; i < 3; ++i) {
     const int x = kGapPx + static_cast<int>(i) * (panel + kGapPx);

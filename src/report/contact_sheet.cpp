@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "image/colour.h"
@@ -22,11 +22,16 @@ PixelBox around(const PixelBox& box) {
   return {box.x + box.width / 2 - side / 2, box.y + box.height / 2 - side / 2, side, side};
 }
 
-void inset(cv::Mat& tile, const image::Picture& picture, const annotation::Intruder& intruder, double scale, int slot) {
+void inset(cv::Mat& tile,
+           const image::Picture& picture,
+           const annotation::Intruder& intruder,
+           double scale,
+           int slot) {
   const PixelBox area = around(*intruder.visible_box_px);
   const int side = tile.rows * 2 / 5;
   image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
-  image::Rgb8 large = resized(crop, side, side, side > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
+  image::Rgb8 large =
+      resized(crop, side, side, side > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
   // The corner farthest from the intruder, further ones beside it.
   const PixelBox& box = *intruder.visible_box_px;
   const bool at_right = (box.x + box.width / 2.0) * scale < tile.cols / 2.0;
@@ -37,13 +42,20 @@ void inset(cv::Mat& tile, const image::Picture& picture, const annotation::Intru
   if (x < 0 || x + side > tile.cols) return;
   view(large).copyTo(tile(cv::Rect(x, y, side, side)));
   cv::rectangle(tile, cv::Rect(x - 1, y - 1, side + 2, side + 2), kWhite, 1);
-  text(tile, fmt::format("{} {:.0f} m", intruder.id, intruder.range_m.value_or(0)), x + 6, y + 20, 12, kWhite);
+  text(tile,
+       fmt::format("{} {:.0f} m", intruder.id, intruder.range_m.value_or(0)),
+       x + 6,
+       y + 20,
+       12,
+       kWhite);
 }
 
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
   const double scale = static_cast<double>(kTileWidthPx) / picture.width;
   const int height = std::max(1, static_cast<int>(picture.height * scale));
-  image::Rgb8 tile = resized(image::rgb8_from_picture(picture), kTileWidthPx, height,
+  image::Rgb8 tile = resized(image::rgb8_from_picture(picture),
+                             kTileWidthPx,
+                             height,
                              scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   cv::Mat canvas = view(tile);
   int slot = 0;
@@ -53,7 +65,12 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
     outline(canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, kGreen);
     inset(canvas, picture, intruder, scale, slot++);
   }
-  text(canvas, fmt::format("frame {}   {:.2f} s", truth.frame, truth.time_s), 8, height - 10, 12, kWhite);
+  text(canvas,
+       fmt::format("frame {}   {:.2f} s", truth.frame, truth.time_s),
+       8,
+       height - 10,
+       12,
+       kWhite);
   return tile;
 }
 
@@ -78,7 +95,9 @@ void ContactSheet::add(const image::Picture& picture, const annotation::Frame& t
 image::Rgb8 ContactSheet::sheet() const {
   const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
   const int rows = std::max<int>(1, (static_cast<int>(chosen_.size()) + kColumns - 1) / kColumns);
-  cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx), kGapPx + kColumns * (kTileWidthPx + kGapPx), CV_8UC3,
+  cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx),
+                 kGapPx + kColumns * (kTileWidthPx + kGapPx),
+                 CV_8UC3,
                  cv::Scalar(28, 28, 30));
   text(canvas, title_, kGapPx, 36, 20, kWhite);
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
@@ -87,7 +106,9 @@ image::Rgb8 ContactSheet::sheet() const {
     const image::Rgb8& tile = chosen_[i].picture;
     const cv::Mat source(tile.height, tile.width, CV_8UC3, tile.samples.get());
     source.copyTo(canvas(cv::Rect(kGapPx + column * (kTileWidthPx + kGapPx),
-                                  kHeaderPx + row * (tile_height + kGapPx), tile.width, tile.height)));
+                                  kHeaderPx + row * (tile_height + kGapPx),
+                                  tile.width,
+                                  tile.height)));
   }
   if (chosen_.empty()) text(canvas, "no frames", kGapPx, kHeaderPx + 40, 16, kGrey);
   return from_mat(canvas);

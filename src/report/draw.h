@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <string>
+
+#include <opencv2/core.hpp>
 
 #include "geometry/box.h"
 #include "image/picture.h"
@@ -15,15 +16,22 @@ const cv::Scalar kAmber(255, 176, 32);
 const cv::Scalar kWhite(245, 245, 245);
 const cv::Scalar kGrey(150, 150, 150);
 
-cv::Mat view(image::Rgb8& picture);                  // shares the samples
-image::Rgb8 from_mat(const cv::Mat& rgb);            // copies
+cv::Mat view(image::Rgb8& picture);        // shares the samples
+image::Rgb8 from_mat(const cv::Mat& rgb);  // copies
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation);
 
 // Text with a dark rim that reads on any background; (x, y) is the left end of the baseline.
-void text(cv::Mat& canvas, const std::string& words, int x, int y, double size_px, const cv::Scalar& colour);
+void text(cv::Mat& canvas,
+          const std::string& words,
+          int x,
+          int y,
+          double size_px,
+          const cv::Scalar& colour);
 int text_width(const std::string& words, double size_px);
 
-// A box's outline just outside the box, scaled: pixel (x, y) of the box lies at (x * scale, y * scale) of the canvas.
-void outline(cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour, int thickness = 1);
+// A box's outline just outside the box, scaled: pixel (x, y) of the box lies at (x * scale, y *
+// scale) of the canvas.
+void outline(
+    cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour, int thickness = 1);
 
 }  // namespace airtruth::report

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "image/colour.h"
@@ -15,7 +15,11 @@ Box floating(const PixelBox& box) {
   return {double(box.x), double(box.y), double(box.width), double(box.height)};
 }
 
-void label(cv::Mat& canvas, const std::string& words, const Box& box, double size_px, const cv::Scalar& colour) {
+void label(cv::Mat& canvas,
+           const std::string& words,
+           const Box& box,
+           double size_px,
+           const cv::Scalar& colour) {
   const int width = text_width(words, size_px);
   const int gap = static_cast<int>(size_px / 2) + 4;
   int x = static_cast<int>(box.x);
@@ -32,7 +36,8 @@ image::Rgb8 overlay(const image::Picture& picture, const annotation::Frame& trut
   cv::Mat canvas = view(result);
   const double size_px = std::clamp(picture.height / 60.0, 9.0, 30.0);
   for (const annotation::Intruder& intruder : truth.intruders) {
-    const std::string words = intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
+    const std::string words =
+        intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
     if (intruder.visible_box_px) {
       const Box box = floating(*intruder.visible_box_px);
       outline(canvas, box, 1, kGreen);
@@ -42,7 +47,12 @@ image::Rgb8 overlay(const image::Picture& picture, const annotation::Frame& trut
       label(canvas, words + " (hidden)", *intruder.exact_box_px, size_px, kAmber);
     }
   }
-  text(canvas, fmt::format("frame {}  {:.2f} s", truth.frame, truth.time_s), 8, picture.height - 8, size_px, kWhite);
+  text(canvas,
+       fmt::format("frame {}  {:.2f} s", truth.frame, truth.time_s),
+       8,
+       picture.height - 8,
+       size_px,
+       kWhite);
   return result;
 }
 

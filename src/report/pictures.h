@@ -12,9 +12,10 @@
 // Pictures for people: the contact sheet, the burnt-in overlay, the close look at one frame.
 namespace airtruth::report {
 
-// preview.jpg: up to twelve frames, each with its visible intruders enlarged in a corner, with range and frame number.
-// Feed frames as they come, in order; keeps small copies of chosen ones alone, so memory does not grow. With an
-// unknown number of frames the spacing doubles whenever the sheet is full.
+// preview.jpg: up to twelve frames, each with its visible intruders enlarged in a corner, with
+// range and frame number. Feed frames as they come, in order; keeps small copies of chosen ones
+// alone, so memory does not grow. With an unknown number of frames the spacing doubles whenever the
+// sheet is full.
 class ContactSheet {
  public:
   ContactSheet(std::string title, std::int64_t frame_count_estimate, std::size_t tiles = 12);
@@ -32,19 +33,25 @@ class ContactSheet {
   std::vector<Tile> chosen_;
 };
 
-// Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12): the visible box in
-// green, one pixel outside the labelled pixels; where the intruder is in view but hidden, the exact box in amber.
+// Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12): the
+// visible box in green, one pixel outside the labelled pixels; where the intruder is in view but
+// hidden, the exact box in amber.
 image::Rgb8 overlay(const image::Picture& picture, const annotation::Frame& truth);
 
 // What a closer look needs of one intruder in one frame.
 struct Closeup {
   const image::Picture* background = nullptr;
   const image::Picture* result = nullptr;
-  const image::Layer* layer = nullptr;   // its alpha; nullptr: |result - background| is shown instead
+  const image::Layer* layer =
+      nullptr;  // its alpha; nullptr: |result - background| is shown instead
 };
 
-// Background, alpha and result side by side, each pixel enlarged `zoom` times without smoothing, exact box (amber) and
-// visible box (green) drawn on the result. `area`: the pixels shown, which may stick out of the frame.
-image::Rgb8 closeup(const Closeup& what, const annotation::Frame& truth, const PixelBox& area, int zoom);
+// Background, alpha and result side by side, each pixel enlarged `zoom` times without smoothing,
+// exact box (amber) and visible box (green) drawn on the result. `area`: the pixels shown, which
+// may stick out of the frame.
+image::Rgb8 closeup(const Closeup& what,
+                    const annotation::Frame& truth,
+                    const PixelBox& area,
+                    int zoom);
 
 }  // namespace airtruth::report

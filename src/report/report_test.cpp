@@ -9,8 +9,11 @@ namespace {
 
 image::Picture grey_picture(int width, int height, std::uint8_t level) {
   image::Rgb8 rgb = image::make_rgb8(width, height);
-  std::fill_n(rgb.samples.get(), static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3, level);
-  return image::picture_from_rgb8(rgb, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  std::fill_n(rgb.samples.get(),
+              static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3,
+              level);
+  return image::picture_from_rgb8(rgb,
+                                  {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
 }
 
 annotation::Frame frame_with_box(std::int64_t index, const PixelBox& box) {
@@ -40,7 +43,8 @@ TEST(Overlay, LeavesTheLabelledPixelsAndOutlinesThem) {
 TEST(ContactSheet, KeepsAtMostTwelveTilesWhateverTheLength) {
   for (std::int64_t estimate : {0, 5, 40}) {
     ContactSheet sheet("name", estimate);
-    for (std::int64_t i = 0; i < 40; ++i) sheet.add(grey_picture(64, 48, 90), frame_with_box(i, {10, 10, 4, 4}));
+    for (std::int64_t i = 0; i < 40; ++i)
+      sheet.add(grey_picture(64, 48, 90), frame_with_box(i, {10, 10, 4, 4}));
     const image::Rgb8 picture = sheet.sheet();
     EXPECT_EQ(picture.width, 10 + 3 * 650);
     EXPECT_LE(picture.height, 56 + 4 * 490) << estimate;
@@ -52,7 +56,8 @@ TEST(ContactSheet, KeepsAtMostTwelveTilesWhateverTheLength) {
 TEST(Closeup, EnlargesEachPixelToASquareOfItsOwnColour) {
   const image::Picture before = grey_picture(40, 30, 50);
   const image::Picture after = grey_picture(40, 30, 60);
-  const image::Rgb8 result = closeup({&before, &after, nullptr}, frame_with_box(3, {30, 20, 2, 2}), {5, 5, 10, 8}, 8);
+  const image::Rgb8 result =
+      closeup({&before, &after, nullptr}, frame_with_box(3, {30, 20, 2, 2}), {5, 5, 10, 8}, 8);
   EXPECT_EQ(result.width, 4 * 12 + 3 * 80);
   EXPECT_EQ(result.at(12 + 40, 34 + 30)[0], 50);
   EXPECT_EQ(result.at(12 + 80 + 12 + 40, 34 + 30)[0], 40);  // four times the difference of 10

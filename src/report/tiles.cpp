@@ -13,7 +13,9 @@ image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, 
   const int width = pictures[0].picture.width;
   const int height = pictures[0].picture.height;
   const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
-  cv::Mat canvas(kHeaderPx + rows * (height + kGapPx), kGapPx + columns * (width + kGapPx), CV_8UC3,
+  cv::Mat canvas(kHeaderPx + rows * (height + kGapPx),
+                 kGapPx + columns * (width + kGapPx),
+                 CV_8UC3,
                  cv::Scalar(28, 28, 30));
   text(canvas, title, kGapPx, 36, 20, kWhite);
   for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -52,8 +52,9 @@ TEST(SceneErrors, TheGoodSceneIsGood) { EXPECT_EQ(message_of(Parts{}.text()), "n
 
 TEST(SceneErrors, WhatIsNotASceneFile) {
   EXPECT_EQ(message_of(""), "s.toml: [background] has no video; expected the path of a video file");
-  EXPECT_EQ(message_of("a = \n"),
-            "s.toml:1:5: is not TOML: Error while parsing key-value pair: expected value, saw '\\n'");
+  EXPECT_EQ(
+      message_of("a = \n"),
+      "s.toml:1:5: is not TOML: Error while parsing key-value pair: expected value, saw '\\n'");
   EXPECT_EQ(message_of("seed = 1\nname = \"\xff\"\n"),
             "s.toml:2: is not UTF-8; expected a text file in UTF-8");
   EXPECT_EQ(message_of(std::string((16u << 20) + 1, '\n')),

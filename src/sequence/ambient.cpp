@@ -12,9 +12,11 @@ namespace {
 
 using image::Rgb;
 
-constexpr int kGrid = 48;             // blocks along the longer side
-constexpr float kSmoothing = 0.1f;    // share of a new frame; about a third of a second at 30 frames/s
-constexpr Rgb kSunColour = {1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
+constexpr int kGrid = 48;  // blocks along the longer side
+constexpr float kSmoothing =
+    0.1f;  // share of a new frame; about a third of a second at 30 frames/s
+constexpr Rgb kSunColour = {
+    1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
 
 struct Block {
   Rgb linear{};
@@ -22,7 +24,9 @@ struct Block {
   float weight = 1;
 };
 
-float brightness(const Rgb& linear) { return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2]; }
+float brightness(const Rgb& linear) {
+  return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
+}
 
 Rgb linear_at(const image::Picture& picture, const image::ColourCode& code, int x, int y) {
   image::Ycc ycc;
@@ -38,14 +42,16 @@ Rgb linear_at(const image::Picture& picture, const image::ColourCode& code, int 
   return rgb;
 }
 
-std::vector<Block> blocks_of(const image::Picture& picture, const image::Mask* own_aircraft,
+std::vector<Block> blocks_of(const image::Picture& picture,
+                             const image::Mask* own_aircraft,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
   const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
   std::optional<PixelBox> around;
   if (near) {
     const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
-    around = PixelBox{near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
+    around = PixelBox{
+        near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
   }
   std::vector<Block> blocks;
   for (int y = step / 2; y < picture.height; y += step) {
@@ -58,8 +64,9 @@ std::vector<Block> blocks_of(const image::Picture& picture, const image::Mask* o
       blocks.push_back(block);
     }
   }
-  std::stable_sort(blocks.begin(), blocks.end(),
-                   [](const Block& a, const Block& b) { return a.brightness < b.brightness; });
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
+    return a.brightness < b.brightness;
+  });
   return blocks;
 }
 
@@ -86,7 +93,9 @@ Ambient measure(const std::vector<Block>& blocks) {
   ambient.sky = mean(blocks, 0.5f, 1.01f);
   ambient.ground = mean(blocks, 0.0f, 0.25f);
   const std::size_t last = blocks.empty() ? 0 : blocks.size() * 98 / 100;
-  const float white = blocks.empty() ? 0.7f : std::clamp(blocks[std::min(last, blocks.size() - 1)].brightness, 0.1f, 1.0f);
+  const float white =
+      blocks.empty() ? 0.7f
+                     : std::clamp(blocks[std::min(last, blocks.size() - 1)].brightness, 0.1f, 1.0f);
   const float direct = std::max(0.35f * white, white - 0.5f * brightness(ambient.sky));
   for (std::size_t c = 0; c < 3; ++c) ambient.sun[c] = direct * kSunColour[c];
   return ambient;
@@ -115,7 +124,8 @@ Ambient AmbientEstimator::next(const image::Picture& picture, const std::optiona
 
 Ambient AmbientEstimator::with_scene(Ambient measured) const {
   if (light_.exposure) {
-    for (std::size_t c = 0; c < 3; ++c) measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
+    for (std::size_t c = 0; c < 3; ++c)
+      measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
   }
   if (light_.sky_colour) measured.sky = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);

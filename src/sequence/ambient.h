@@ -9,10 +9,11 @@
 
 // What light falls on the intruder, taken from the background where the scene does not state it.
 //
-// The picture is read as a grid of small blocks in linear light, without the own aircraft. Its brighter half stands
-// for the sky and its darkest quarter for the ground, whatever the bank of the camera; the 98th percentile of
-// brightness is what this exposure makes of a bright white thing (cloud, haze), and a white surface square to
-// the sun is given that much. Blocks near the intruder count four times. Smoothed over time, since exposure is.
+// The picture is read as a grid of small blocks in linear light, without the own aircraft. Its
+// brighter half stands for the sky and its darkest quarter for the ground, whatever the bank of the
+// camera; the 98th percentile of brightness is what this exposure makes of a bright white thing
+// (cloud, haze), and a white surface square to the sun is given that much. Blocks near the intruder
+// count four times. Smoothed over time, since exposure is.
 namespace airtruth::sequence {
 
 struct Ambient {

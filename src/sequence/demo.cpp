@@ -13,8 +13,10 @@
 namespace airtruth::sequence {
 namespace {
 
-// A Boeing 737 crosses from left to right and a Cessna overtakes on the right, both within a kilometre.
-constexpr const char* kScene = R"(# Made by `airtruth demo`; change it and run: airtruth render demo.toml --out . --overwrite
+// A Boeing 737 crosses from left to right and a Cessna overtakes on the right, both within a
+// kilometre.
+constexpr const char* kScene =
+    R"(# Made by `airtruth demo`; change it and run: airtruth render demo.toml --out . --overwrite
 name = "demo"
 seed = %llu
 
@@ -68,14 +70,24 @@ synthetic::FlightOptions flight_options(const DemoOptions& options) {
 
 std::string scene_text(const synthetic::FlightOptions& flight, std::uint64_t seed) {
   char text[4096];
-  const int length = std::snprintf(text, sizeof text, kScene, static_cast<unsigned long long>(seed), kVerticalFovDeg,
-                                   flight.altitude_m, flight.speed_mps, flight.sun_azimuth_deg, flight.sun_elevation_deg);
+  const int length = std::snprintf(text,
+                                   sizeof text,
+                                   kScene,
+                                   static_cast<unsigned long long>(seed),
+                                   kVerticalFovDeg,
+                                   flight.altitude_m,
+                                   flight.speed_mps,
+                                   flight.sun_azimuth_deg,
+                                   flight.sun_elevation_deg);
   return {text, static_cast<std::size_t>(length)};
 }
 
-std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& options, const std::string& stage) {
+std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& options,
+                                                       const std::string& stage) {
   if (!options.progress) return {};
-  return [&options, stage](std::int64_t done, std::int64_t total) { options.progress(stage, done, total); };
+  return [&options, stage](std::int64_t done, std::int64_t total) {
+    options.progress(stage, done, total);
+  };
 }
 
 }  // namespace

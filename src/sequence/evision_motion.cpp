@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/evision_motion.h"
 
-#include <Eigen/Cholesky>
-
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 namespace airtruth::sequence {
 namespace {
@@ -29,7 +29,9 @@ Homography homography_of(const Parameters& p, const Pixel& centre, double focal_
 
 }  // namespace
 
-Homography motion_from_sightings(const std::vector<Sighting>& sightings, const Pixel& principal_point_px, double focal_px) {
+Homography motion_from_sightings(const std::vector<Sighting>& sightings,
+                                 const Pixel& principal_point_px,
+                                 double focal_px) {
   Parameters p = Parameters::Zero();
   if (sightings.empty()) return Homography::Identity();
   const auto rows = static_cast<Eigen::Index>(2 * sightings.size());
@@ -52,7 +54,8 @@ Homography motion_from_sightings(const std::vector<Sighting>& sightings, const P
       moved[k] += kStep;
       jacobian.col(k) = (residual(moved) - r) / kStep;
     }
-    const Parameters step = (jacobian.transpose() * jacobian).ldlt().solve(-jacobian.transpose() * r);
+    const Parameters step =
+        (jacobian.transpose() * jacobian).ldlt().solve(-jacobian.transpose() * r);
     if (!step.allFinite()) break;
     p += step;
     if (step.norm() < 1e-9) break;

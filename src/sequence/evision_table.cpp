@@ -33,10 +33,12 @@ struct Position {
 };
 
 bool is_defined(const Position& p) {
-  return p.intruder_ned_m.allFinite() && p.intruder_ned_m.norm() < kFarthestM && !p.intruder_ned_m.isZero();
+  return p.intruder_ned_m.allFinite() && p.intruder_ned_m.norm() < kFarthestM &&
+         !p.intruder_ned_m.isZero();
 }
 
-// frame,camera_n_m,camera_e_m,camera_d_m,intruder_n_m,intruder_e_m,intruder_d_m; undefined positions left out.
+// frame,camera_n_m,camera_e_m,camera_d_m,intruder_n_m,intruder_e_m,intruder_d_m; undefined
+// positions left out.
 std::vector<Position> read_positions(const fs::path& file) {
   std::istringstream text(read_file(file));
   std::vector<Position> result;
@@ -53,7 +55,8 @@ std::vector<Position> read_positions(const fs::path& file) {
         throw Error("'" + line + "'; expected frame and six coordinates", {file.string(), row});
       at = next + 1;
     }
-    const Position p{static_cast<int>(cell[0]), {cell[1], cell[2], cell[3]}, {cell[4], cell[5], cell[6]}};
+    const Position p{
+        static_cast<int>(cell[0]), {cell[1], cell[2], cell[3]}, {cell[4], cell[5], cell[6]}};
     if (is_defined(p)) result.push_back(p);
   }
   return result;
@@ -77,12 +80,15 @@ struct Model {
   annotation::Silhouette silhouette;
   render::Model rays;
 
-  Model(const std::string& name, double scale, const Warn& warn) : Model(scaled(name, scale, warn)) {}
+  Model(const std::string& name, double scale, const Warn& warn)
+      : Model(scaled(name, scale, warn)) {}
   Model(const Model&) = delete;
 
  private:
   explicit Model(aircraft::Aircraft loaded)
-      : aircraft(std::move(loaded)), silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)}, rays(aircraft.mesh) {}
+      : aircraft(std::move(loaded)),
+        silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)},
+        rays(aircraft.mesh) {}
   static aircraft::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
     aircraft::Aircraft loaded = aircraft::load_aircraft(name, {}, warn);
     for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
@@ -106,7 +112,8 @@ struct Sequence {
 };
 
 const lens::Lens& pinhole() {
-  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kWidth / 2.0, kHeight / 2.0}}, {kWidth, kHeight});
+  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kWidth / 2.0, kHeight / 2.0}},
+                               {kWidth, kHeight});
   return lens;
 }
 
@@ -121,9 +128,11 @@ std::optional<Box> outline_box(const Model& model, const Frame& frame) {
 // The pixels that a colour key takes: those of which a third shows, or the one that shows most.
 std::optional<PixelBox> keyed_box(const Model& model, const Frame& frame, const Box& outline) {
   constexpr float kKeyed = 0.3f;
-  const render::View view{&pinhole(), looking_north().inverse(), frame.frame_from_nominal.inverse(), kWidth, kHeight};
+  const render::View view{
+      &pinhole(), looking_north().inverse(), frame.frame_from_nominal.inverse(), kWidth, kHeight};
   const Box search{outline.x - 1, outline.y - 1, outline.width + 2, outline.height + 2};
-  const image::Layer layer = render::render(view, {}, {{&model.rays, frame.from_camera, frame.time_s}}, {search}, {.quality = 2});
+  const image::Layer layer = render::render(
+      view, {}, {{&model.rays, frame.from_camera, frame.time_s}}, {search}, {.quality = 2});
   if (layer.empty()) return std::nullopt;
   float most = 0;
   for (const image::LayerPixel& pixel : layer.pixels) most = std::max(most, pixel.alpha);
@@ -143,7 +152,8 @@ bool is_box(const PixelBox& box) { return box.width > 0 && box.height > 0; }
 
 bool touches_border(const PixelBox& box) {
   constexpr int kNear = 3;
-  return box.x < kNear || box.y < kNear || box.right() > kWidth - kNear || box.bottom() > kHeight - kNear;
+  return box.x < kNear || box.y < kNear || box.right() > kWidth - kNear ||
+         box.bottom() > kHeight - kNear;
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -164,14 +174,16 @@ class Comparison {
     row_.published_boxes += is_box(frame.published) ? 1 : 0;
     const std::optional<Box> outline = outline_box(model, frame);
     auto ours = outline ? keyed_box(model, frame, *outline) : std::nullopt;
-    const bool centre_in_view = outline && Box{0, 0, kWidth, kHeight}.x <= outline->x + outline->width / 2 &&
-                                outline->x + outline->width / 2 < kWidth && outline->y + outline->height / 2 >= 0 &&
-                                outline->y + outline->height / 2 < kHeight;
+    const bool centre_in_view =
+        outline && Box{0, 0, kWidth, kHeight}.x <= outline->x + outline->width / 2 &&
+        outline->x + outline->width / 2 < kWidth && outline->y + outline->height / 2 >= 0 &&
+        outline->y + outline->height / 2 < kHeight;
     if (!ours && centre_in_view) ++row_.without_box_ours;
     const bool whole = ours && !touches_border(*ours);
     if (whole && !is_box(frame.published)) ++row_.without_box_published;
     if (ours) ours = spread(*ours, frame.number == 1 ? 0 : spread_px_);
-    if (whole && is_box(frame.published) && !touches_border(frame.published)) compare(*ours, frame.published);
+    if (whole && is_box(frame.published) && !touches_border(frame.published))
+      compare(*ours, frame.published);
     return ours;
   }
 
@@ -202,19 +214,25 @@ class Comparison {
     height_off_px_.push_back(std::abs(ours.height - published.height));
     width_off_.push_back(width_off_px_.back() / published.width);
     height_off_.push_back(height_off_px_.back() / published.height);
-    centre_off_.push_back(std::hypot(ours.x + ours.width / 2.0 - published.x - published.width / 2.0,
-                                     ours.y + ours.height / 2.0 - published.y - published.height / 2.0));
+    centre_off_.push_back(
+        std::hypot(ours.x + ours.width / 2.0 - published.x - published.width / 2.0,
+                   ours.y + ours.height / 2.0 - published.y - published.height / 2.0));
   }
 
   int spread_px_;
   EvisionRow row_;
-  std::vector<double> width_, height_, width_off_px_, height_off_px_, width_off_, height_off_, centre_off_;
+  std::vector<double> width_, height_, width_off_px_, height_off_px_, width_off_, height_off_,
+      centre_off_;
 };
 
-Sequence read_sequence(const fs::path& groundtruth, const fs::path& positions_file, const Model& model, bool bank) {
+Sequence read_sequence(const fs::path& groundtruth,
+                       const fs::path& positions_file,
+                       const Model& model,
+                       bool bank) {
   const annotation::Evision published = annotation::read_evision(groundtruth);
   const std::vector<Position> positions = read_positions(positions_file);
-  if (positions.size() < 2) throw Error("fewer than two defined positions", {positions_file.string()});
+  if (positions.size() < 2)
+    throw Error("fewer than two defined positions", {positions_file.string()});
   std::map<int, PixelBox> boxes;
   for (const auto& frame : published.frames)
     if (frame) boxes[frame->number] = frame->rect_px;
@@ -225,29 +243,34 @@ Sequence read_sequence(const fs::path& groundtruth, const fs::path& positions_fi
     if (box == boxes.end()) continue;
     const double time_s = (position.number - 1) / kRateHz;
     const Quaternion world_from_body = path.at(std::min(time_s, path.end_s()))->world_from_body;
-    sequence.frames.push_back({position.number, time_s,
-                               {world_from_body, position.intruder_ned_m - position.camera_ned_m}, box->second,
+    sequence.frames.push_back({position.number,
+                               time_s,
+                               {world_from_body, position.intruder_ned_m - position.camera_ned_m},
+                               box->second,
                                Homography::Identity()});
   }
   return sequence;
 }
 
-// Gives every frame the homography that its background had at that time, from the centres of the published boxes.
+// Gives every frame the homography that its background had at that time, from the centres of the
+// published boxes.
 void recover_motion(std::vector<Sequence>& sequences) {
-  std::map<std::pair<char, int>, std::vector<Sighting>> sightings;  // of a background (a name's first letter) and frame
+  std::map<std::pair<char, int>, std::vector<Sighting>>
+      sightings;  // of a background (a name's first letter) and frame
   for (const Sequence& sequence : sequences) {
     for (const Frame& frame : sequence.frames) {
       const PixelBox& p = frame.published;
       const auto still = outline_box(*sequence.model, frame);
       if (!still || !is_box(p) || touches_border(p)) continue;
       sightings[{sequence.name[0], frame.number}].push_back(
-          {{still->x + still->width / 2, still->y + still->height / 2}, {p.x + p.width / 2.0, p.y + p.height / 2.0}});
+          {{still->x + still->width / 2, still->y + still->height / 2},
+           {p.x + p.width / 2.0, p.y + p.height / 2.0}});
     }
   }
   for (Sequence& sequence : sequences)
     for (Frame& frame : sequence.frames)
-      frame.frame_from_nominal = motion_from_sightings(sightings[{sequence.name[0], frame.number}],
-                                                       {kWidth / 2.0, kHeight / 2.0}, kFocalPx);
+      frame.frame_from_nominal = motion_from_sightings(
+          sightings[{sequence.name[0], frame.number}], {kWidth / 2.0, kHeight / 2.0}, kFocalPx);
 }
 
 EvisionRow compare(const Sequence& sequence, const EvisionOptions& options) {
@@ -274,15 +297,19 @@ std::vector<fs::path> groundtruth_files(const fs::path& folder) {
 
 }  // namespace
 
-std::vector<EvisionRow> evision_table(const fs::path& folder, const EvisionOptions& options, const Warn& warn) {
+std::vector<EvisionRow> evision_table(const fs::path& folder,
+                                      const EvisionOptions& options,
+                                      const Warn& warn) {
   const std::vector<fs::path> files = groundtruth_files(folder);
   const Model airliner(options.airliner, options.scale, warn);
   const Model light(options.light_aircraft, options.scale, warn);
   std::vector<Sequence> sequences;
   for (const fs::path& file : files) {
     const bool is_light = file.stem().string().ends_with("C172");
-    sequences.push_back(read_sequence(file, folder / "positions" / (file.stem().string() + ".csv"),
-                                      is_light ? light : airliner, options.bank));
+    sequences.push_back(read_sequence(file,
+                                      folder / "positions" / (file.stem().string() + ".csv"),
+                                      is_light ? light : airliner,
+                                      options.bank));
   }
   if (options.recover_motion) recover_motion(sequences);
   std::vector<EvisionRow> rows;

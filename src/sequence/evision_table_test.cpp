@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/evision_table.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "base/error.h"
 #include "sequence/evision_motion.h"
@@ -12,24 +12,27 @@
 namespace airtruth::sequence {
 namespace {
 
-// A camera that has flown s times its height over a plane: a point of the plane y below the horizon is now at
-// y / (1 - s y), by similar triangles; and all is then rolled and shifted.
+// A camera that has flown s times its height over a plane: a point of the plane y below the horizon
+// is now at y / (1 - s y), by similar triangles; and all is then rolled and shifted.
 TEST(EvisionMotion, RecoversShiftRollAndDriftFromPoints) {
   const Pixel centre(640, 480);
   const double focal = 480;
   const double roll = 0.06;
   const double drift = 0.25;
   std::vector<Sighting> sightings;
-  for (const Pixel& still : {Pixel(100, 300), Pixel(1100, 350), Pixel(640, 60), Pixel(600, 420), Pixel(900, 150)}) {
+  for (const Pixel& still :
+       {Pixel(100, 300), Pixel(1100, 350), Pixel(640, 60), Pixel(600, 420), Pixel(900, 150)}) {
     const double x = (still.x() - 640) / focal;
     const double y = (still.y() - 480) / focal;
     const double u = focal * x / (1 - drift * y);
     const double v = focal * y / (1 - drift * y);
-    sightings.push_back({still, {640 + std::cos(roll) * u - std::sin(roll) * v + 12,
-                                 480 + std::sin(roll) * u + std::cos(roll) * v - 30}});
+    sightings.push_back({still,
+                         {640 + std::cos(roll) * u - std::sin(roll) * v + 12,
+                          480 + std::sin(roll) * u + std::cos(roll) * v - 30}});
   }
   const Homography h = motion_from_sightings(sightings, centre, focal);
-  for (const Sighting& s : sightings) EXPECT_NEAR((apply(h, s.still_px) - s.found_px).norm(), 0, 1.0);
+  for (const Sighting& s : sightings)
+    EXPECT_NEAR((apply(h, s.still_px) - s.found_px).norm(), 0, 1.0);
 }
 
 TEST(EvisionMotion, OneSightingGivesAShiftAndNoneGivesNothing) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -19,12 +20,14 @@ namespace {
 
 video::Format format_of(const fs::path& out) {
   const std::string extension = out.extension().string();
-  if (extension.empty()) throw Error("has no extension; expected .mp4, .mkv or .avi", {out.string()});
+  if (extension.empty())
+    throw Error("has no extension; expected .mp4, .mkv or .avi", {out.string()});
   return video::format_from_name(extension.substr(1));
 }
 
 void refuse_existing(const fs::path& out, bool overwrite) {
-  if (fs::exists(out) && !overwrite) throw Error("exists already; give --overwrite to replace it", {out.string()});
+  if (fs::exists(out) && !overwrite)
+    throw Error("exists already; give --overwrite to replace it", {out.string()});
 }
 
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
@@ -45,7 +48,8 @@ std::size_t intruder_index(const annotation::Frame& truth, const std::string& id
       return i;
     }
   }
-  throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" + (id.empty() ? "" : " '" + id + "'") +
+  throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" +
+              (id.empty() ? "" : " '" + id + "'") +
               "; expected a frame in which one is in view (see truth.jsonl)");
 }
 
@@ -63,7 +67,8 @@ PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
 Finished open_finished(const fs::path& folder) {
   const fs::path record_file = folder / "sequence.json";
   if (!fs::exists(record_file))
-    throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished", {folder.string()});
+    throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished",
+                {folder.string()});
   Finished finished;
   finished.folder = folder;
   try {
@@ -71,11 +76,13 @@ Finished open_finished(const fs::path& folder) {
     finished.name = record.at("name").get<std::string>();
     finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(std::string("is not a record of airtruth: ") + error.what(), {record_file.string()});
+    throw Error(std::string("is not a record of airtruth: ") + error.what(),
+                {record_file.string()});
   }
   const auto format = video::format_from_name(finished.scene.output.video);
   finished.video = folder / (finished.name + video::extension(format));
-  if (!fs::exists(finished.video)) throw Error("is missing; the folder is not whole", {finished.video.string()});
+  if (!fs::exists(finished.video))
+    throw Error("is missing; the folder is not whole", {finished.video.string()});
   finished.truth = annotation::read_truth(folder / "truth.jsonl");
   return finished;
 }
@@ -91,30 +98,39 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
   while (auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
-    if (frame->index >= total) throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
+    if (frame->index >= total)
+      throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
     const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
-    frame->picture = image::picture_from_rgb8(report::overlay(frame->picture, truth), frame->picture.colour);
+    frame->picture =
+        image::picture_from_rgb8(report::overlay(frame->picture, truth), frame->picture.colour);
     writer.write(*frame);
     if (options.progress) options.progress(frame->index + 1, total);
   }
   writer.finish();
 }
 
-image::Rgb8 inspect(const Finished& sequence, std::int64_t frame, const std::string& intruder_id, int zoom) {
+image::Rgb8 inspect(const Finished& sequence,
+                    std::int64_t frame,
+                    const std::string& intruder_id,
+                    int zoom) {
   const auto count = static_cast<std::int64_t>(sequence.truth.frames.size());
   if (frame < 0 || frame >= count)
-    throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " + std::to_string(count - 1),
+    throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " +
+                    std::to_string(count - 1),
                 {sequence.folder.string()});
   const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
   const std::size_t i = intruder_index(truth, intruder_id);
-  const video::Frame before = frame_at(sequence.scene.background.video, sequence.scene.background.first_frame + frame);
+  const video::Frame before =
+      frame_at(sequence.scene.background.video, sequence.scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
   const World world = load_world(sequence.scene, {before.picture.width, before.picture.height}, {});
   const Moment moment = moment_at(world, truth.time_s, truth.frame_from_reference);
   const image::Layer layer = render_layer(sequence.scene, world, moment, Ambient{});
   const bool matte = sequence.scene.composite.method == "matte";
-  return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr}, truth,
-                         area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens), zoom);
+  return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
+                         truth,
+                         area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
+                         zoom);
 }
 
 }  // namespace airtruth::sequence

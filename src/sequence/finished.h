@@ -35,8 +35,11 @@ struct OverlayOptions {
 };
 void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options);
 
-// Background, alpha and result of a frame around its intruder at `zoom`. `intruder_id` empty: the first that is in
-// view. Error where the frame does not exist or no intruder is in view in it.
-image::Rgb8 inspect(const Finished& sequence, std::int64_t frame, const std::string& intruder_id, int zoom);
+// Background, alpha and result of a frame around its intruder at `zoom`. `intruder_id` empty: the
+// first that is in view. Error where the frame does not exist or no intruder is in view in it.
+image::Rgb8 inspect(const Finished& sequence,
+                    std::int64_t frame,
+                    const std::string& intruder_id,
+                    int zoom);
 
 }  // namespace airtruth::sequence

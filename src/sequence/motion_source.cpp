@@ -17,11 +17,14 @@ std::string sha256_of_video(const fs::path& video) {
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::string all;
-  for (const fs::path& file : files) all += file.filename().string() + ' ' + sha256_of_file(file) + '\n';
+  for (const fs::path& file : files)
+    all += file.filename().string() + ' ' + sha256_of_file(file) + '\n';
   return sha256_of(all);
 }
 
-MotionSource::MotionSource(const scene::Scene& scene, const std::string& video_sha256, const image::Mask* mask,
+MotionSource::MotionSource(const scene::Scene& scene,
+                           const std::string& video_sha256,
+                           const image::Mask* mask,
                            bool use_cache)
     : none_(scene.motion.model == "none"),
       smoothed_(scene.motion.model != "none" && scene.motion.reference == "smoothed"),
@@ -75,8 +78,10 @@ void MotionSource::store() const {
   }
 }
 
-std::vector<motion::FrameMotion> measure_motion(video::Reader& reader, const motion::Options& options,
-                                                const image::Mask* mask, std::stop_token stop,
+std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+                                                const motion::Options& options,
+                                                const image::Mask* mask,
+                                                std::stop_token stop,
                                                 const std::function<void(std::int64_t)>& seen) {
   motion::Estimator estimator(reader.info().width, reader.info().height, options, mask);
   std::vector<motion::FrameMotion> result;

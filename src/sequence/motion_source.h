@@ -13,26 +13,33 @@
 #include "scene/scene.h"
 #include "video/reader.h"
 
-// Where a frame's homography comes from: the cache, a pass made before, or an estimator that runs along.
+// Where a frame's homography comes from: the cache, a pass made before, or an estimator that runs
+// along.
 namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
 
-// SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of numbered images.
+// SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of
+// numbered images.
 std::string sha256_of_video(const fs::path& video);
 
 class MotionSource {
  public:
   // model "none": identity for every frame.
-  MotionSource(const scene::Scene& scene, const std::string& video_sha256, const image::Mask* mask, bool use_cache);
+  MotionSource(const scene::Scene& scene,
+               const std::string& video_sha256,
+               const image::Mask* mask,
+               bool use_cache);
 
-  // True when frames must be seen once before the first homography is known (reference "smoothed", not cached).
+  // True when frames must be seen once before the first homography is known (reference "smoothed",
+  // not cached).
   bool needs_pass() const { return smoothed_ && !ready_; }
   void set_pass(std::vector<motion::FrameMotion> against_first);
 
   // Frames in order.
   motion::FrameMotion next(const video::Frame& frame);
-  // After the last frame: keeps what was measured for the next run. A cache that cannot be written is no error.
+  // After the last frame: keeps what was measured for the next run. A cache that cannot be written
+  // is no error.
   void store() const;
   bool from_cache() const { return from_cache_; }
 
@@ -41,7 +48,7 @@ class MotionSource {
 
   bool none_ = false;
   bool smoothed_ = false;
-  bool ready_ = false;       // all_ holds every frame
+  bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
   bool use_cache_ = true;
   motion::Options options_;
@@ -52,9 +59,12 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
-// Motion of a whole clip against its first frame; `seen` after each frame. Throws Interrupted on stop.
-std::vector<motion::FrameMotion> measure_motion(video::Reader& reader, const motion::Options& options,
-                                                const image::Mask* mask, std::stop_token stop,
+// Motion of a whole clip against its first frame; `seen` after each frame. Throws Interrupted on
+// stop.
+std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+                                                const motion::Options& options,
+                                                const image::Mask* mask,
+                                                std::stop_token stop,
                                                 const std::function<void(std::int64_t)>& seen);
 
 }  // namespace airtruth::sequence

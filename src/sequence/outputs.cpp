@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -21,7 +22,8 @@ video::WriterOptions writer_options(const scene::Output& output, int threads) {
   return options;
 }
 
-annotation::EvisionFrame evision_frame(const annotation::Frame& truth, const annotation::Intruder& intruder) {
+annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
+                                       const annotation::Intruder& intruder) {
   annotation::EvisionFrame frame;
   frame.number = static_cast<int>(truth.frame) + 1;
   frame.camera_ned_m = truth.camera_position_ned_m;
@@ -44,7 +46,8 @@ std::vector<Checksum> checksums_below(const fs::path& folder) {
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<Checksum> result;
-  for (const fs::path& file : files) result.push_back({fs::relative(file, folder).string(), sha256_of_file(file)});
+  for (const fs::path& file : files)
+    result.push_back({fs::relative(file, folder).string(), sha256_of_file(file)});
   return result;
 }
 
@@ -65,8 +68,11 @@ annotation::LensFacts facts_of(const lens::Lens& lens) {
   return facts;
 }
 
-Outputs::Outputs(const fs::path& folder, const scene::Scene& scene, const lens::Lens& lens,
-                 const video::StreamInfo& info, int threads)
+Outputs::Outputs(const fs::path& folder,
+                 const scene::Scene& scene,
+                 const lens::Lens& lens,
+                 const video::StreamInfo& info,
+                 int threads)
     : folder_(folder),
       scene_(scene),
       lens_(facts_of(lens)),
@@ -75,14 +81,17 @@ Outputs::Outputs(const fs::path& folder, const scene::Scene& scene, const lens::
       truth_(folder / "truth.jsonl", std::ios::binary),
       evision_(scene.intruders.size()),
       sheet_(scene.name, info.frame_count_estimate) {
-  if (!truth_) throw Error(std::string("cannot create: ") + std::strerror(errno), {(folder / "truth.jsonl").string()});
+  if (!truth_)
+    throw Error(std::string("cannot create: ") + std::strerror(errno),
+                {(folder / "truth.jsonl").string()});
 }
 
 void Outputs::write(const video::Frame& frame, const annotation::Frame& truth) {
   writer_.write(frame);
   truth_ << annotation::jsonl_line(truth, lens_) << '\n';
   if (!truth_)
-    throw Error(std::string("cannot write: ") + std::strerror(errno), {(folder_ / "truth.jsonl").string()});
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
   camera_ned_m_.push_back(truth.camera_position_ned_m);
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
@@ -97,7 +106,8 @@ void Outputs::finish(const std::vector<Checksum>& inputs, const Summary& summary
   writer_.finish();
   truth_.close();
   if (!truth_)
-    throw Error(std::string("cannot write: ") + std::strerror(errno), {(folder_ / "truth.jsonl").string()});
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
   write_annotations();
   write_preview();
   write_record(inputs, summary);
@@ -106,7 +116,8 @@ void Outputs::finish(const std::vector<Checksum>& inputs, const Summary& summary
 void Outputs::write_annotations() const {
   for (std::size_t i = 0; i < evision_.size(); ++i) {
     const std::string suffix = evision_.size() == 1 ? "" : "-" + scene_.intruders[i].id;
-    write_file(folder_ / (scene_.name + suffix + ".xml"), annotation::evision_xml(evision_[i], camera_ned_m_));
+    write_file(folder_ / (scene_.name + suffix + ".xml"),
+               annotation::evision_xml(evision_[i], camera_ned_m_));
   }
 }
 

@@ -30,7 +30,10 @@ struct Checksum {
 
 class Outputs {
  public:
-  Outputs(const fs::path& folder, const scene::Scene& scene, const lens::Lens& lens, const video::StreamInfo& info,
+  Outputs(const fs::path& folder,
+          const scene::Scene& scene,
+          const lens::Lens& lens,
+          const video::StreamInfo& info,
           int threads);
 
   void write(const video::Frame& frame, const annotation::Frame& truth);

@@ -13,10 +13,15 @@ namespace {
 
 class Matte : public Painter {
  public:
-  Matte(const scene::Scene& scene, const World& world, const image::Mask* mask, std::stop_token stop)
+  Matte(const scene::Scene& scene,
+        const World& world,
+        const image::Mask* mask,
+        std::stop_token stop)
       : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
 
-  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
+  Painted paint(image::Picture& picture,
+                const Moment& moment,
+                const Ambient& ambient) const override {
     Painted painted;
     const Stopwatch rendering;
     painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
@@ -35,10 +40,14 @@ class Matte : public Painter {
 
 class ChromaKey : public Painter {
  public:
-  ChromaKey(const scene::Scene& scene, const World& world, const image::Mask* mask, const Options& options)
+  ChromaKey(const scene::Scene& scene,
+            const World& world,
+            const image::Mask* mask,
+            const Options& options)
       : scene_(scene), world_(world), mask_(mask), stop_(options.stop) {
     if (!std::holds_alternative<lens::Pinhole>(world.lens.model()))
-      throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole alone; the lens is ") +
+      throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the "
+                              "pinhole alone; the lens is ") +
                       world.lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
                   scene.lens.where);
     backdrop::Options gl;
@@ -48,7 +57,9 @@ class ChromaKey : public Painter {
     backdrop_ = std::make_unique<backdrop::Backdrop>(size.width, size.height, gl);
   }
 
-  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const override {
+  Painted paint(image::Picture& picture,
+                const Moment& moment,
+                const Ambient& ambient) const override {
     Painted painted;
     const Stopwatch rendering;
     painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
@@ -57,23 +68,33 @@ class ChromaKey : public Painter {
     std::vector<backdrop::Instance> instances;
     for (std::size_t i = 0; i < world_.actors.size(); ++i) {
       if (!moment.search[i]) continue;
-      instances.push_back({&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
+      instances.push_back(
+          {&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
     }
     if (instances.empty()) return painted;
-    const backdrop::Light light{render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
-                                ambient.sun, ambient.sky, ambient.ground};
-    const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px, pinhole.principal_point_px,
-                                                        moment.sight.cam_from_world, light, instances);
+    const backdrop::Light light{
+        render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
+        ambient.sun,
+        ambient.sky,
+        ambient.ground};
+    const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
+                                                        pinhole.principal_point_px,
+                                                        moment.sight.cam_from_world,
+                                                        light,
+                                                        instances);
     const image::Picture before = picture.clone();
-    composite::composite_chroma_key(picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
+    composite::composite_chroma_key(
+        picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
     painted.visible = changed(before, picture, painted.layer, moment);
     return painted;
   }
 
  private:
   // What changed, shared out among the intruders by where geometry says they are.
-  std::vector<composite::Visible> changed(const image::Picture& before, const image::Picture& after,
-                                          const image::Layer& layer, const Moment& moment) const;
+  std::vector<composite::Visible> changed(const image::Picture& before,
+                                          const image::Picture& after,
+                                          const image::Layer& layer,
+                                          const Moment& moment) const;
 
   const scene::Scene& scene_;
   const World& world_;
@@ -87,7 +108,8 @@ bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
   if (a.plane_count == 1) return false;
   const int cx = x >> image::log2_chroma_width(a.colour.chroma);
   const int cy = y >> image::log2_chroma_height(a.colour.chroma);
-  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] || a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
+  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] ||
+         a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
 }
 
 void add_pixel(composite::Visible& visible, int x, int y) {
@@ -96,15 +118,19 @@ void add_pixel(composite::Visible& visible, int x, int y) {
   ++visible.pixels;
 }
 
-std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before, const image::Picture& after,
-                                                   const image::Layer& layer, const Moment& moment) const {
+std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
+                                                   const image::Picture& after,
+                                                   const image::Layer& layer,
+                                                   const Moment& moment) const {
   constexpr double kLanczosReachPx = 5;  // an 8x8 kernel spreads an edge by four pixels
   std::vector<composite::Visible> visible(world_.actors.size());
   for (std::size_t i = 0; i < visible.size(); ++i) {
     if (!moment.search[i]) continue;
     const Box& box = *moment.search[i];
-    const int x1 = std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
-    const int y1 = std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
+    const int x1 =
+        std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
+    const int y1 =
+        std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
     for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
       for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
         if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
@@ -123,13 +149,21 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
 
 }  // namespace
 
-image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient,
+image::Layer render_layer(const scene::Scene& scene,
+                          const World& world,
+                          const Moment& moment,
+                          const Ambient& ambient,
                           const std::stop_token& stop) {
-  const render::View view{&world.lens, moment.sight.cam_from_world.inverse(),
-                          moment.sight.frame_from_nominal.inverse(), world.lens.size().width,
+  const render::View view{&world.lens,
+                          moment.sight.cam_from_world.inverse(),
+                          moment.sight.frame_from_nominal.inverse(),
+                          world.lens.size().width,
                           world.lens.size().height};
-  const render::Light light{render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg), ambient.sun,
-                            ambient.sky, ambient.ground};
+  const render::Light light{
+      render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg),
+      ambient.sun,
+      ambient.sky,
+      ambient.ground};
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
@@ -139,12 +173,16 @@ image::Layer render_layer(const scene::Scene& scene, const World& world, const M
     instances.push_back(instance);
   }
   if (!any) return {};
-  return render::render(view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
+  return render::render(
+      view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
 }
 
-std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
+                                      const World& world,
+                                      const image::Mask* mask,
                                       const Options& options) {
-  if (scene.composite.method == "chroma-key") return std::make_unique<ChromaKey>(scene, world, mask, options);
+  if (scene.composite.method == "chroma-key")
+    return std::make_unique<ChromaKey>(scene, world, mask, options);
   return std::make_unique<Matte>(scene, world, mask, options.stop);
 }
 

@@ -16,24 +16,31 @@
 namespace airtruth::sequence {
 
 struct Painted {
-  image::Layer layer;                         // what the ray tracer drew (for chroma-key: what it would draw)
-  std::vector<composite::Visible> visible;    // per intruder; empty where none is in view
-  double render_s = 0;                        // of the time that painting took, the ray tracer's
+  image::Layer layer;  // what the ray tracer drew (for chroma-key: what it would draw)
+  std::vector<composite::Visible> visible;  // per intruder; empty where none is in view
+  double render_s = 0;                      // of the time that painting took, the ray tracer's
 };
 
 class Painter {
  public:
   virtual ~Painter() = default;
   // matte: any thread, any order. chroma-key: one thread.
-  virtual Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) const = 0;
+  virtual Painted paint(image::Picture& picture,
+                        const Moment& moment,
+                        const Ambient& ambient) const = 0;
 };
 
 // Error where the method cannot draw through the scene's lens.
-std::unique_ptr<Painter> make_painter(const scene::Scene& scene, const World& world, const image::Mask* mask,
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
+                                      const World& world,
+                                      const image::Mask* mask,
                                       const Options& options);
 
 // The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
-image::Layer render_layer(const scene::Scene& scene, const World& world, const Moment& moment, const Ambient& ambient,
+image::Layer render_layer(const scene::Scene& scene,
+                          const World& world,
+                          const Moment& moment,
+                          const Ambient& ambient,
                           const std::stop_token& stop = {});
 
 }  // namespace airtruth::sequence

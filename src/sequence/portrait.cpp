@@ -33,7 +33,8 @@ image::Picture sky_tile() {
       rgb.at(x, y)[2] = static_cast<std::uint8_t>(178 + 30 * t);
     }
   }
-  return image::picture_from_rgb8(rgb, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  return image::picture_from_rgb8(rgb,
+                                  {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
 }
 
 image::Rgb8 tile(const aircraft::Aircraft& aircraft, const render::Model& model, const Pose& pose) {
@@ -41,17 +42,21 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft, const render::Model& model,
   const double largest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double range_m = 12 * largest_m;
   const double focal_px = pose.length_px * range_m / largest_m;
-  const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {kTilePx / 2.0, kTilePx / 2.0}}, {kTilePx, kTilePx});
+  const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {kTilePx / 2.0, kTilePx / 2.0}},
+                        {kTilePx, kTilePx});
   const Vector3 centre = 0.5 * (size.low_in_body + size.high_in_body);
   const double azimuth = radians(pose.azimuth_deg);
   const double elevation = radians(pose.elevation_deg);
-  const Vector3 to_eye(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+  const Vector3 to_eye(std::cos(elevation) * std::cos(azimuth),
+                       std::cos(elevation) * std::sin(azimuth),
                        -std::sin(elevation));
   // The aircraft stands level at the origin, nose north; the eye looks back at its middle.
   const Quaternion eye = world_from_body({degrees(azimuth) + 180, -pose.elevation_deg, 0});
-  const Rigid world_from_cam = Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  const Rigid world_from_cam =
+      Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
   const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const annotation::Silhouette silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)};
+  const annotation::Silhouette silhouette{&aircraft.mesh,
+                                          aircraft::silhouette_points(aircraft.mesh)};
   const auto box = annotation::exact_box(sight, silhouette, {}, 0).box;
   render::Light light;
   light.to_sun_in_world = render::to_sun(degrees(azimuth) + 35, 45);

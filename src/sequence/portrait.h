@@ -6,8 +6,8 @@
 
 namespace airtruth::sequence {
 
-// A contact sheet of one aircraft as the renderer sees it: nose, tail, both sides, above, below, two oblique views and
-// how it looks at 40 and 10 pixels, each with its name.
+// A contact sheet of one aircraft as the renderer sees it: nose, tail, both sides, above, below,
+// two oblique views and how it looks at 40 and 10 pixels, each with its name.
 image::Rgb8 portrait(const aircraft::Aircraft& aircraft);
 
 }  // namespace airtruth::sequence

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -39,8 +39,10 @@ std::optional<PixelBox> around_intruders(const Moment& moment) {
   std::optional<PixelBox> all;
   for (const auto& box : moment.search) {
     if (!box) continue;
-    const PixelBox whole{static_cast<int>(std::floor(box->x)), static_cast<int>(std::floor(box->y)),
-                         static_cast<int>(std::ceil(box->width)), static_cast<int>(std::ceil(box->height))};
+    const PixelBox whole{static_cast<int>(std::floor(box->x)),
+                         static_cast<int>(std::floor(box->y)),
+                         static_cast<int>(std::ceil(box->width)),
+                         static_cast<int>(std::ceil(box->height))};
     all = all ? bounds(*all, whole) : whole;
   }
   return all;
@@ -76,7 +78,8 @@ class Run {
     outputs_.reset();
     staged_.commit();
     summary_.seconds = running.seconds();
-    summary_.stages = {clocks_.read, clocks_.move, clocks_.render, clocks_.composite, clocks_.write};
+    summary_.stages = {
+        clocks_.read, clocks_.move, clocks_.render, clocks_.composite, clocks_.write};
     return summary_;
   }
 
@@ -98,10 +101,12 @@ class Run {
   // The stream, with the number of frames that this run will make of it.
   video::StreamInfo stream_info() const {
     video::StreamInfo info = reader_.info();
-    const std::int64_t left = std::max<std::int64_t>(0, info.frame_count_estimate - scene_.background.first_frame);
+    const std::int64_t left =
+        std::max<std::int64_t>(0, info.frame_count_estimate - scene_.background.first_frame);
     info.frame_count_estimate = left;
     if (scene_.background.frame_count)
-      info.frame_count_estimate = left > 0 ? std::min(left, *scene_.background.frame_count) : *scene_.background.frame_count;
+      info.frame_count_estimate = left > 0 ? std::min(left, *scene_.background.frame_count)
+                                           : *scene_.background.frame_count;
     total_ = info.frame_count_estimate;
     return info;
   }
@@ -160,7 +165,8 @@ class Run {
     }
     summary_.frames_visible += any ? 1 : 0;
     const motion::State state = work.motion.state;
-    summary_.frames_bridged += state == motion::State::kBridged || state == motion::State::kCut ? 1 : 0;
+    summary_.frames_bridged +=
+        state == motion::State::kBridged || state == motion::State::kCut ? 1 : 0;
     summary_.frames_damaged += work.frame.damaged ? 1 : 0;
     if (options_.progress) options_.progress({summary_.frames, total_});
   }
@@ -171,7 +177,8 @@ class Run {
     // OpenGL's context belongs to one thread: the paper's road runs in an arena of one.
     const bool one_thread = scene_.composite.method == "chroma-key";
     tbb::task_arena arena(one_thread ? 1 : threads);
-    const auto paint_mode = one_thread ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
+    const auto paint_mode =
+        one_thread ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
     arena.execute([&] {
       tbb::parallel_pipeline(
           in_flight,
@@ -188,12 +195,14 @@ class Run {
                                                  }) &
               tbb::make_filter<WorkPtr, WorkPtr>(paint_mode,
                                                  [&](WorkPtr work) {
-                                                   if (!options_.stop.stop_requested()) paint(*work);
+                                                   if (!options_.stop.stop_requested())
+                                                     paint(*work);
                                                    return work;
                                                  }) &
               tbb::make_filter<WorkPtr, void>(tbb::filter_mode::serial_in_order,
                                               [&](const WorkPtr& work) {
-                                                // A frame that was not painted comes after the stop.
+                                                // A frame that was not painted comes after the
+                                                // stop.
                                                 if (!options_.stop.stop_requested()) write(*work);
                                               }));
     });
@@ -202,28 +211,39 @@ class Run {
   void say_what_was_odd() const {
     const auto number = [](std::int64_t n) { return std::to_string(n); };
     if (reader_.corrupt_packets() > 0 || summary_.frames_damaged > 0)
-      warn(options_.warn, scene_.background.video.string() + ": " + number(reader_.corrupt_packets()) +
-                              " corrupt packets; " + number(summary_.frames_damaged) + " frames are flagged damaged");
+      warn(options_.warn,
+           scene_.background.video.string() + ": " + number(reader_.corrupt_packets()) +
+               " corrupt packets; " + number(summary_.frames_damaged) +
+               " frames are flagged damaged");
     if (reader_.ends_early())
-      warn(options_.warn, scene_.background.video.string() + ": ends early, after " + number(summary_.frames) + " frames");
+      warn(options_.warn,
+           scene_.background.video.string() + ": ends early, after " + number(summary_.frames) +
+               " frames");
     if (scene_.background.frame_count && summary_.frames < *scene_.background.frame_count)
-      warn(options_.warn, to_string(scene_.background.where) + ": frame_count is " +
-                              number(*scene_.background.frame_count) + ", but the video holds " +
-                              number(summary_.frames) + " frames from first_frame on");
+      warn(options_.warn,
+           to_string(scene_.background.where) + ": frame_count is " +
+               number(*scene_.background.frame_count) + ", but the video holds " +
+               number(summary_.frames) + " frames from first_frame on");
     if (summary_.frames_bridged > 0)
-      warn(options_.warn, "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
-                              " frames; they are bridged, and truth.jsonl says which");
+      warn(options_.warn,
+           "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
+               " frames; they are bridged, and truth.jsonl says which");
     for (std::size_t i = 0; i < seen_.size(); ++i)
       if (!seen_[i]) warn_never_seen(i);
   }
 
   void warn_never_seen(std::size_t i) const {
-    std::string text = to_string(scene_.intruders[i].where) + ": intruder '" + world_.actors[i].id + "' is never visible";
+    std::string text = to_string(scene_.intruders[i].where) + ": intruder '" + world_.actors[i].id +
+                       "' is never visible";
     if (const auto nearest = nearest_approach(world_, i, last_time_s_)) {
       char detail[160];
-      std::snprintf(detail, sizeof detail,
-                    "; it comes nearest to the view's edge at %.2f s, %.1f degrees from it, at a range of %.0f m",
-                    nearest->time_s, nearest->off_view_deg, nearest->range_m);
+      std::snprintf(detail,
+                    sizeof detail,
+                    "; it comes nearest to the view's edge at %.2f s, %.1f degrees from it, at a "
+                    "range of %.0f m",
+                    nearest->time_s,
+                    nearest->off_view_deg,
+                    nearest->range_m);
       text += detail;
     } else {
       text += "; its path does not overlap the clip in time";
@@ -234,7 +254,9 @@ class Run {
   std::vector<Checksum> inputs() const {
     std::vector<Checksum> result;
     if (!video_sha256_.empty()) result.push_back({scene_.background.video.string(), video_sha256_});
-    const auto add = [&](const fs::path& file) { result.push_back({file.string(), sha256_of_file(file)}); };
+    const auto add = [&](const fs::path& file) {
+      result.push_back({file.string(), sha256_of_file(file)});
+    };
     if (scene_.background.mask) add(*scene_.background.mask);
     if (scene_.lens.file) add(*scene_.lens.file);
     if (scene_.camera.path_file) add(*scene_.camera.path_file);
@@ -275,7 +297,8 @@ class Run {
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.threads));
   const fs::path folder = out / scene.name;
   Run run(scene, folder, options);
   Summary summary = run.run();

@@ -24,17 +24,18 @@ struct Progress {
 
 struct Options {
   bool overwrite = false;
-  int threads = 0;                    // 0: one per core. The annotation's bytes do not depend on it.
+  int threads = 0;  // 0: one per core. The annotation's bytes do not depend on it.
   bool use_cache = true;
-  std::optional<int> gpu;             // for chroma-key's OpenGL
+  std::optional<int> gpu;  // for chroma-key's OpenGL
   bool software_gl = false;
   Warn warn;
   std::function<void(const Progress&)> progress;
   std::stop_token stop;
 };
 
-// Where the time of a run went: seconds inside each stage, summed over its frames. The stages overlap, so that their
-// sum is more than the wall time. The codecs' own threads are not in it, only the wait for them.
+// Where the time of a run went: seconds inside each stage, summed over its frames. The stages
+// overlap, so that their sum is more than the wall time. The codecs' own threads are not in it,
+// only the wait for them.
 struct StageSeconds {
   double read = 0;       // decode
   double move = 0;       // the camera's motion, the light around the intruder, where everything is
@@ -44,18 +45,19 @@ struct StageSeconds {
 };
 
 struct Summary {
-  fs::path folder;                    // <out>/<name>
+  fs::path folder;  // <out>/<name>
   std::int64_t frames = 0;
-  std::int64_t frames_visible = 0;    // at least one intruder visible
-  std::int64_t frames_bridged = 0;    // motion not measured
+  std::int64_t frames_visible = 0;  // at least one intruder visible
+  std::int64_t frames_bridged = 0;  // motion not measured
   std::int64_t frames_damaged = 0;
-  double seconds = 0;                 // of the frames: without opening the inputs and loading the aircraft
+  double seconds = 0;  // of the frames: without opening the inputs and loading the aircraft
   StageSeconds stages;
   bool motion_from_cache = false;
 };
 
-// Leaves <out>/<name>/ whole (docs/formats/output.md) or not at all: everything is written in a hidden folder beside
-// it and renamed at the end. Throws Error for what the user gave, Interrupted after options.stop.
+// Leaves <out>/<name>/ whole (docs/formats/output.md) or not at all: everything is written in a
+// hidden folder beside it and renamed at the end. Throws Error for what the user gave, Interrupted
+// after options.stop.
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options);
 
 }  // namespace airtruth::sequence

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/staging.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "base/error.h"
 
@@ -23,8 +23,9 @@ void refuse_what_exists(const fs::path& folder, bool overwrite) {
   if (!fs::exists(fs::symlink_status(folder))) return;
   if (!overwrite) throw Error("exists already; give --overwrite to replace it", {folder.string()});
   if (!replaceable(folder))
-    throw Error("is not a folder that airtruth made (it holds no sequence.json); it is not replaced",
-                {folder.string()});
+    throw Error(
+        "is not a folder that airtruth made (it holds no sequence.json); it is not replaced",
+        {folder.string()});
 }
 
 void clear(const fs::path& folder) {
@@ -33,16 +34,20 @@ void clear(const fs::path& folder) {
 
 }  // namespace
 
-StagedFolder::StagedFolder(fs::path final_folder, bool overwrite) : final_(std::move(final_folder)) {
+StagedFolder::StagedFolder(fs::path final_folder, bool overwrite)
+    : final_(std::move(final_folder)) {
   refuse_what_exists(final_, overwrite);
   const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
   part_ = parent / ("." + final_.filename().string() + ".part");
   std::error_code failed;
   made_parent_ = fs::create_directories(parent, failed);
   if (!failed) fs::create_directory(part_, failed);
-  if (failed) throw Error("cannot create the output folder: " + failed.message(), {parent.string()});
+  if (failed)
+    throw Error("cannot create the output folder: " + failed.message(), {parent.string()});
   lock_ = ::open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) throw Error(std::string("cannot open the output folder: ") + std::strerror(errno), {part_.string()});
+  if (lock_ < 0)
+    throw Error(std::string("cannot open the output folder: ") + std::strerror(errno),
+                {part_.string()});
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     ::close(lock_);
     throw Error("another run is writing this folder now", {final_.string()});
@@ -51,7 +56,8 @@ StagedFolder::StagedFolder(fs::path final_folder, bool overwrite) : final_(std::
     clear(part_);
   } catch (const fs::filesystem_error& error) {
     ::close(lock_);
-    throw Error("cannot clear what an earlier run left: " + error.code().message(), {part_.string()});
+    throw Error("cannot clear what an earlier run left: " + error.code().message(),
+                {part_.string()});
   }
 }
 
@@ -59,7 +65,8 @@ StagedFolder::~StagedFolder() {
   if (!committed_) {
     std::error_code ignored;
     fs::remove_all(part_, ignored);
-    if (made_parent_) fs::remove(final_.parent_path(), ignored);  // fails, rightly, where it is not empty
+    if (made_parent_)
+      fs::remove(final_.parent_path(), ignored);  // fails, rightly, where it is not empty
   }
   ::close(lock_);
 }

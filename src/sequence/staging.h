@@ -7,13 +7,15 @@ namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
 
-// A folder that appears whole or not at all: files go into a hidden folder beside it (".NAME.part"), and commit()
-// renames that into place. Destroyed before commit(), it leaves nothing, and what was there before is untouched.
-// Two runs over one folder: the second is refused at once (a lock that the kernel drops when a process dies, so
-// that what a killed run left is simply cleared away).
+// A folder that appears whole or not at all: files go into a hidden folder beside it
+// (".NAME.part"), and commit() renames that into place. Destroyed before commit(), it leaves
+// nothing, and what was there before is untouched. Two runs over one folder: the second is refused
+// at once (a lock that the kernel drops when a process dies, so that what a killed run left is
+// simply cleared away).
 class StagedFolder {
  public:
-  // Error where `final` exists and overwrite is false, is no folder of ours to replace, or cannot be written.
+  // Error where `final` exists and overwrite is false, is no folder of ours to replace, or cannot
+  // be written.
   StagedFolder(fs::path final_folder, bool overwrite);
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;

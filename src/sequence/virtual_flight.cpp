@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/virtual_flight.h"
 
-#include <tbb/info.h>
-#include <tbb/parallel_pipeline.h>
-
 #include <cmath>
 #include <memory>
+
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
 
 #include "base/error.h"
 
@@ -28,7 +28,9 @@ video::StreamInfo stream_of(const synthetic::FlightOptions& options, const image
 
 }  // namespace
 
-void write_flight(const synthetic::Flight& flight, const fs::path& out, const VirtualFlightOptions& options) {
+void write_flight(const synthetic::Flight& flight,
+                  const fs::path& out,
+                  const VirtualFlightOptions& options) {
   const synthetic::FlightOptions& what = flight.options();
   video::WriterOptions writer_options;
   writer_options.format = options.format;
@@ -38,25 +40,28 @@ void write_flight(const synthetic::Flight& flight, const fs::path& out, const Vi
   int next = 0;
   const auto in_flight = static_cast<std::size_t>(tbb::info::default_concurrency()) + 2;
   tbb::parallel_pipeline(
-      in_flight, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
-                                             [&](tbb::flow_control& control) {
-                                               if (next == what.frame_count || options.stop.stop_requested())
-                                                 control.stop();
-                                               return next++;
-                                             }) &
-                     tbb::make_filter<int, FramePtr>(tbb::filter_mode::parallel,
-                                                     [&](int index) {
-                                                       auto frame = std::make_shared<video::Frame>();
-                                                       frame->index = index;
-                                                       frame->pts = index;
-                                                       frame->time_s = index / what.frame_rate_hz;
-                                                       frame->picture = flight.frame(index);
-                                                       return frame;
-                                                     }) &
-                     tbb::make_filter<FramePtr, void>(tbb::filter_mode::serial_in_order, [&](const FramePtr& frame) {
-                       writer.write(*frame);
-                       if (options.progress) options.progress(frame->index + 1, what.frame_count);
-                     }));
+      in_flight,
+      tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
+                                  [&](tbb::flow_control& control) {
+                                    if (next == what.frame_count || options.stop.stop_requested())
+                                      control.stop();
+                                    return next++;
+                                  }) &
+          tbb::make_filter<int, FramePtr>(tbb::filter_mode::parallel,
+                                          [&](int index) {
+                                            auto frame = std::make_shared<video::Frame>();
+                                            frame->index = index;
+                                            frame->pts = index;
+                                            frame->time_s = index / what.frame_rate_hz;
+                                            frame->picture = flight.frame(index);
+                                            return frame;
+                                          }) &
+          tbb::make_filter<FramePtr, void>(tbb::filter_mode::serial_in_order,
+                                           [&](const FramePtr& frame) {
+                                             writer.write(*frame);
+                                             if (options.progress)
+                                               options.progress(frame->index + 1, what.frame_count);
+                                           }));
   if (options.stop.stop_requested()) throw Interrupted();
   writer.finish();
 }

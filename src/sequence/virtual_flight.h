@@ -20,7 +20,10 @@ struct VirtualFlightOptions {
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
-// Encodes a virtual flight as a video, frames made in parallel and written in order. Throws Interrupted on stop.
-void write_flight(const synthetic::Flight& flight, const fs::path& out, const VirtualFlightOptions& options);
+// Encodes a virtual flight as a video, frames made in parallel and written in order. Throws
+// Interrupted on stop.
+void write_flight(const synthetic::Flight& flight,
+                  const fs::path& out,
+                  const VirtualFlightOptions& options);
 
 }  // namespace airtruth::sequence

@@ -33,30 +33,37 @@ std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
 
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
-    if (lens.model == "pinhole") return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    if (lens.model == "fisheye") return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
+    if (lens.model == "pinhole")
+      return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    if (lens.model == "fisheye")
+      return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
   }
   Pixel focal{0, 0};
   if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
   if (lens.vertical_fov_deg) {
-    const lens::Lens plain = lens.model == "fisheye" ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
-                                                     : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    const lens::Lens plain = lens.model == "fisheye"
+                                 ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
+                                 : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
     focal = {plain.focal_px(), plain.focal_px()};
   }
   Pixel centre{size.width / 2.0, size.height / 2.0};
-  if (lens.principal_point_px) centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
+  if (lens.principal_point_px)
+    centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
   if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
-  if (lens.model == "fisheye") return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
+  if (lens.model == "fisheye")
+    return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
   return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
 }
 
 trajectory::Path camera_path(const scene::Camera& camera) {
   if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
-  return trajectory::uniform(camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+  return trajectory::uniform(
+      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
 }
 
 trajectory::Path intruder_path(const scene::Intruder& intruder) {
-  const trajectory::AttitudeOverride attitude{intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  const trajectory::AttitudeOverride attitude{
+      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
   const trajectory::Path path =
       intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
       : intruder.speed_mps
@@ -110,17 +117,23 @@ std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::Ima
   return box;
 }
 
-annotation::State state_of(const Moment& moment, std::size_t i, const Vector3& p_in_cam,
-                           const image::Layer& layer, const composite::Visible* visible) {
+annotation::State state_of(const Moment& moment,
+                           std::size_t i,
+                           const Vector3& p_in_cam,
+                           const image::Layer& layer,
+                           const composite::Visible* visible) {
   using annotation::State;
   if (visible != nullptr && visible->box) return State::kVisible;
-  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() && layer.area_alone_in_frame_px[i] > 0;
+  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
+                     layer.area_alone_in_frame_px[i] > 0;
   if (drawn) return State::kHidden;
   if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
   return State::kOutside;
 }
 
-void add_geometry(annotation::Intruder& truth, const Moment& moment, const trajectory::State& state) {
+void add_geometry(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state) {
   const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
   const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
   const double range_m = offset.norm();
@@ -133,11 +146,14 @@ void add_geometry(annotation::Intruder& truth, const Moment& moment, const traje
     const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
     truth.range_rate_mps = offset.dot(relative) / range_m;
     truth.azimuth_deg = degrees(std::atan2(p_in_cam.x(), p_in_cam.z()));
-    truth.elevation_deg = degrees(std::atan2(-p_in_cam.y(), std::hypot(p_in_cam.x(), p_in_cam.z())));
+    truth.elevation_deg =
+        degrees(std::atan2(-p_in_cam.y(), std::hypot(p_in_cam.x(), p_in_cam.z())));
   }
 }
 
-void add_pixels(annotation::Intruder& truth, std::size_t i, const image::Layer& layer,
+void add_pixels(annotation::Intruder& truth,
+                std::size_t i,
+                const image::Layer& layer,
                 const composite::Visible& visible) {
   truth.visible_box_px = visible.box;
   truth.visible_area_px = visible.pixels;
@@ -146,10 +162,12 @@ void add_pixels(annotation::Intruder& truth, std::size_t i, const image::Layer& 
   const double alone = layer.area_alone_px[i];
   const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
   truth.hidden_by_own_aircraft = fraction(visible.alpha_before_mask_px - visible.alpha_sum_px);
-  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - visible.alpha_before_mask_px);
+  truth.hidden_by_intruder =
+      fraction(layer.area_alone_in_frame_px[i] - visible.alpha_before_mask_px);
   truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
   constexpr double kRounding = 1e-6;  // sums of float coverages
-  for (double* share : {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+  for (double* share :
+       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
     if (*share < kRounding) *share = 0;
 }
 
@@ -158,8 +176,10 @@ void add_pixels(annotation::Intruder& truth, std::size_t i, const image::Layer& 
 // Intruders share a mesh when they load the same: gear and axes included.
 static std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
   const aircraft::LoadOptions options = load_options(intruder, path);
-  std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' + std::to_string(options.altitude_agl_ft);
-  if (options.axes) key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' +
+                    std::to_string(options.altitude_agl_ft);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
   return key;
 }
 
@@ -170,13 +190,17 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
 }
 
 World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
-  World world{lens_of(scene.lens, size), at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), {}};
+  World world{lens_of(scene.lens, size),
+              at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
+              {}};
   std::map<std::string, Type> types;  // one BVH for all intruders of one type
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = at_place(intruder.where, [&] { return intruder_path(intruder); });
     Type& type = types[type_key(intruder, path)];
-    if (!type.aircraft) type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });
-    annotation::Silhouette silhouette{&type.aircraft->mesh, aircraft::silhouette_points(type.aircraft->mesh)};
+    if (!type.aircraft)
+      type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });
+    annotation::Silhouette silhouette{&type.aircraft->mesh,
+                                      aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
         {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
   }
@@ -187,24 +211,29 @@ Moment moment_at(const World& world, double time_s, const Homography& frame_from
   const auto camera = world.camera.at(time_s);
   if (!camera)
     throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
-                " s, but the clip goes on at " + std::to_string(time_s) + " s; expected a path as long as the clip");
+                " s, but the clip goes on at " + std::to_string(time_s) +
+                " s; expected a path as long as the clip");
   Moment moment;
   moment.time_s = time_s;
   moment.camera = *camera;
-  const Rigid world_from_cam = camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  const Rigid world_from_cam =
+      camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
   moment.sight = {&world.lens, world_from_cam.inverse(), frame_from_reference};
   for (const Actor& actor : world.actors) {
     const auto state = actor.path.at(time_s);
     moment.states.push_back(state);
-    moment.boxes.push_back(state ? annotation::exact_box(moment.sight, actor.silhouette,
-                                                         state->world_from_body_rigid(), time_s)
-                                 : annotation::ExactBox{});
+    moment.boxes.push_back(
+        state ? annotation::exact_box(
+                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s)
+              : annotation::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }
   return moment;
 }
 
-std::vector<annotation::Intruder> truth_of(const World& world, const Moment& moment, const image::Layer& layer,
+std::vector<annotation::Intruder> truth_of(const World& world,
+                                           const Moment& moment,
+                                           const image::Layer& layer,
                                            const std::vector<composite::Visible>& visible) {
   std::vector<annotation::Intruder> result;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
@@ -223,27 +252,34 @@ std::vector<annotation::Intruder> truth_of(const World& world, const Moment& mom
   return result;
 }
 
-std::optional<NearestApproach> nearest_approach(const World& world, std::size_t actor, double end_s) {
+std::optional<NearestApproach> nearest_approach(const World& world,
+                                                std::size_t actor,
+                                                double end_s) {
   std::optional<NearestApproach> best;
   const lens::ImageSize size = world.lens.size();
   for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
     const auto state = world.actors[actor].path.at(time_s);
     const auto camera = world.camera.at(time_s);
     if (!state || !camera) continue;
-    const Rigid world_from_cam = camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+    const Rigid world_from_cam =
+        camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
     const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
-    // The nearest pixel of the image to the direction, through a coarse walk along the image's border.
+    // The nearest pixel of the image to the direction, through a coarse walk along the image's
+    // border.
     double off = kPi;
     for (int i = 0; i <= 64; ++i) {
       const double s = i / 64.0;
-      for (const Pixel& edge : {Pixel(s * size.width, 0), Pixel(s * size.width, size.height), Pixel(0, s * size.height),
+      for (const Pixel& edge : {Pixel(s * size.width, 0),
+                                Pixel(s * size.width, size.height),
+                                Pixel(0, s * size.height),
                                 Pixel(size.width, s * size.height)}) {
         const auto ray = world.lens.ray_from_pixel(edge);
         if (ray && p_in_cam.norm() > 0)
           off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
       }
     }
-    if (!best || degrees(off) < best->off_view_deg) best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
+    if (!best || degrees(off) < best->off_view_deg)
+      best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
   }
   return best;
 }

@@ -44,14 +44,17 @@ struct Moment {
   annotation::Sight sight;
   std::vector<std::optional<trajectory::State>> states;  // per actor; empty: not in the world
   std::vector<annotation::ExactBox> boxes;
-  std::vector<std::optional<Box>> search;                // where to look for pixels: boxes with a margin, if in view
+  std::vector<std::optional<Box>>
+      search;  // where to look for pixels: boxes with a margin, if in view
 };
 
 // Error where the camera's path does not reach that time.
 Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference);
 
 // The truth of the frame's intruders from geometry and from what compositing changed.
-std::vector<annotation::Intruder> truth_of(const World& world, const Moment& moment, const image::Layer& layer,
+std::vector<annotation::Intruder> truth_of(const World& world,
+                                           const Moment& moment,
+                                           const image::Layer& layer,
                                            const std::vector<composite::Visible>& visible);
 
 // Where an actor comes nearest to being in view: for the warning about an intruder that never is.
@@ -60,6 +63,8 @@ struct NearestApproach {
   double off_view_deg = 0;  // angle from the nearest edge of the view
   double range_m = 0;
 };
-std::optional<NearestApproach> nearest_approach(const World& world, std::size_t actor, double end_s);
+std::optional<NearestApproach> nearest_approach(const World& world,
+                                                std::size_t actor,
+                                                double end_s);
 
 }  // namespace airtruth::sequence

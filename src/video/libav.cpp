@@ -134,13 +134,15 @@ FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
   av_opt_set_int(scaler.get(), "dst_range", 1, 0);
   av_opt_set_int(scaler.get(), "sws_flags", SWS_POINT | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, 0);
   av_opt_set(scaler.get(), "sws_dither", "none", 0);
-  check(sws_init_context(scaler.get(), nullptr, nullptr) >= 0, "libswscale knows what it said it knows");
+  check(sws_init_context(scaler.get(), nullptr, nullptr) >= 0,
+        "libswscale knows what it said it knows");
   av_frame_copy_props(result.get(), &frame);
   result->format = format;
   result->width = frame.width;
   result->height = frame.height;
   check(av_frame_get_buffer(result.get(), 0) >= 0, "memory is at hand");
-  sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, result->data, result->linesize);
+  sws_scale(
+      scaler.get(), frame.data, frame.linesize, 0, frame.height, result->data, result->linesize);
   return result;
 }
 

@@ -54,8 +54,8 @@ struct Layout {
 };
 std::optional<Layout> layout_of(AVPixelFormat format);
 
-// The nearest format that layout_of knows, for those that stills come in: palettes, 1 bit, 16-bit grey and RGB (grey with
-// alpha too). AV_PIX_FMT_NONE for others.
+// The nearest format that layout_of knows, for those that stills come in: palettes, 1 bit, 16-bit
+// grey and RGB (grey with alpha too). AV_PIX_FMT_NONE for others.
 AVPixelFormat plain_kin(AVPixelFormat format);
 // A frame in that format (libswscale, no dithering); alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);

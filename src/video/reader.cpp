@@ -17,7 +17,8 @@ Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
 
 Orientation orientation_of_stream(const AVStream& stream) {
   const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
-  return matrix == nullptr ? Orientation{} : orientation_of(reinterpret_cast<const std::int32_t*>(matrix));
+  return matrix == nullptr ? Orientation{}
+                           : orientation_of(reinterpret_cast<const std::int32_t*>(matrix));
 }
 
 image::Siting siting_of(AVChromaLocation location) {

@@ -47,10 +47,10 @@ struct ReaderOptions {
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or
 // numbered images ("frames/%04d.png", or a folder of numbered images), 8-bit 4:2:0, 4:2:2, 4:4:0,
-// 4:4:4, grey or RGB. Deeper samples are taken to 8 bits with a warning; palettes and 1-bit stills become RGB and
-// grey; other layouts (Bayer, floating point) are an Error that says what to do. A display matrix (rotation, mirror) is
-// applied. The constructor opens the file and decodes up to the
-// first frame, so that what is wrong with it is said there: missing, empty, not a video, audio
+// 4:4:4, grey or RGB. Deeper samples are taken to 8 bits with a warning; palettes and 1-bit stills
+// become RGB and grey; other layouts (Bayer, floating point) are an Error that says what to do. A
+// display matrix (rotation, mirror) is applied. The constructor opens the file and decodes up to
+// the first frame, so that what is wrong with it is said there: missing, empty, not a video, audio
 // only, no frame that decodes, first_frame past the end.
 class Reader {
  public:

@@ -357,7 +357,8 @@ int worst(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return 256;
   int most = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    most = std::max(most, std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])));
+    most = std::max(most,
+                    std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])));
   return most;
 }
 
@@ -369,7 +370,8 @@ std::string planar(const std::string& packed) {
   return result;
 }
 
-// Each of them against what ffmpeg makes of it, to one step: sixteen bits may be rounded either way.
+// Each of them against what ffmpeg makes of it, to one step: sixteen bits may be rounded either
+// way.
 TEST_F(Video, ReadsStillsOfEveryDepth) {
   const std::string source = "-f lavfi -i testsrc=size=46x30:rate=1 -frames:v 1 ";
   for (const char* format : {"pal8", "rgb48be", "rgba64be", "rgba", "rgb24"}) {
@@ -387,7 +389,9 @@ TEST_F(Video, ReadsStillsOfEveryDepth) {
 }
 
 TEST_F(Video, AMaskOfOneBitIsAMask) {
-  ffmpeg("-f lavfi -i color=white:size=16x8,drawbox=x=0:y=0:w=4:h=8:color=black:t=fill -frames:v 1 -pix_fmt monob m.png");
+  ffmpeg(
+      "-f lavfi -i color=white:size=16x8,drawbox=x=0:y=0:w=4:h=8:color=black:t=fill -frames:v 1 "
+      "-pix_fmt monob m.png");
   const image::Mask mask = read_mask(folder_ / "m.png", 16, 8);
   EXPECT_FALSE(mask.is_free(3, 4));
   EXPECT_TRUE(mask.is_free(4, 4));
@@ -402,13 +406,16 @@ TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
       av_display_matrix_flip(matrix.data(), flip ? 1 : 0, 0);
       image::Picture picture = image::make_picture(3, 2, {image::Chroma::kNone});
       for (int y = 0; y < 2; ++y)
-        for (int x = 0; x < 3; ++x) picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(10 * y + x);
+        for (int x = 0; x < 3; ++x)
+          picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(10 * y + x);
       const image::Picture shown = oriented(picture.clone(), orientation_of(matrix.data()));
       const bool turned = matrix[0] == 0;
       ASSERT_EQ(shown.width, turned ? 2 : 3);
-      // A step in the shown picture along where the matrix sends x (y) is a step along x (y) in the stored one.
+      // A step in the shown picture along where the matrix sends x (y) is a step along x (y) in the
+      // stored one.
       const auto sign = [](std::int32_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
-      const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]), cy = sign(matrix[4]);
+      const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]),
+                cy = sign(matrix[4]);
       const int x0 = (ax < 0 || cx < 0) ? shown.width - 1 : 0;
       const int y0 = (ay < 0 || cy < 0) ? shown.height - 1 : 0;
       for (int y = 0; y < 2; ++y)
