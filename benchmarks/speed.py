@@ -143,8 +143,11 @@ def print_memory(bench):
     loops = max(1, 3000 // bench.frames)
     run(["ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-stream_loop", str(loops - 1), "-i", bench.clip,
          "-c", "copy", long_clip])
-    _, _, short_peak, _ = bench.render(bench.scene(40), "--no-cache")
-    wall, _, long_peak, _ = bench.render(bench.scene(40, clip=long_clip), "--no-cache")
+    # What the decoder and encoder hold at once varies from run to run by some per cent.
+    short_peak = statistics.median(bench.render(bench.scene(40), "--no-cache")[2] for _ in range(5))
+    runs = [bench.render(bench.scene(40, clip=long_clip), "--no-cache") for _ in range(3)]
+    long_peak = statistics.median(run[2] for run in runs)
+    wall = statistics.median(run[0] for run in runs)
     os.remove(long_clip)
     print(f"\nPeak memory: {short_peak:.0f} MiB at {bench.frames} frames, {long_peak:.0f} MiB at {loops * bench.frames} "
           f"({100 * (long_peak / short_peak - 1):+.1f} %, in {wall:.0f} s)")

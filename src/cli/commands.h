@@ -15,6 +15,7 @@ namespace airtruth::cli {
 struct Context {
   std::function<Console&()> console;  // made after parsing, when --quiet and --json-log are known
   std::stop_token stop;
+  int exit_code = 0;  // of a command that did its work and has something to complain of
 };
 using Action = std::function<void()>;
 
@@ -25,6 +26,7 @@ void add_overlay(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
 void add_evision(CLI::App& app, Context& context);
+void add_dataset(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli

@@ -58,7 +58,7 @@ TEST(SceneErrors, WhatIsNotASceneFile) {
   EXPECT_EQ(message_of("seed = 1\nname = \"\xff\"\n"),
             "s.toml:2: is not UTF-8; expected a text file in UTF-8");
   EXPECT_EQ(message_of(std::string((16u << 20) + 1, '\n')),
-            "s.toml: is 16777217 bytes long; expected a scene of at most 16 MiB");
+            "s.toml: is 16777217 bytes long; expected at most 16 MiB");
   EXPECT_EQ(message_of("seed = 1\na = " + std::string(40, '[')),
             "s.toml:2: is nested too deeply; a scene needs two levels");
   EXPECT_EQ(message_of("a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r = 1"),

@@ -186,6 +186,18 @@ std::optional<std::string> TableReader::text(std::string_view key) const {
   return text;
 }
 
+std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) const {
+  const toml::node* const value = node(key);
+  if (!value) return std::nullopt;
+  std::vector<std::string> result;
+  for (const toml::node& element : array(key, "an array of strings")) {
+    if (!element.is_string() || (**element.as_string()).empty())
+      fail_at(place(element), key, words_of(element.type()), "strings that are not empty");
+    result.push_back(**element.as_string());
+  }
+  return result;
+}
+
 std::optional<std::string> TableReader::file_name(std::string_view key) const {
   const auto name = text(key);
   if (name && !is_plain_file_name(*name))

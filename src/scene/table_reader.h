@@ -17,7 +17,7 @@
 #include "geometry/transform.h"
 
 // Reads a table of a TOML file strictly: what is there must be known, of the right type and in
-// range, or an Error says so at its line and column. For the sources of this module only.
+// range, or an Error says so at its line and column. For the readers of TOML files; not installed.
 namespace airtruth::scene {
 
 // The numbers that a key takes, and how a message calls them. NaN and infinity are never among
@@ -56,6 +56,7 @@ class TableReader {
                                     std::int64_t low,
                                     std::int64_t high) const;
   std::optional<std::string> text(std::string_view key) const;  // not empty, no control characters
+  std::optional<std::vector<std::string>> texts(std::string_view key) const;  // an array of such
   std::optional<std::string> file_name(std::string_view key) const;  // a text with no folder in it
   std::optional<std::string> choice(std::string_view key, Keys choices) const;
   // Relative paths are taken from the folder of the scene file.

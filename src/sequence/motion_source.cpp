@@ -25,10 +25,10 @@ std::string sha256_of_video(const fs::path& video) {
 MotionSource::MotionSource(const scene::Scene& scene,
                            const std::string& video_sha256,
                            const image::Mask* mask,
-                           bool use_cache)
+                           const fs::path& cache)
     : none_(scene.motion.model == "none"),
       smoothed_(scene.motion.model != "none" && scene.motion.reference == "smoothed"),
-      use_cache_(use_cache && !video_sha256.empty() && scene.motion.model != "none"),
+      cache_(video_sha256.empty() || none_ ? fs::path() : cache),
       mask_(mask) {
   options_.seed = scene.seed;
   options_.smoothing_s = scene.motion.smoothing_s;
@@ -37,8 +37,8 @@ MotionSource::MotionSource(const scene::Scene& scene,
   key_.first_frame = scene.background.first_frame;
   key_.frame_count = scene.background.frame_count.value_or(-1);
   key_.options = options_;
-  if (!use_cache_) return;
-  if (auto found = motion::cached(cache_folder() / "motion", key_)) {
+  if (cache_.empty()) return;
+  if (auto found = motion::cached(cache_, key_)) {
     from_cache_ = true;
     set_pass(std::move(*found));
   }
@@ -71,9 +71,9 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
 }
 
 void MotionSource::store() const {
-  if (!use_cache_ || from_cache_) return;
+  if (cache_.empty() || from_cache_) return;
   try {
-    motion::store(cache_folder() / "motion", key_, against_first_);
+    motion::store(cache_, key_, against_first_);
   } catch (const std::exception&) {  // read-only home, full disk: the next run measures again
   }
 }

@@ -29,7 +29,7 @@ class MotionSource {
   MotionSource(const scene::Scene& scene,
                const std::string& video_sha256,
                const image::Mask* mask,
-               bool use_cache);
+               const fs::path& cache);  // empty: none
 
   // True when frames must be seen once before the first homography is known (reference "smoothed",
   // not cached).
@@ -50,7 +50,7 @@ class MotionSource {
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
-  bool use_cache_ = true;
+  fs::path cache_;
   motion::Options options_;
   motion::CacheKey key_;
   const image::Mask* mask_;

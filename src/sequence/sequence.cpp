@@ -25,6 +25,12 @@
 namespace airtruth::sequence {
 namespace {
 
+// Where motion is kept; empty: nowhere.
+fs::path cache_of(const Options& options) {
+  if (!options.use_cache) return {};
+  return options.cache.empty() ? cache_folder() / "motion" : options.cache;
+}
+
 // One frame on its way through the pipeline.
 struct Work {
   video::Frame frame;
@@ -58,7 +64,7 @@ class Run {
         mask_(read_mask()),
         world_(load_world(scene, size_, options.warn)),
         video_sha256_(sha256_of_video(scene.background.video)),
-        motion_(scene, video_sha256_, mask_ptr(), options.use_cache),
+        motion_(scene, video_sha256_, mask_ptr(), cache_of(options)),
         ambient_(scene.light, mask_ptr()),
         painter_(make_painter(scene, world_, mask_ptr(), options)),
         staged_(folder, options.overwrite) {
@@ -304,6 +310,30 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   Summary summary = run.run();
   summary.folder = folder;
   return summary;
+}
+
+void measure_ahead(const scene::Scene& scene, const Options& options) {
+  if (scene.motion.model == "none") return;
+  video::ReaderOptions reader_options;
+  reader_options.first_frame = scene.background.first_frame;
+  reader_options.frame_count = scene.background.frame_count;
+  reader_options.threads = options.threads;
+  video::Reader reader(scene.background.video, reader_options, options.warn);
+  std::optional<image::Mask> mask;
+  if (scene.background.mask)
+    mask = video::read_mask(*scene.background.mask, reader.info().width, reader.info().height);
+  const image::Mask* mask_ptr = mask ? &*mask : nullptr;
+  MotionSource source(scene, sha256_of_video(scene.background.video), mask_ptr, cache_of(options));
+  if (source.from_cache()) return;
+  motion::Options motion_options;
+  motion_options.seed = scene.seed;
+  const std::int64_t total =
+      scene.background.frame_count.value_or(reader.info().frame_count_estimate);
+  source.set_pass(
+      measure_motion(reader, motion_options, mask_ptr, options.stop, [&](std::int64_t done) {
+        if (options.progress) options.progress({done, total});
+      }));
+  source.store();
 }
 
 }  // namespace airtruth::sequence

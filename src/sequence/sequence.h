@@ -26,6 +26,7 @@ struct Options {
   bool overwrite = false;
   int threads = 0;  // 0: one per core. The annotation's bytes do not depend on it.
   bool use_cache = true;
+  fs::path cache;          // of motion; empty: the user's own (base/files.h)
   std::optional<int> gpu;  // for chroma-key's OpenGL
   bool software_gl = false;
   Warn warn;
@@ -59,5 +60,9 @@ struct Summary {
 // hidden folder beside it and renamed at the end. Throws Error for what the user gave, Interrupted
 // after options.stop.
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options);
+
+// Measures the motion of the scene's background and leaves it in the cache, where the cache does
+// not hold it already.
+void measure_ahead(const scene::Scene& scene, const Options& options);
 
 }  // namespace airtruth::sequence

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/commands.h"
+#include "dataset/build.h"
+#include "dataset/verify.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct Arguments {
+  std::string catalogue;
+  std::string folder;
+  std::vector<std::string> backgrounds;  // NAME=VIDEO
+  dataset::BuildOptions build;
+};
+
+std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string>& backgrounds) {
+  std::map<std::string, dataset::fs::path> videos;
+  for (const std::string& given : backgrounds) {
+    const auto equals = given.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
+      throw Error("--background is '" + given + "'; expected NAME=VIDEO");
+    videos[given.substr(0, equals)] = dataset::fs::absolute(given.substr(equals + 1));
+  }
+  return videos;
+}
+
+std::string time_of(double seconds) {
+  const auto s = static_cast<std::int64_t>(seconds + 0.5);
+  return s < 60 ? fmt::format("{} s", s) : fmt::format("{}:{:02} min", s / 60, s % 60);
+}
+
+void build(Arguments arguments, Context& context) {
+  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  Console& console = context.console();
+  dataset::BuildOptions& options = arguments.build;
+  options.videos = videos_of(arguments.backgrounds);
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&console](const dataset::BuildProgress& p) {
+    console.progress(p.name, p.done, p.total);
+  };
+  const dataset::BuildSummary summary = dataset::build(catalogue, arguments.folder, options);
+  console.result(fmt::format("{}: {} sequences made ({} frames, {}), {} were there, {} failed{}",
+                             arguments.folder,
+                             summary.made,
+                             summary.frames,
+                             time_of(summary.seconds),
+                             summary.kept,
+                             summary.failures.size(),
+                             summary.complete ? "; complete" : ""));
+  for (const dataset::Failure& failure : summary.failures)
+    console.error(failure.name + ": " + failure.reason);
+  if (!summary.failures.empty()) context.exit_code = 1;
+}
+
+// Frames and bytes in round numbers: what a sequence costs is known only once it is made.
+void plan(const Arguments& arguments, Context& context) {
+  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  const dataset::Expansion expansion(catalogue);
+  constexpr std::int64_t kMostListed = 50;
+  constexpr double kFramesPerCoreSecond = 26;  // 1280x960 (docs/performance.md)
+  constexpr double kMegabytesPerFrame = 0.03;  // H.264 at quality 18
+  std::int64_t frames = 0;
+  std::int64_t open_ended = 0;
+  Console& console = context.console();
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    if (context.stop.stop_requested()) throw Interrupted();
+    const dataset::Item item = expansion.at(i);
+    frames += item.frame_count;
+    open_ended += item.frame_count == 0 ? 1 : 0;
+    if (i >= kMostListed) continue;
+    console.result(fmt::format("{:<28} {:>6}  {:<12} {}",
+                               item.name,
+                               item.frame_count > 0 ? std::to_string(item.frame_count) : "all",
+                               catalogue.backgrounds[item.background].name,
+                               item.scene.intruders[0].aircraft));
+  }
+  if (expansion.size() > kMostListed)
+    console.result(fmt::format("... and {} more", expansion.size() - kMostListed));
+  console.result(
+      fmt::format("{} sequences, {} frames{}: about {} on one core, {:.1f} GB",
+                  expansion.size(),
+                  frames,
+                  open_ended > 0 ? fmt::format(" and {} videos to their end", open_ended) : "",
+                  time_of(static_cast<double>(frames) / kFramesPerCoreSecond),
+                  static_cast<double>(frames) * kMegabytesPerFrame / 1000));
+}
+
+void status(const Arguments& arguments, Context& context) {
+  const dataset::Status status = dataset::status(arguments.folder);
+  Console& console = context.console();
+  console.result(fmt::format("{}: {} of {} sequences are there{}{}{}",
+                             status.name,
+                             status.whole,
+                             status.sequences,
+                             status.half > 0 ? fmt::format(", {} begun", status.half) : "",
+                             status.at_work ? ", a build is at work" : "",
+                             status.complete ? "; complete" : ""));
+  for (const std::string& name : status.missing) console.result("  missing: " + name);
+}
+
+void verify(const Arguments& arguments, Context& context) {
+  Console& console = context.console();
+  dataset::VerifyOptions options;
+  options.stop = context.stop;
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("verifying", done, total);
+  };
+  const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
+  for (const std::string& fault : result.faults) console.error(fault);
+  console.result(fmt::format("{}: {} sequences, {} frames, {} faults",
+                             arguments.folder,
+                             result.sequences,
+                             result.frames,
+                             result.faults.size()));
+  if (!result.faults.empty()) context.exit_code = 1;
+}
+
+void add_build_options(CLI::App& command, Arguments& arguments) {
+  command.add_option("CATALOGUE", arguments.catalogue, "Catalogue file (.toml); see catalogues/")
+      ->required();
+  command
+      .add_option("--out,-o",
+                  arguments.folder,
+                  "The data set's folder; a build that was stopped goes on in it")
+      ->required();
+  command
+      .add_option("--jobs,-j", arguments.build.jobs, "Sequences at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--background",
+                     arguments.backgrounds,
+                     "NAME=VIDEO: a video in place of a background of the catalogue");
+}
+
+}  // namespace
+
+void add_dataset(CLI::App& app, Context& context) {
+  auto* group = app.add_subcommand("dataset", "Make, look after and check whole data sets");
+  group->require_subcommand(1);
+  auto arguments = std::make_shared<Arguments>();
+  auto* build_command =
+      group->add_subcommand("build", "Make every sequence of a catalogue that is not there yet");
+  add_build_options(*build_command, *arguments);
+  build_command->add_option(
+      "--only", arguments->build.only, "Only sequences whose name fits this pattern (* and ?)");
+  build_command->callback([arguments, &context] { build(*arguments, context); });
+  auto* work_command =
+      group->add_subcommand("work", "One worker's share of a build, for job arrays");
+  add_build_options(*work_command, *arguments);
+  work_command->add_option("--index", arguments->build.share, "This worker's number, from 0")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
+  work_command->add_option("--of", arguments->build.shares, "How many workers there are")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  work_command->callback([arguments, &context] {
+    if (arguments->build.share >= arguments->build.shares)
+      throw Error(fmt::format("--index is {} of {}; expected 0 to {}",
+                              arguments->build.share,
+                              arguments->build.shares,
+                              arguments->build.shares - 1));
+    build(*arguments, context);
+  });
+  auto* plan_command =
+      group->add_subcommand("plan", "Say what a catalogue would make, how long and how large");
+  plan_command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
+  plan_command->callback([arguments, &context] { plan(*arguments, context); });
+  auto* status_command = group->add_subcommand("status", "Say how far a data set is");
+  status_command->add_option("DIR", arguments->folder, "The data set's folder")->required();
+  status_command->callback([arguments, &context] { status(*arguments, context); });
+  auto* verify_command =
+      group->add_subcommand("verify", "Check every file, label and frame count of a data set");
+  verify_command->add_option("DIR", arguments->folder, "The data set's folder")->required();
+  verify_command->callback([arguments, &context] { verify(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

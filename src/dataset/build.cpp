@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "base/error.h"
+#include "dataset/backgrounds.h"
+#include "dataset/folder.h"
+#include "dataset/manifest.h"
+#include "sequence/sequence.h"
+#include "sequence/stopwatch.h"
+
+namespace airtruth::dataset {
+namespace {
+
+// One build: its share of the catalogue, on several threads.
+class Work {
+ public:
+  Work(const Catalogue& catalogue, const Folder& folder, const BuildOptions& options)
+      : catalogue_(catalogue), folder_(folder), options_(options), expansion_(catalogue) {
+    jobs_ = options.jobs > 0 ? options.jobs
+                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  }
+
+  BuildSummary run() {
+    count();
+    prepare_backgrounds();
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < std::min<std::int64_t>(jobs_, missing_); ++i)
+      threads.emplace_back([this] { make_sequences(); });
+    threads.clear();  // waits
+    if (options_.stop.stop_requested()) throw Interrupted();
+    std::sort(summary_.failures.begin(),
+              summary_.failures.end(),
+              [](const Failure& a, const Failure& b) { return a.name < b.name; });
+    return summary_;
+  }
+
+ private:
+  bool mine(const Item& item) const {
+    return item.index % options_.shares == options_.share && matches(options_.only, item.name);
+  }
+
+  // What there is to do, and which backgrounds and how much of them it takes.
+  void count() {
+    needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
+    bool any = false;
+    for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
+      const Item item = expansion_.at(i);
+      if (!mine(item)) continue;
+      any = true;
+      ++total_;
+      if (folder_.holds(item.name)) {
+        ++summary_.kept;
+        continue;
+      }
+      ++missing_;
+      auto& needed = needed_[item.background];
+      needed =
+          item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
+    }
+    if (!any && options_.only != "*")
+      throw Error("no sequence of the catalogue fits '" + options_.only + "'");
+  }
+
+  void prepare_backgrounds() {
+    files_.resize(catalogue_.backgrounds.size());
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!needed_[i]) continue;
+      if (options_.stop.stop_requested()) throw Interrupted();
+      files_[i] = prepare(catalogue_.backgrounds[i], folder_, options_);
+      measure(i);
+    }
+  }
+
+  // The motion of a background, once for all the sequences over it.
+  void measure(std::size_t i) {
+    scene::Scene scene;
+    scene.background.video = files_[i].video;
+    scene.background.mask = files_[i].mask;
+    scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
+    if (*needed_[i] > 0) scene.background.frame_count = *needed_[i];
+    scene.motion = catalogue_.backgrounds[i].motion;
+    scene.seed = catalogue_.seed;
+    sequence::Options how;
+    how.cache = folder_.cache();
+    how.stop = options_.stop;
+    how.warn = options_.warn;
+    how.progress = [&](const sequence::Progress& p) {
+      report({p.frames_done,
+              p.frames_total,
+              "measuring the motion of " + catalogue_.backgrounds[i].name});
+    };
+    sequence::measure_ahead(scene, how);
+  }
+
+  void make_sequences() {
+    for (;;) {
+      if (options_.stop.stop_requested()) return;
+      const std::int64_t i = options_.share + next_.fetch_add(1) * options_.shares;
+      if (i >= expansion_.size()) return;
+      Item item = expansion_.at(i);
+      if (mine(item) && !folder_.holds(item.name)) make(item);
+    }
+  }
+
+  void make(Item& item) {
+    place(item, catalogue_, files_[item.background]);
+    sequence::Options how;
+    how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
+    how.cache = folder_.cache();
+    how.stop = options_.stop;
+    how.warn = [&](const std::string& message) {
+      const std::lock_guard lock(mutex_);
+      warn(options_.warn, item.name + ": " + message);
+    };
+    try {
+      const sequence::Summary done = sequence::render(item.scene, folder_.sequences(), how);
+      const std::lock_guard lock(mutex_);
+      ++summary_.made;
+      summary_.frames += done.frames;
+    } catch (const Interrupted&) {
+      return;
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      summary_.failures.push_back({item.name, error.what()});
+    }
+    report({summary_.made + summary_.kept + static_cast<std::int64_t>(summary_.failures.size()),
+            total_,
+            item.name});
+  }
+
+  void report(const BuildProgress& progress) {
+    const std::lock_guard lock(mutex_);
+    if (options_.progress) options_.progress(progress);
+  }
+
+  const Catalogue& catalogue_;
+  const Folder& folder_;
+  const BuildOptions& options_;
+  Expansion expansion_;
+  int jobs_ = 1;
+  std::int64_t total_ = 0;
+  std::int64_t missing_ = 0;
+  std::vector<std::optional<std::int64_t>>
+      needed_;  // of each background: frames, 0 to its end; empty: none
+  std::vector<BackgroundFiles> files_;
+  std::atomic<std::int64_t> next_ = 0;
+  std::mutex mutex_;
+  BuildSummary summary_;
+};
+
+}  // namespace
+
+BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
+  check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
+  const sequence::Stopwatch watch;
+  for (const auto& [name, video] : options.videos) {
+    const bool known = std::any_of(catalogue.backgrounds.begin(),
+                                   catalogue.backgrounds.end(),
+                                   [&, n = name](const Background& b) { return b.name == n; });
+    if (!known)
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+  }
+  const Folder folder = open_folder(catalogue, out);
+  const FolderLock lock(folder, options.shares > 1);
+  BuildSummary summary = Work(catalogue, folder, options).run();
+  write_failures(folder, summary.failures);
+  summary.complete = write_manifest(catalogue, folder);
+  summary.seconds = watch.seconds();
+  return summary;
+}
+
+}  // namespace airtruth::dataset

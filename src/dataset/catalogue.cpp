@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue.h"
+
+#include <algorithm>
+#include <set>
+
+#include "aircraft/catalogue.h"
+#include "base/files.h"
+#include "base/suggest.h"
+#include "dataset/expand.h"
+#include "scene/tables.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using scene::TableReader;
+
+constexpr std::int64_t kMost = 1'000'000'000;
+
+std::string required(const TableReader& table, std::string_view key) {
+  if (auto text = table.text(key)) return *text;
+  throw Error("has no " + std::string(key), table.where());
+}
+
+std::string required_name(const TableReader& table) {
+  if (auto name = table.file_name("name")) return *name;
+  throw Error("has no name", table.where());
+}
+
+VirtualBackground flight_from(const TableReader& table) {
+  VirtualBackground flight;
+  flight.seed = static_cast<std::uint64_t>(
+      table.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+  flight.frame_count = table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count);
+  flight.width = static_cast<int>(table.whole("width", 64, 8192).value_or(flight.width));
+  flight.height = static_cast<int>(table.whole("height", 64, 8192).value_or(flight.height));
+  flight.cloud_cover =
+      table.number("cloud_cover", {.expected = "a number from 0 to 1", .low = 0, .high = 1})
+          .value_or(flight.cloud_cover);
+  flight.speed_mps = table.number("speed_mps", scene::kNotNegative).value_or(flight.speed_mps);
+  flight.altitude_m = table.number("altitude_m", scene::kAboveZero).value_or(flight.altitude_m);
+  return flight;
+}
+
+Background background_from(const TableReader& table) {
+  Background background;
+  background.where = table.where();
+  background.name = required_name(table);
+  table.exclude("video", {"flight"});
+  if (const auto video = table.path("video")) {
+    background.source = *video;
+  } else if (table.has("flight")) {
+    background.source = flight_from(table.table(
+        "flight",
+        {"seed", "frame_count", "width", "height", "cloud_cover", "speed_mps", "altitude_m"}));
+  } else {
+    throw Error("background '" + background.name + "' has neither video nor flight", table.where());
+  }
+  background.mask = table.path("mask");
+  background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
+  background.lens = scene::lens_in(table);
+  background.camera = scene::camera_in(table);
+  background.motion = scene::motion_in(table);
+  background.light = scene::light_in(table);
+  return background;
+}
+
+Trajectory trajectory_from(const TableReader& table) {
+  Trajectory trajectory;
+  trajectory.where = table.where();
+  trajectory.name = required_name(table);
+  const auto points = table.points("waypoints_ned_m");
+  if (!points || points->size() < 2)
+    throw Error("trajectory '" + trajectory.name + "' has fewer than two waypoints_ned_m",
+                table.where());
+  trajectory.waypoints_ned_m = *points;
+  table.exclude("speed_mps", {"times_s"});
+  trajectory.speed_mps = table.number("speed_mps", scene::kAboveZero);
+  trajectory.times_s = table.numbers("times_s").value_or(std::vector<double>{});
+  if (!trajectory.speed_mps && trajectory.times_s.size() != trajectory.waypoints_ned_m.size())
+    throw Error("trajectory '" + trajectory.name + "' has " +
+                    std::to_string(trajectory.waypoints_ned_m.size()) + " waypoints and " +
+                    std::to_string(trajectory.times_s.size()) +
+                    " times_s; expected one for each, or speed_mps",
+                table.where());
+  trajectory.frame_count = table.whole("frame_count", 1, kMost);
+  return trajectory;
+}
+
+template <typename Things>
+std::size_t place_of(const Things& things,
+                     const std::string& name,
+                     const char* what,
+                     const Where& where) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto nearest = nearest_spelling(name, names);
+  throw Error("there is no " + std::string(what) + " '" + name + "'" +
+                  (nearest ? "; did you mean '" + *nearest + "'?" : ""),
+              where);
+}
+
+template <typename Things>
+void refuse_twice(const Things& things, const char* what, const std::string& file) {
+  std::set<std::string> seen;
+  for (const auto& thing : things)
+    if (!seen.insert(thing.name).second)
+      throw Error("two tables [[" + std::string(what) + "]] are named '" + thing.name + "'",
+                  {file});
+}
+
+// Names in the array at `key`, each a pattern over the things' names; all of them where the key is
+// absent.
+template <typename Things>
+std::vector<std::size_t> places_of(const TableReader& table,
+                                   std::string_view key,
+                                   const Things& things,
+                                   const char* what) {
+  std::vector<std::size_t> result;
+  const auto patterns = table.texts(key);
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const bool wanted =
+        !patterns ||
+        std::any_of(patterns->begin(), patterns->end(), [&](const std::string& pattern) {
+          return matches(pattern, things[i].name);
+        });
+    if (wanted) result.push_back(i);
+  }
+  for (const std::string& pattern : patterns.value_or(std::vector<std::string>{})) {
+    const bool used = std::any_of(things.begin(), things.end(), [&](const auto& thing) {
+      return matches(pattern, thing.name);
+    });
+    if (!used) place_of(things, pattern, what, table.where(key));
+  }
+  if (result.empty()) throw Error("there is no [[" + std::string(what) + "]]", table.where());
+  return result;
+}
+
+Range range_from(const TableReader& table, std::string_view key, const Range& otherwise) {
+  const auto values = table.tuple(key, {scene::kFinite, scene::kFinite});
+  if (!values) return otherwise;
+  if ((*values)[0] > (*values)[1])
+    table.fail(key, std::string(key) + " falls; expected [low, high]");
+  return {(*values)[0], (*values)[1]};
+}
+
+std::vector<std::string> aircraft_from(const TableReader& table) {
+  const auto patterns = table.texts("aircraft");
+  if (!patterns)
+    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
+                table.where());
+  std::vector<std::string> names;
+  const auto entries = aircraft::list_aircraft();
+  for (const std::string& pattern : *patterns) {
+    const std::size_t before = names.size();
+    for (const auto& entry : entries)
+      if (matches(pattern, entry.name)) names.push_back(entry.name);
+    if (names.size() == before)
+      table.fail("aircraft", "no aircraft fits '" + pattern + "'; see `airtruth aircraft list`");
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
+  Drawn drawn;
+  drawn.name = table.file_name("name").value_or("r{index}");
+  if (drawn.name.find("{index}") == std::string::npos)
+    table.fail("name", "name has no {index}; every sequence needs its own");
+  drawn.count = table.whole("count", 1, kMost).value_or(1);
+  drawn.frame_count = table.whole("frame_count", 1, kMost).value_or(drawn.frame_count);
+  drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
+  drawn.aircraft = aircraft_from(table);
+  drawn.range_m = range_from(table, "range_m", drawn.range_m);
+  if (drawn.range_m.low <= 0) table.fail("range_m", "range_m begins at or below 0");
+  drawn.azimuth_deg = range_from(table, "azimuth_deg", drawn.azimuth_deg);
+  drawn.elevation_deg = range_from(table, "elevation_deg", drawn.elevation_deg);
+  drawn.speed_mps = range_from(table, "speed_mps", drawn.speed_mps);
+  if (drawn.speed_mps.low <= 0) table.fail("speed_mps", "speed_mps begins at or below 0");
+  drawn.heading_deg = range_from(table, "heading_deg", drawn.heading_deg);
+  drawn.climb_deg = range_from(table, "climb_deg", drawn.climb_deg);
+  if (table.has("sun_azimuth_deg"))
+    drawn.sun_azimuth_deg = range_from(table, "sun_azimuth_deg", {});
+  if (table.has("sun_elevation_deg"))
+    drawn.sun_elevation_deg = range_from(table, "sun_elevation_deg", {});
+  return drawn;
+}
+
+Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
+  Listed listed;
+  listed.name = required_name(table);
+  listed.background = place_of(catalogue.backgrounds,
+                               required(table, "background"),
+                               "background",
+                               table.where("background"));
+  listed.trajectory = place_of(catalogue.trajectories,
+                               required(table, "trajectory"),
+                               "trajectory",
+                               table.where("trajectory"));
+  listed.aircraft = place_of(
+      catalogue.aircraft, required(table, "aircraft"), "aircraft", table.where("aircraft"));
+  listed.frame_count = table.whole("frame_count", 1, kMost);
+  return listed;
+}
+
+Product product_from(const TableReader& table, const Catalogue& catalogue) {
+  Product product;
+  product.name = table.file_name("name").value_or("{background}{trajectory}{aircraft}");
+  product.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
+  product.trajectories = places_of(table, "trajectories", catalogue.trajectories, "trajectory");
+  product.aircraft = places_of(table, "aircraft", catalogue.aircraft, "aircraft");
+  product.frame_count = table.whole("frame_count", 1, kMost);
+  const auto varies = [&](const char* part, std::size_t count) {
+    if (count > 1 && product.name.find(part) == std::string::npos)
+      table.fail(
+          "name",
+          "name lacks " + std::string(part) + ", of which there are " + std::to_string(count));
+  };
+  varies("{background}", product.backgrounds.size());
+  varies("{trajectory}", product.trajectories.size());
+  varies("{aircraft}", product.aircraft.size());
+  return product;
+}
+
+void refuse_same_names(const Catalogue& catalogue) {
+  std::set<std::string> seen;
+  for (const Rule& rule : catalogue.rules)
+    if (const auto* listed = std::get_if<Listed>(&rule);
+        listed != nullptr && !seen.insert(listed->name).second)
+      throw Error("two sequences are named '" + listed->name + "'", {catalogue.file.string()});
+}
+
+}  // namespace
+
+Catalogue read_catalogue(const fs::path& file) {
+  return parse_catalogue(read_file(file, scene::kLargestToml), file);
+}
+
+Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
+  const toml::table parsed = scene::parsed_toml(text, file.string());
+  const TableReader root(parsed,
+                         "a catalogue",
+                         file.string(),
+                         {"name",
+                          "seed",
+                          "background",
+                          "aircraft",
+                          "trajectory",
+                          "sequence",
+                          "product",
+                          "random",
+                          "render",
+                          "composite",
+                          "output"});
+  Catalogue catalogue;
+  catalogue.file = file;
+  catalogue.text = text;
+  catalogue.name = root.file_name("name").value_or(file.stem().string());
+  catalogue.seed = static_cast<std::uint64_t>(
+      root.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+  catalogue.render = scene::render_in(root);
+  catalogue.composite = scene::composite_in(root);
+  catalogue.output = scene::output_in(root);
+  for (const TableReader& table : root.tables(
+           "background",
+           {"name", "video", "flight", "mask", "first_frame", "lens", "camera", "motion", "light"}))
+    catalogue.backgrounds.push_back(background_from(table));
+  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
+    catalogue.aircraft.push_back({required_name(table), required(table, "aircraft")});
+  for (const TableReader& table : root.tables(
+           "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
+    catalogue.trajectories.push_back(trajectory_from(table));
+  refuse_twice(catalogue.backgrounds, "background", file.string());
+  refuse_twice(catalogue.aircraft, "aircraft", file.string());
+  refuse_twice(catalogue.trajectories, "trajectory", file.string());
+  for (const TableReader& table :
+       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(listed_from(table, catalogue));
+  for (const TableReader& table :
+       root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(product_from(table, catalogue));
+  for (const TableReader& table : root.tables("random",
+                                              {"name",
+                                               "count",
+                                               "frame_count",
+                                               "backgrounds",
+                                               "aircraft",
+                                               "range_m",
+                                               "azimuth_deg",
+                                               "elevation_deg",
+                                               "speed_mps",
+                                               "heading_deg",
+                                               "climb_deg",
+                                               "sun_azimuth_deg",
+                                               "sun_elevation_deg"}))
+    catalogue.rules.emplace_back(drawn_from(table, catalogue));
+  if (catalogue.rules.empty())
+    throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
+                {file.string()});
+  refuse_same_names(catalogue);
+  return catalogue;
+}
+
+}  // namespace airtruth::dataset

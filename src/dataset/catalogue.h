@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scene/scene.h"
+
+// A catalogue: backgrounds, aircraft and trajectories by name, and the sequences to make of them,
+// listed one by one, as a product, or drawn at random from ranges. docs/formats/catalogue.md
+// describes the file.
+namespace airtruth::dataset {
+
+namespace fs = std::filesystem;
+
+// A virtual flight in place of a video; made once, in the data set's own folder.
+struct VirtualBackground {
+  std::uint64_t seed = 1;
+  std::int64_t frame_count = 300;
+  int width = 1280;
+  int height = 960;
+  double cloud_cover = 0.5;
+  double speed_mps = 25;
+  double altitude_m = 150;
+};
+
+struct Background {
+  std::string name;
+  std::variant<VirtualBackground, fs::path> source;  // a flight, or a video
+  std::optional<fs::path> mask;                      // of a video; a flight brings its own
+  std::int64_t first_frame = 0;
+  scene::Lens lens;
+  scene::Camera camera;
+  scene::Motion motion;
+  scene::Light light;
+  Where where;
+};
+
+struct Aircraft {
+  std::string name;      // in this catalogue
+  std::string aircraft;  // of `airtruth aircraft list`, or a model file
+};
+
+struct Trajectory {
+  std::string name;
+  std::vector<Vector3> waypoints_ned_m;
+  std::vector<double> times_s;  // or
+  std::optional<double> speed_mps;
+  std::optional<std::int64_t> frame_count;
+  Where where;
+};
+
+// One of the above each, by its place in the catalogue.
+struct Listed {
+  std::string name;
+  std::size_t background = 0;
+  std::size_t trajectory = 0;
+  std::size_t aircraft = 0;
+  std::optional<std::int64_t> frame_count;
+};
+
+// Every background with every trajectory with every aircraft.
+struct Product {
+  std::string name;  // pattern with {background}, {trajectory}, {aircraft}
+  std::vector<std::size_t> backgrounds, trajectories, aircraft;
+  std::optional<std::int64_t> frame_count;
+};
+
+struct Range {
+  double low = 0;
+  double high = 0;
+};
+
+// Intruders that cross the view: at a moment within the clip each is at a range and a direction
+// from the camera, flying straight.
+struct Drawn {
+  std::string name;  // pattern with {index}
+  std::int64_t count = 0;
+  std::int64_t frame_count = 90;
+  std::vector<std::size_t> backgrounds;
+  std::vector<std::string> aircraft;  // names of `airtruth aircraft list`
+  Range range_m{100, 2000};
+  Range azimuth_deg{-30, 30};   // from the boresight, to the right
+  Range elevation_deg{-5, 20};  // up
+  Range speed_mps{40, 140};
+  Range heading_deg{0, 360};
+  Range climb_deg{-5, 5};
+  std::optional<Range> sun_azimuth_deg, sun_elevation_deg;  // else the background's
+};
+
+using Rule = std::variant<Listed, Product, Drawn>;
+
+struct Catalogue {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<Background> backgrounds;
+  std::vector<Aircraft> aircraft;
+  std::vector<Trajectory> trajectories;
+  std::vector<Rule> rules;
+  scene::Render render;
+  scene::Composite composite;
+  scene::Output output;
+  fs::path file;
+  std::string text;
+};
+
+// Errors carry line and column: as for scenes, and names that no table has (nearest spelling) or
+// two tables have.
+Catalogue read_catalogue(const fs::path& file);
+Catalogue parse_catalogue(std::string_view text, const fs::path& file);
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "dataset/build.h"
+#include "dataset/folder.h"
+
+namespace airtruth::dataset {
+
+// failed.jsonl: a line each; removed where nothing failed.
+void write_failures(const Folder& folder, const std::vector<Failure>& failures);
+
+// manifest/*.jsonl and, last, dataset.json, where every sequence of the catalogue is there (else
+// false, and neither is written). Memory does not grow with the number of sequences. The same bytes
+// for any number of workers.
+bool write_manifest(const Catalogue& catalogue, const Folder& folder);
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/verify.h"
+
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "dataset/expand.h"
+#include "sequence/finished.h"
+#include "video/reader.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMostNamed = 100;
+
+Catalogue catalogue_of(const Folder& folder) {
+  if (!fs::exists(folder.catalogue()))
+    throw Error("is no data set: it holds no catalogue.toml", {folder.root.string()});
+  return read_catalogue(folder.catalogue());
+}
+
+bool is_at_work(const Folder& folder) {
+  try {
+    const FolderLock lock(folder, false);
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+// Sequences of one data set, looked into one by one.
+class Check {
+ public:
+  Check(const Folder& folder, VerifyResult& result) : folder_(folder), result_(result) {}
+
+  void sequence(const Item& item) {
+    name_ = item.name;
+    ++result_.sequences;
+    if (!folder_.holds(item.name)) return fault("is not there");
+    try {
+      files(Json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
+      truth(sequence::open_finished(folder_.sequence(item.name)));
+    } catch (const Json::exception&) {
+      fault("sequence.json is not a record that airtruth wrote");
+    } catch (const Error& error) {
+      fault(error.what());
+    }
+  }
+
+ private:
+  void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
+
+  void files(const Json& record) {
+    std::set<std::string> known = {"sequence.json"};
+    for (const Json& output : record.at("outputs")) {
+      const std::string name = output.at("name");
+      known.insert(name);
+      const fs::path file = folder_.sequence(name_) / name;
+      if (!fs::exists(file))
+        fault(name + " is missing");
+      else if (sha256_of_file(file) != output.at("sha256"))
+        fault(name + " is not as it was written (its SHA-256 differs)");
+    }
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.sequence(name_)))
+      if (entry.is_regular_file() &&
+          !known.contains(fs::relative(entry.path(), folder_.sequence(name_)).string()))
+        fault(entry.path().filename().string() + " is not of this sequence");
+  }
+
+  void truth(const sequence::Finished& finished) {
+    video::Reader reader(finished.video);
+    const int width = reader.info().width;
+    const int height = reader.info().height;
+    std::size_t frames = 0;
+    while (reader.next()) ++frames;
+    if (frames != finished.truth.frames.size())
+      fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
+            std::to_string(finished.truth.frames.size()));
+    for (const annotation::Frame& frame : finished.truth.frames)
+      for (const annotation::Intruder& intruder : frame.intruders)
+        box(frame, intruder, width, height);
+    result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
+  }
+
+  void box(const annotation::Frame& frame,
+           const annotation::Intruder& intruder,
+           int width,
+           int height) {
+    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const bool visible = intruder.state == annotation::State::kVisible;
+    if (visible != intruder.visible_box_px.has_value())
+      return fault(where + (visible ? "visible without a box" : "a box, and not visible"));
+    if (!visible) return;
+    const PixelBox& v = *intruder.visible_box_px;
+    if (v.x < 0 || v.y < 0 || v.width < 1 || v.height < 1 || v.right() > width ||
+        v.bottom() > height)
+      fault(where + "its visible box reaches out of the frame");
+  }
+
+  const Folder& folder_;
+  VerifyResult& result_;
+  std::string name_;
+};
+
+void check_manifest(const Folder& folder, VerifyResult& result) {
+  if (!fs::exists(folder.record())) {
+    result.faults.emplace_back("dataset.json is not there: the data set is not complete");
+    return;
+  }
+  try {
+    const Json record = Json::parse(read_file(folder.record()));
+    if (record.at("catalogue_sha256") != sha256_of_file(folder.catalogue()))
+      result.faults.emplace_back("dataset.json was written for another catalogue");
+    for (const Json& file : record.at("manifest")) {
+      const fs::path path = folder.root / file.at("name").get<std::string>();
+      if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
+        result.faults.push_back(path.filename().string() + " is not as it was written");
+    }
+  } catch (const Json::exception&) {
+    result.faults.emplace_back("dataset.json is not a record that airtruth wrote");
+  }
+}
+
+}  // namespace
+
+Status status(const fs::path& root) {
+  const Folder folder{root};
+  const Catalogue catalogue = catalogue_of(folder);
+  const Expansion expansion(catalogue);
+  Status status;
+  status.name = catalogue.name;
+  status.sequences = expansion.size();
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    const Item item = expansion.at(i);
+    if (folder.holds(item.name))
+      ++status.whole;
+    else if (status.missing.size() < kMostNamed)
+      status.missing.push_back(item.name);
+    if (fs::exists(folder.sequences() / ("." + item.name + ".part"))) ++status.half;
+  }
+  status.at_work = is_at_work(folder);
+  status.complete = fs::exists(folder.record());
+  return status;
+}
+
+VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
+  const Folder folder{root};
+  const Catalogue catalogue = catalogue_of(folder);
+  const Expansion expansion(catalogue);
+  VerifyResult result;
+  Check check(folder, result);
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    check.sequence(expansion.at(i));
+    if (options.progress) options.progress(i + 1, expansion.size());
+  }
+  check_manifest(folder, result);
+  return result;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "dataset/folder.h"
+
+namespace airtruth::dataset {
+
+// Where a data set stands, from its folder alone.
+struct Status {
+  std::string name;
+  std::int64_t sequences = 0;  // of the catalogue
+  std::int64_t whole = 0;
+  std::vector<std::string> missing;  // the first hundred
+  std::int64_t half = 0;  // left by runs that were killed; the next build clears them away
+  bool at_work = false;   // a build is running now
+  bool complete = false;  // dataset.json is there
+};
+Status status(const fs::path& root);
+
+struct VerifyOptions {
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  std::stop_token stop;
+};
+
+// Every file against its checksum; every line of truth read back, boxes within the frame; as many
+// frames in the video as lines of truth; the manifest against the sequences. Each fault is one
+// line.
+struct VerifyResult {
+  std::int64_t sequences = 0;
+  std::int64_t frames = 0;
+  std::vector<std::string> faults;
+};
+VerifyResult verify(const fs::path& root, const VerifyOptions& options);
+
+}  // namespace airtruth::dataset

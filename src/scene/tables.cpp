@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/tables.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/files.h"
+#include "scene/toml_guard.h"
+
+namespace airtruth::scene {
+namespace {
+
+Limits view_limits(const std::string& model) {
+  if (model == "fisheye")
+    return {.expected = "degrees above 0, up to 360 for a fisheye",
+            .low = 0,
+            .high = 360,
+            .without_low = true};
+  return {.expected = "degrees between 0 and 180 (a fisheye reaches further)",
+          .low = 0,
+          .high = 180,
+          .without_low = true,
+          .without_high = true};
+}
+
+std::optional<std::array<double, 2>> pair_from(const TableReader& table,
+                                               std::string_view key,
+                                               const Limits& limits) {
+  const auto values = table.tuple(key, {limits, limits});
+  if (!values) return std::nullopt;
+  return std::array<double, 2>{(*values)[0], (*values)[1]};
+}
+
+void check_distortion(const TableReader& table, const std::string& model, std::size_t count) {
+  if (model == "pinhole" && count > 0)
+    table.fail("distortion",
+               "distortion is not for a pinhole; expected model brown_conrady or fisheye, or no "
+               "distortion");
+  if (model == "brown_conrady" && count != 0 && count != 4 && count != 5 && count != 8)
+    table.fail("distortion",
+               fmt::format("distortion has {} numbers; brown_conrady takes 4, 5 or 8", count));
+  if (model == "fisheye" && count > 4)
+    table.fail("distortion",
+               fmt::format("distortion has {} numbers; fisheye takes at most 4", count));
+}
+
+std::optional<std::array<double, 3>> colour_from(const TableReader& table, std::string_view key) {
+  const auto values = table.tuple(key, {kNotNegative, kNotNegative, kNotNegative});
+  if (!values) return std::nullopt;
+  return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+}  // namespace
+
+toml::table parsed_toml(std::string_view text, const std::string& file) {
+  if (text.size() > kLargestToml)
+    throw Error(fmt::format("is {} bytes long; expected at most 16 MiB", text.size()),
+                {file});
+  if (const std::size_t fault = utf8_fault(text); fault != std::string_view::npos) {
+    const auto newlines =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(fault), '\n');
+    throw Error("is not UTF-8; expected a text file in UTF-8",
+                {file, static_cast<int>(newlines) + 1, 0});
+  }
+  refuse_deep_nesting(text, file);
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    std::string reason(error.description());
+    std::replace_if(
+        reason.begin(), reason.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    const auto begin = error.source().begin;
+    throw Error("is not TOML: " + reason,
+                {file, static_cast<int>(begin.line), static_cast<int>(begin.column)});
+  }
+}
+
+Lens lens_in(const TableReader& parent) {
+  const TableReader table = parent.table("lens", {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion", "file"});
+  Lens lens;
+  lens.where = table.where();
+  table.exclude("file",
+                {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion"});
+  table.exclude("vertical_fov_deg", {"focal_px"});
+  lens.file = table.path("file");
+  if (lens.file) return lens;
+  lens.model = table.choice("model", {"pinhole", "brown_conrady", "fisheye"}).value_or(lens.model);
+  lens.vertical_fov_deg = table.number("vertical_fov_deg", view_limits(lens.model));
+  lens.focal_px = pair_from(table, "focal_px", kAboveZero);
+  lens.principal_point_px = pair_from(table, "principal_point_px", kFinite);
+  lens.distortion = table.numbers("distortion").value_or(std::vector<double>{});
+  check_distortion(table, lens.model, lens.distortion.size());
+  if (!lens.vertical_fov_deg && !lens.focal_px)
+    throw Error("[lens] has no focal length; expected vertical_fov_deg, focal_px or file",
+                table.where());
+  return lens;
+}
+
+Camera camera_in(const TableReader& parent) {
+  const TableReader table = parent.table("camera", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg", "path_file"});
+  Camera camera;
+  camera.where = table.where();
+  table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
+  camera.path_file = table.path("path_file");
+  camera.position_ned_m = table.vector("position_ned_m").value_or(camera.position_ned_m);
+  camera.velocity_ned_mps = table.vector("velocity_ned_mps").value_or(camera.velocity_ned_mps);
+  if (const auto angles = table.tuple("attitude_yaw_pitch_roll_deg", {kTurn, kPitch, kTurn}))
+    camera.attitude_yaw_pitch_roll_deg = {(*angles)[0], (*angles)[1], (*angles)[2]};
+  return camera;
+}
+
+Motion motion_in(const TableReader& parent) {
+  const TableReader table = parent.table("motion", {"model", "reference", "smoothing_s"});
+  Motion motion;
+  motion.where = table.where();
+  motion.model = table.choice("model", {"homography", "none"}).value_or(motion.model);
+  motion.reference =
+      table.choice("reference", {"first_frame", "smoothed"}).value_or(motion.reference);
+  motion.smoothing_s = table.number("smoothing_s", kAboveZero).value_or(motion.smoothing_s);
+  return motion;
+}
+
+Light light_in(const TableReader& parent) {
+  const TableReader table = parent.table("light", {"sun_azimuth_deg", "sun_elevation_deg", "exposure", "sky_colour", "ground_colour"});
+  Light light;
+  light.where = table.where();
+  light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);
+  light.sun_elevation_deg =
+      table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
+  light.exposure = table.number("exposure", kAboveZero);
+  light.sky_colour = colour_from(table, "sky_colour");
+  light.ground_colour = colour_from(table, "ground_colour");
+  return light;
+}
+
+Output output_in(const TableReader& parent) {
+  const TableReader table = parent.table("output", {"video", "quality"});
+  Output output;
+  output.video = table.choice("video", {"mp4", "mkv", "avi", "png"}).value_or(output.video);
+  output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
+  return output;
+}
+
+Render render_in(const TableReader& parent) {
+  const TableReader table = parent.table("render", {"quality"});
+  Render render;
+  render.quality = static_cast<int>(table.whole("quality", 1, 5).value_or(render.quality));
+  return render;
+}
+
+Composite composite_in(const TableReader& parent) {
+  const TableReader table = parent.table("composite", {"method"});
+  Composite composite;
+  composite.method = table.choice("method", {"matte", "chroma-key"}).value_or(composite.method);
+  return composite;
+}
+
+}  // namespace airtruth::scene
