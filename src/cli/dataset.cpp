@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "cli/commands.h"
 #include "dataset/build.h"
+#include "dataset/slurm.h"
 #include "dataset/verify.h"
 
 namespace airtruth::cli {
@@ -16,6 +17,9 @@ struct Arguments {
   std::string folder;
   std::vector<std::string> backgrounds;  // NAME=VIDEO
   dataset::BuildOptions build;
+  dataset::SlurmOptions slurm;
+  bool on_slurm = false;
+  bool finish = false;
 };
 
 std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string>& backgrounds) {
@@ -104,8 +108,25 @@ void status(const Arguments& arguments, Context& context) {
   for (const std::string& name : status.missing) console.result("  missing: " + name);
 }
 
+void submit(Arguments arguments, Context& context) {
+  if (!arguments.on_slurm) throw Error("no engine is named; expected --slurm");
+  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  dataset::SlurmOptions& options = arguments.slurm;
+  options.videos = videos_of(arguments.backgrounds);
+  options.program = dataset::fs::read_symlink("/proc/self/exe");
+  const dataset::Submitted submitted = dataset::submit(catalogue, arguments.folder, options);
+  if (options.dry_run)
+    context.console().result("not submitted: sbatch " + submitted.work_script.string() + ", then " +
+                             submitted.verify_script.string());
+  else
+    context.console().result("submitted as " + submitted.work_job + ", verified by " +
+                             submitted.verify_job);
+}
+
 void verify(const Arguments& arguments, Context& context) {
   Console& console = context.console();
+  if (arguments.finish && !dataset::finish(arguments.folder))
+    console.warning("sequences are missing; no manifest is written");
   dataset::VerifyOptions options;
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
@@ -176,7 +197,32 @@ void add_dataset(CLI::App& app, Context& context) {
   auto* verify_command =
       group->add_subcommand("verify", "Check every file, label and frame count of a data set");
   verify_command->add_option("DIR", arguments->folder, "The data set's folder")->required();
+  verify_command->add_flag("--finish",
+                           arguments->finish,
+                           "First write the manifest, where several workers made the sequences");
   verify_command->callback([arguments, &context] { verify(*arguments, context); });
+  auto* submit_command = group->add_subcommand("submit", "Have a cluster make a data set");
+  submit_command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")
+      ->required();
+  submit_command
+      ->add_option("--out,-o",
+                   arguments->folder,
+                   "The data set's folder, on a file system that all nodes see")
+      ->required();
+  submit_command->add_flag(
+      "--slurm", arguments->on_slurm, "As a Slurm job array, with a job after it that verifies");
+  submit_command
+      ->add_option("--array-size",
+                   arguments->slurm.array_size,
+                   "Tasks (default: one per sequence, at most 1,000)")
+      ->check(CLI::Range(1, 100000));
+  submit_command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
+  submit_command->add_option("--background",
+                             arguments->backgrounds,
+                             "NAME=VIDEO: a video in place of a background of the catalogue");
+  submit_command->add_flag(
+      "--dry-run", arguments->slurm.dry_run, "Write the scripts and submit nothing");
+  submit_command->callback([arguments, &context] { submit(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -72,6 +72,8 @@ class Work {
     for (std::size_t i = 0; i < files_.size(); ++i) {
       if (!needed_[i]) continue;
       if (options_.stop.stop_requested()) throw Interrupted();
+      const WaitingLock lock(
+          folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
       files_[i] = prepare(catalogue_.backgrounds[i], folder_, options_);
       measure(i);
     }
@@ -169,10 +171,18 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
   const Folder folder = open_folder(catalogue, out);
   const FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();
-  write_failures(folder, summary.failures);
-  summary.complete = write_manifest(catalogue, folder);
+  write_failures(folder.failed(options.share, options.shares), summary.failures);
+  // Of several workers none knows that it is the last: `finish` is theirs.
+  if (options.shares == 1) summary.complete = write_manifest(catalogue, folder);
   summary.seconds = watch.seconds();
   return summary;
+}
+
+bool finish(const fs::path& root) {
+  const Folder folder{root};
+  const Catalogue catalogue = read_catalogue(folder.catalogue());
+  const FolderLock lock(folder, false);
+  return write_manifest(catalogue, folder);
 }
 
 }  // namespace airtruth::dataset

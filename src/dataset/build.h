@@ -59,4 +59,8 @@ struct BuildSummary {
 // stop.
 BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options);
 
+// Writes the manifest of a folder that several workers have filled; false where a sequence is
+// missing. Error while any of them is at work.
+bool finish(const fs::path& root);
+
 }  // namespace airtruth::dataset

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <stop_token>
 #include <string>
 
 #include "dataset/catalogue.h"
@@ -19,7 +21,10 @@ struct Folder {
   fs::path cache() const { return root / ".cache"; }
   fs::path manifest() const { return root / "manifest"; }
   fs::path record() const { return root / "dataset.json"; }
-  fs::path failed() const { return root / "failed.jsonl"; }
+  // Of a whole build, or of one share of it.
+  fs::path failed(std::int64_t share, std::int64_t shares) const {
+    return root / (shares > 1 ? "failed-" + std::to_string(share) + ".jsonl" : "failed.jsonl");
+  }
   // Is the sequence there? Its folder is renamed into place with its record inside, so the record
   // is enough.
   bool holds(const std::string& name) const { return fs::exists(sequence(name) / "sequence.json"); }
@@ -37,6 +42,19 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();
+
+ private:
+  int file_ = -1;
+};
+
+// Held while one process makes what others would make as well; the others wait. Interrupted on
+// stop.
+class WaitingLock {
+ public:
+  WaitingLock(const fs::path& file, const std::stop_token& stop);
+  WaitingLock(const WaitingLock&) = delete;
+  WaitingLock& operator=(const WaitingLock&) = delete;
+  ~WaitingLock();
 
  private:
   int file_ = -1;

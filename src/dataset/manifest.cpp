@@ -37,10 +37,10 @@ Json line_of(const Folder& folder, const Item& item) {
 
 }  // namespace
 
-void write_failures(const Folder& folder, const std::vector<Failure>& failures) {
+void write_failures(const fs::path& file, const std::vector<Failure>& failures) {
   std::error_code ignored;
   if (failures.empty()) {
-    fs::remove(folder.failed(), ignored);
+    fs::remove(file, ignored);
     return;
   }
   std::string text;
@@ -48,7 +48,7 @@ void write_failures(const Folder& folder, const std::vector<Failure>& failures) 
     text += Json{{"name", failure.name}, {"reason", failure.reason}}.dump(
                 -1, ' ', false, Json::error_handler_t::replace) +
             "\n";
-  write_file(folder.failed(), text);
+  write_file(file, text);
 }
 
 bool write_manifest(const Catalogue& catalogue, const Folder& folder) {

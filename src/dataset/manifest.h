@@ -8,8 +8,8 @@
 
 namespace airtruth::dataset {
 
-// failed.jsonl: a line each; removed where nothing failed.
-void write_failures(const Folder& folder, const std::vector<Failure>& failures);
+// A line each; the file is removed where nothing failed.
+void write_failures(const fs::path& file, const std::vector<Failure>& failures);
 
 // manifest/*.jsonl and, last, dataset.json, where every sequence of the catalogue is there (else
 // false, and neither is written). Memory does not grow with the number of sequences. The same bytes

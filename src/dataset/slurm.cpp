@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/slurm.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "dataset/expand.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr std::int64_t kMostTasks = 1000;
+
+// As one word of a shell's.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+    } else {
+      result += c;
+    }
+  }
+  return result + "'";
+}
+
+std::string head(const std::string& name, const fs::path& log, const SlurmOptions& options) {
+  std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name +
+                     "\n#SBATCH --output=" + log.string() + "\n#SBATCH --open-mode=append\n";
+  if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
+  return text;
+}
+
+std::string work_script(const Catalogue& catalogue,
+                        const fs::path& out,
+                        const SlurmOptions& options,
+                        std::int64_t tasks) {
+  std::string text = head("airtruth", out / "slurm" / "work-%a.log", options);
+  text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
+  text += fmt::format(
+      "exec {} dataset work {} --out {} --index \"$SLURM_ARRAY_TASK_ID\" --of {} --jobs "
+      "\"${{SLURM_CPUS_ON_NODE:-1}}\"",
+      quoted(options.program.string()),
+      quoted(fs::absolute(catalogue.file).string()),
+      quoted(out.string()),
+      tasks);
+  for (const auto& [name, video] : options.videos)
+    text += " --background " + quoted(name + "=" + video.string());
+  return text + "\n";
+}
+
+std::string verify_script(const fs::path& out, const SlurmOptions& options) {
+  return head("airtruth-verify", out / "slurm" / "verify.log", options) +
+         fmt::format("exec {} dataset verify {} --finish\n",
+                     quoted(options.program.string()),
+                     quoted(out.string()));
+}
+
+// The first line that a command prints; Error where it fails.
+std::string first_line(const std::string& command) {
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  check(pipe != nullptr, "a process can be started");
+  std::string output;
+  std::array<char, 4096> buffer;
+  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), got);
+  const int status = ::pclose(pipe);
+  const std::string line = output.substr(0, output.find('\n'));
+  if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw Error("sbatch failed: " + (line.empty() ? "no word why" : line) +
+                "; expected Slurm's client tools and a running cluster");
+  return line;
+}
+
+}  // namespace
+
+Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options) {
+  const fs::path root = fs::absolute(out).lexically_normal();
+  if (root.string().find('\n') != std::string::npos)
+    throw Error("has a line break in its name", {root.string()});
+  const auto odd = [](char c) {
+    return !std::isalnum(static_cast<unsigned char>(c)) &&
+           std::string_view("_-.,").find(c) == std::string_view::npos;
+  };
+  if (std::any_of(options.partition.begin(), options.partition.end(), odd))
+    throw Error("'" + options.partition + "' is no name of a Slurm partition");
+  open_folder(catalogue, root);
+  const std::int64_t sequences = Expansion(catalogue).size();
+  const std::int64_t tasks = options.array_size > 0
+                                 ? std::min<std::int64_t>(options.array_size, sequences)
+                                 : std::min(kMostTasks, sequences);
+  fs::create_directories(root / "slurm");
+  Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};
+  write_file(submitted.work_script, work_script(catalogue, root, options, tasks));
+  write_file(submitted.verify_script, verify_script(root, options));
+  if (options.dry_run) return submitted;
+  submitted.work_job = first_line("sbatch --parsable " + quoted(submitted.work_script.string()));
+  submitted.work_job = submitted.work_job.substr(0, submitted.work_job.find(';'));
+  submitted.verify_job =
+      first_line("sbatch --parsable --dependency=afterany:" + submitted.work_job + " " +
+                 quoted(submitted.verify_script.string()));
+  submitted.verify_job = submitted.verify_job.substr(0, submitted.verify_job.find(';'));
+  return submitted;
+}
+
+}  // namespace airtruth::dataset
