@@ -55,8 +55,7 @@ std::optional<std::array<double, 3>> colour_from(const TableReader& table, std::
 
 toml::table parsed_toml(std::string_view text, const std::string& file) {
   if (text.size() > kLargestToml)
-    throw Error(fmt::format("is {} bytes long; expected at most 16 MiB", text.size()),
-                {file});
+    throw Error(fmt::format("is {} bytes long; expected at most 16 MiB", text.size()), {file});
   if (const std::size_t fault = utf8_fault(text); fault != std::string_view::npos) {
     const auto newlines =
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(fault), '\n');
@@ -77,7 +76,9 @@ toml::table parsed_toml(std::string_view text, const std::string& file) {
 }
 
 Lens lens_in(const TableReader& parent) {
-  const TableReader table = parent.table("lens", {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion", "file"});
+  const TableReader table = parent.table(
+      "lens",
+      {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion", "file"});
   Lens lens;
   lens.where = table.where();
   table.exclude("file",
@@ -98,7 +99,8 @@ Lens lens_in(const TableReader& parent) {
 }
 
 Camera camera_in(const TableReader& parent) {
-  const TableReader table = parent.table("camera", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg", "path_file"});
+  const TableReader table = parent.table(
+      "camera", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg", "path_file"});
   Camera camera;
   camera.where = table.where();
   table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
@@ -122,7 +124,8 @@ Motion motion_in(const TableReader& parent) {
 }
 
 Light light_in(const TableReader& parent) {
-  const TableReader table = parent.table("light", {"sun_azimuth_deg", "sun_elevation_deg", "exposure", "sky_colour", "ground_colour"});
+  const TableReader table = parent.table(
+      "light", {"sun_azimuth_deg", "sun_elevation_deg", "exposure", "sky_colour", "ground_colour"});
   Light light;
   light.where = table.where();
   light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);

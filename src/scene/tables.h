@@ -8,8 +8,8 @@
 #include "scene/scene.h"
 #include "scene/table_reader.h"
 
-// The tables that a scene shares with a catalogue of scenes. Each reads the table of its name inside `parent`, with every
-// default where the file has none.
+// The tables that a scene shares with a catalogue of scenes. Each reads the table of its name
+// inside `parent`, with every default where the file has none.
 namespace airtruth::scene {
 
 constexpr std::size_t kLargestToml = std::size_t{16} << 20;
