@@ -85,6 +85,86 @@ TEST(Render, APlateCoversWhatProjectionSays) {
   EXPECT_NEAR(other.depth_m[other.index(100, 100)], 100, 0.1);
 }
 
+// A regular polygon of n corners on a circle of radius r, across the line of sight.
+aircraft::Mesh disc(int n, double r, float north) {
+  aircraft::Mesh mesh;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * kPi * i / n;
+    mesh.positions.emplace_back(
+        north, static_cast<float>(r * std::cos(a)), static_cast<float>(r * std::sin(a)));
+    mesh.normals.emplace_back(-1, 0, 0);
+    mesh.uvs.emplace_back(0, 0);
+  }
+  mesh.materials.emplace_back();
+  mesh.parts.push_back({.name = "disc"});
+  for (int i = 1; i + 1 < n; ++i)
+    mesh.parts[0].triangles.push_back(
+        {{0, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1)}, 0});
+  return mesh;
+}
+
+// Its area is n/2 r^2 sin(2 pi / n), and (f / d)^2 of that in the picture.
+TEST(Render, ADiscHasItsArea) {
+  const lens::Lens lens = pinhole(300);
+  for (const double diameter_px : {10.0, 40.0, 90.0}) {
+    const double r = diameter_px / 2 * 100 / 300;
+    const int n = 90;
+    const Model model(disc(n, r, 100));
+    const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
+    const double exact = n / 2.0 * r * r * std::sin(2 * kPi / n) * 9;
+    EXPECT_NEAR(alpha_sum(layer) / exact, 1, 0.002) << diameter_px;
+  }
+}
+
+// The share of the unit square at (x, y) on the side of the line n . p <= c (Sutherland and Hodgman
+// 1974; shoelace).
+double share_below(double x, double y, const Eigen::Vector2d& normal, double c) {
+  const std::array<Eigen::Vector2d, 4> square = {{{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
+  std::vector<Eigen::Vector2d> kept;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d& a = square[i];
+    const Eigen::Vector2d& b = square[(i + 1) % 4];
+    const double da = normal.dot(a) - c;
+    const double db = normal.dot(b) - c;
+    if (da <= 0) kept.push_back(a);
+    if ((da < 0 && db > 0) || (da > 0 && db < 0)) kept.push_back(a + da / (da - db) * (b - a));
+  }
+  double twice = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const Eigen::Vector2d& a = kept[i];
+    const Eigen::Vector2d& b = kept[(i + 1) % kept.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return std::abs(twice) / 2;
+}
+
+// A plate rolled by 5 degrees, far larger than the picture but for one edge that crosses it.
+TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
+  const lens::Lens lens = pinhole(300);
+  for (const double slant_deg : {5.0, 31.0, 88.0}) {
+    const double a = radians(slant_deg);
+    const Eigen::Vector2d along(std::cos(a), std::sin(a));  // right, down
+    const Eigen::Vector2d across(-std::sin(a), std::cos(a));
+    const auto corner = [&](double u, double v) {  // at 100 m: a third of a metre is a pixel
+      const Eigen::Vector2d p = u * along + v * across;
+      return Eigen::Vector3f(100, static_cast<float>(p.x()), static_cast<float>(p.y()));
+    };
+    aircraft::Mesh mesh;
+    add_quad(
+        mesh, {{corner(-400, -400), corner(400, -400), corner(400, 0.1), corner(-400, 0.1)}}, {});
+    const Model model(mesh);
+    const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
+    const double c = across.dot(Eigen::Vector2d(100, 100)) + 0.3;  // 0.1 m is 0.3 px
+    double worst = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        worst = std::max(
+            worst, std::abs(layer.pixels[layer.index(x, y)].alpha - share_below(x, y, across, c)));
+    EXPECT_LT(worst, 1.0 / 64) << slant_deg;
+    EXPECT_GT(alpha_sum(layer), 0.4 * kSide * kSide);
+  }
+}
+
 TEST(Render, ASunlitPlateShinesAsLambertSays) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
