@@ -31,8 +31,8 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerType=sched/builtin
 SchedulerParameters=batch_sched_delay=0,sched_interval=1
-MinJobAge=300
-SlurmdTimeout=10
+MinJobAge=86400
+SlurmdTimeout=300
 ReturnToService=2
 KillWait=3
 MailProg=/bin/true
@@ -46,7 +46,14 @@ NodeName=localhost CPUs={cpus} State=UNKNOWN
 PartitionName=p Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """
 
-DEADLINE_S = 420
+DEADLINE_S = 300
+
+
+OVER = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "BOOT_FAIL", "DEADLINE"}
+
+
+class Failed(Exception):
+    pass
 
 
 def output(*command, check=True):
@@ -60,7 +67,7 @@ def wait_for(what, condition, seconds):
         if result:
             return result
         time.sleep(0.3)
-    sys.exit(f"slurm_test: {what} took more than {seconds} s")
+    raise Failed(f"{what} took more than {seconds} s")
 
 
 class Cluster:
@@ -76,7 +83,7 @@ class Cluster:
         port = 20000 + os.getpid() % 20000
         configuration = os.path.join(self.root, "slurm.conf")
         with open(configuration, "w") as file:
-            file.write(CONFIGURATION.format(root=self.root, controller=port, node=port + 1, cpus=os.cpu_count()))
+            file.write(CONFIGURATION.format(root=self.root, controller=port, node=port + 1, cpus=min(os.cpu_count(), 4)))
         os.environ["SLURM_CONF"] = configuration
         place = lambda name: os.path.join(self.root, name)
         self.start("munged", "-F", "--socket=" + place("munge.socket"), "--key-file=" + place("munge.key"),
@@ -90,7 +97,9 @@ class Cluster:
     def start(self, *command):
         self.daemons.append(subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
 
-    def __exit__(self, *_):
+    def __exit__(self, *what):
+        if what[0] is Failed:
+            self.explain()
         for daemon in reversed(self.daemons):
             daemon.terminate()
         for daemon in reversed(self.daemons):
@@ -101,6 +110,26 @@ class Cluster:
                 daemon.wait()
 
 
+    def explain(self):
+        """What Slurm thought, for whom it fails."""
+        print(output("squeue", "-r", "-t", "all", "-o", "%i %T %r %S %M", check=False))
+        print(output("sinfo", "-N", "-o", "%N %T %E %c", check=False))
+        for name in ("slurmctld.log", "slurmd.log", "set/slurm/work-0.log", "set/slurm/verify.log"):
+            try:
+                with open(os.path.join(self.root, name), errors="replace") as file:
+                    print(name, "ends:", *file.read().splitlines()[-25:], sep="\n  ")
+            except FileNotFoundError:
+                print(name, "is not there")
+
+
+def start_waiting(tasks):
+    """Tasks that were put back wait for about two minutes, unless told to start; while one is ending it cannot be told."""
+    for task, state in tasks.items():
+        if state == "PENDING":
+            output("scontrol", "update", "jobid=" + task, "starttime=now", check=False)
+    return tasks
+
+
 def states(job):
     """Task -> state, of a job or an array."""
     found = {}
@@ -108,6 +137,10 @@ def states(job):
         task, state = line.split("|")
         found[task] = state
     return found
+
+
+def are_over(tasks):
+    return bool(tasks) and set(tasks.values()) <= OVER
 
 
 def annotations(folder):
@@ -143,26 +176,32 @@ def main():
         try:
             os.kill(victim, signal.SIGKILL)
         except ProcessLookupError:
-            sys.exit("slurm_test: the task was over before it could be killed")
+            raise Failed("the task was over before it could be killed")
         failed = wait_for("the kill", lambda: [t for t, s in states(work).items() if s in ("FAILED", "NODE_FAIL")], 60)
+        # Slurm refuses to start a task in the second in which it was killed.
+        time.sleep(2)
         output("scontrol", "requeue", failed[0])
-        output("scontrol", "update", "jobid=" + failed[0], "starttime=now", check=False)
         print("killed and requeued:", failed[0])
-        wait_for("the array", lambda: all(s == "COMPLETED" for s in states(work).values()), DEADLINE_S)
-        wait_for("the last job", lambda: set(states(verify).values()) <= {"COMPLETED", "FAILED"} and states(verify), 120)
+        wait_for("the array", lambda: are_over(start_waiting(states(work))), DEADLINE_S)
+        if set(states(work).values()) != {"COMPLETED"}:
+            raise Failed(f"the array ended as {states(work)}")
+        wait_for("the last job", lambda: are_over(start_waiting(states(verify))), DEADLINE_S)
         local = os.path.join(root, "local")
         output(airtruth, "dataset", "build", catalogue, "--out", local)
         here, there = annotations(local), annotations(out)
         differing = [name for name in here if there.get(name) != here[name] and not name.endswith(".mp4")]
         if set(here) != set(there) or differing:
-            sys.exit(f"slurm_test: {len(here)} files here, {len(there)} there; these differ: {differing[:5]}")
+            raise Failed(f"{len(here)} files here, {len(there)} there; these differ: {differing[:5]}")
         # The job after the array may have ended before the requeued task: the manifest is written, or can be now.
         check = subprocess.run([airtruth, "dataset", "verify", out, "--finish"], capture_output=True, text=True)
         if check.returncode != 0:
-            sys.exit("slurm_test: " + check.stdout + check.stderr)
+            raise Failed(check.stdout + check.stderr)
         print(check.stdout.strip())
         print(f"{len(here)} files are the same bytes as those of a local build")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failed as failed:
+        sys.exit(f"slurm_test: {failed}")
