@@ -46,7 +46,7 @@ void build(Arguments arguments, Context& context) {
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&console](const dataset::BuildProgress& p) {
-    console.progress(p.name, p.done, p.total);
+    console.progress(p.stage, p.done, p.total);
   };
   const dataset::BuildSummary summary = dataset::build(catalogue, arguments.folder, options);
   console.result(fmt::format("{}: {} sequences made ({} frames, {}), {} were there, {} failed{}",

@@ -131,9 +131,10 @@ class Work {
       const std::lock_guard lock(mutex_);
       summary_.failures.push_back({item.name, error.what()});
     }
-    report({summary_.made + summary_.kept + static_cast<std::int64_t>(summary_.failures.size()),
-            total_,
-            item.name});
+    const std::lock_guard lock(mutex_);
+    const auto failed = static_cast<std::int64_t>(summary_.failures.size());
+    if (options_.progress)
+      options_.progress({summary_.made + summary_.kept + failed, total_, "building"});
   }
 
   void report(const BuildProgress& progress) {

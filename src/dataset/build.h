@@ -24,7 +24,7 @@ namespace airtruth::dataset {
 struct BuildProgress {
   std::int64_t done = 0;   // sequences made or found whole
   std::int64_t total = 0;  // of this run's share
-  std::string name;        // of the one that was just finished; or what else is being done
+  std::string stage;       // "building"; or, of a background's frames, what is done with them
 };
 
 struct BuildOptions {

@@ -19,7 +19,7 @@ struct SobolPoints {
   std::array<std::uint32_t, PixelSamples::kMost> y;
 };
 
-SobolPoints sobol_points() {
+constexpr SobolPoints sobol_points() {
   SobolPoints points{};
   for (std::uint32_t n = 0; n < PixelSamples::kMost; ++n) {
     std::uint32_t vx = 1u << 31;
@@ -34,7 +34,7 @@ SobolPoints sobol_points() {
   return points;
 }
 
-const SobolPoints kPoints = sobol_points();
+constexpr SobolPoints kPoints = sobol_points();
 
 }  // namespace
 

@@ -224,7 +224,6 @@ Silhouette::Touch Silhouette::touch(int x, int y) const { return touch_[index(x,
 
 void Silhouette::cover(
     int x, int y, const std::array<Vector3, 4>& corners, int samples, Cover& result) const {
-  result.samples = samples;
   result.is_covered.assign(static_cast<std::size_t>(samples), 0);
   std::int32_t* covered = result.is_covered.data();
   Places places;

@@ -21,7 +21,6 @@ namespace airtruth::render {
 
 // Which of a pixel's first n samples an aircraft covers.
 struct Cover {
-  int samples = 0;
   int covered = 0;
   std::vector<std::int32_t> is_covered;  // 0 or -1, of each sample
 };
