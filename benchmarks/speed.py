@@ -7,6 +7,7 @@ of them once, in turn, so that a slow minute of the machine falls on all of them
 """
 
 import argparse
+import math
 import os
 import platform
 import re
@@ -20,7 +21,7 @@ VIEW_DEG = 75
 WIDTH, HEIGHT = 1280, 960
 SPEED_MPS = 25
 SPAN_M = 34.3  # of 738/738-Ryanair, seen from behind
-FOCAL_PX = HEIGHT / 2 / 0.7673269879789604  # tan(75 degrees / 2)
+FOCAL_PX = HEIGHT / 2 / math.tan(math.radians(VIEW_DEG / 2))
 
 SCENE = """name = "{name}"
 [background]

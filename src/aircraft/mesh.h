@@ -25,8 +25,11 @@ struct Texture {
   std::vector<Level> levels;
   bool repeat_u = true;
   bool repeat_v = true;
-  bool has_translucency = false;  // some texel has alpha below 0.996
+  bool has_translucency = false;  // some texel has alpha below kOpaque
 };
+
+// Opacity at which a surface counts as opaque: 254 / 255, since files round.
+constexpr float kOpaque = 0.996f;
 
 struct Material {
   std::array<float, 3> diffuse = {1, 1, 1};   // linear

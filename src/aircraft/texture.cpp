@@ -7,8 +7,6 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr float kOpaque = 0.996f;
-
 using Texel = std::array<float, 4>;
 
 Texture::Level halved(const Texture::Level& level) {

@@ -11,7 +11,7 @@
 namespace airtruth::backdrop {
 namespace {
 
-constexpr float kOpaque = 0.996f;  // 254 / 255
+using aircraft::kOpaque;
 
 constexpr const char* kVertexShader = R"(#version 120
 varying vec3 p_in_part;

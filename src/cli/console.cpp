@@ -31,7 +31,10 @@ std::string time_left(double left_s) {
 Console::Console(const ConsoleOptions& options)
     : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
-void Console::progress(const std::string& stage, std::int64_t done, std::int64_t total) {
+void Console::progress(const std::string& stage,
+                       std::int64_t done,
+                       std::int64_t total,
+                       const std::string& unit) {
   if (options_.quiet || (!terminal_ && !options_.json_log)) return;
   const auto now = Clock::now();
   if (stage != stage_ || done <= 1) {
@@ -55,7 +58,7 @@ void Console::progress(const std::string& stage, std::int64_t done, std::int64_t
           ? fmt::format(
                 "{}  {}/{} ({:.0f} %)", stage, done, total, 100.0 * double(done) / double(total))
           : fmt::format("{}  {}", stage, done);
-  text += fmt::format("  {:.1f} frames/s", rate);
+  text += fmt::format("  {:.1f} {}/s", rate, unit);
   if (total > done && rate > 0)
     text += fmt::format("  {} left", time_left(static_cast<double>(total - done) / rate));
   fmt::print(stderr, "\r\x1b[K{}", text);

@@ -21,7 +21,10 @@ class Console {
  public:
   explicit Console(const ConsoleOptions& options);
 
-  void progress(const std::string& stage, std::int64_t done, std::int64_t total);
+  void progress(const std::string& stage,
+                std::int64_t done,
+                std::int64_t total,
+                const std::string& unit = "frames");
   void end_progress();
   void warning(const std::string& message);
   void error(const std::string& message);

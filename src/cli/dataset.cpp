@@ -46,7 +46,7 @@ void build(Arguments arguments, Context& context) {
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&console](const dataset::BuildProgress& p) {
-    console.progress(p.stage, p.done, p.total);
+    console.progress(p.stage, p.done, p.total, p.stage == "building" ? "sequences" : "frames");
   };
   const dataset::BuildSummary summary = dataset::build(catalogue, arguments.folder, options);
   console.result(fmt::format("{}: {} sequences made ({} frames, {}), {} were there, {} failed{}",
@@ -130,7 +130,7 @@ void verify(const Arguments& arguments, Context& context) {
   dataset::VerifyOptions options;
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("verifying", done, total);
+    console.progress("verifying", done, total, "sequences");
   };
   const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);

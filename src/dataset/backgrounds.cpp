@@ -11,24 +11,17 @@
 namespace airtruth::dataset {
 namespace {
 
-synthetic::FlightOptions flight_options(const Background& background,
-                                        const VirtualBackground& flight) {
-  synthetic::FlightOptions options;
-  options.seed = flight.seed;
-  options.frame_count = static_cast<int>(flight.frame_count);
-  options.width = flight.width;
-  options.height = flight.height;
-  options.cloud_cover = flight.cloud_cover;
-  options.speed_mps = flight.speed_mps;
-  options.altitude_m = flight.altitude_m;
-  options.sun_azimuth_deg = background.light.sun_azimuth_deg;
-  options.sun_elevation_deg = background.light.sun_elevation_deg;
-  options.lens = sequence::lens_of(background.lens, {flight.width, flight.height});
-  return options;
+// As the background's light and lens have it.
+synthetic::FlightOptions flight_over(const Background& background,
+                                     synthetic::FlightOptions flight) {
+  flight.sun_azimuth_deg = background.light.sun_azimuth_deg;
+  flight.sun_elevation_deg = background.light.sun_elevation_deg;
+  flight.lens = sequence::lens_of(background.lens, {flight.width, flight.height});
+  return flight;
 }
 
 BackgroundFiles fly(const Background& background,
-                    const VirtualBackground& wanted,
+                    const synthetic::FlightOptions& wanted,
                     const Folder& folder,
                     const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
@@ -36,7 +29,7 @@ BackgroundFiles fly(const Background& background,
   // The video is the last to appear.
   if (fs::exists(files.video)) return files;
   fs::create_directories(folder.backgrounds());
-  const synthetic::Flight flight(flight_options(background, wanted));
+  const synthetic::Flight flight(flight_over(background, wanted));
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
   video::write_still(*files.mask, sequence::picture_of(flight.own_aircraft()));
   sequence::VirtualFlightOptions how;
@@ -55,7 +48,7 @@ BackgroundFiles prepare(const Background& background,
                         const BuildOptions& options) {
   if (const auto given = options.videos.find(background.name); given != options.videos.end())
     return {given->second, std::nullopt};
-  if (const auto* flight = std::get_if<VirtualBackground>(&background.source))
+  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
     return fly(background, *flight, folder, options);
   return {std::get<fs::path>(background.source), background.mask};
 }

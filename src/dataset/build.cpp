@@ -41,9 +41,7 @@ class Work {
   }
 
  private:
-  bool mine(const Item& item) const {
-    return item.index % options_.shares == options_.share && matches(options_.only, item.name);
-  }
+  bool is_wanted(const Item& item) const { return matches(options_.only, item.name); }
 
   // What there is to do, and which backgrounds and how much of them it takes.
   void count() {
@@ -51,7 +49,7 @@ class Work {
     bool any = false;
     for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
       const Item item = expansion_.at(i);
-      if (!mine(item)) continue;
+      if (!is_wanted(item)) continue;
       any = true;
       ++total_;
       if (folder_.holds(item.name)) {
@@ -106,7 +104,7 @@ class Work {
       const std::int64_t i = options_.share + next_.fetch_add(1) * options_.shares;
       if (i >= expansion_.size()) return;
       Item item = expansion_.at(i);
-      if (mine(item) && !folder_.holds(item.name)) make(item);
+      if (is_wanted(item) && !folder_.holds(item.name)) make(item);
     }
   }
 

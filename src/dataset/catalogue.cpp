@@ -27,11 +27,13 @@ std::string required_name(const TableReader& table) {
   throw Error("has no name", table.where());
 }
 
-VirtualBackground flight_from(const TableReader& table) {
-  VirtualBackground flight;
+synthetic::FlightOptions flight_from(const TableReader& table) {
+  synthetic::FlightOptions flight;
+  flight.frame_count = 300;
   flight.seed = static_cast<std::uint64_t>(
       table.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
-  flight.frame_count = table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count);
+  flight.frame_count =
+      static_cast<int>(table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count));
   flight.width = static_cast<int>(table.whole("width", 64, 8192).value_or(flight.width));
   flight.height = static_cast<int>(table.whole("height", 64, 8192).value_or(flight.height));
   flight.cloud_cover =

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "synthetic/flight.h"
 
 // A catalogue: backgrounds, aircraft and trajectories by name, and the sequences to make of them,
 // listed one by one, as a product, or drawn at random from ranges. docs/formats/catalogue.md
@@ -18,21 +19,12 @@ namespace airtruth::dataset {
 
 namespace fs = std::filesystem;
 
-// A virtual flight in place of a video; made once, in the data set's own folder.
-struct VirtualBackground {
-  std::uint64_t seed = 1;
-  std::int64_t frame_count = 300;
-  int width = 1280;
-  int height = 960;
-  double cloud_cover = 0.5;
-  double speed_mps = 25;
-  double altitude_m = 150;
-};
-
 struct Background {
   std::string name;
-  std::variant<VirtualBackground, fs::path> source;  // a flight, or a video
-  std::optional<fs::path> mask;                      // of a video; a flight brings its own
+  // A virtual flight, made once in the data set's own folder (its sun and lens are those below); or
+  // a video.
+  std::variant<synthetic::FlightOptions, fs::path> source;
+  std::optional<fs::path> mask;  // of a video; a flight brings its own
   std::int64_t first_frame = 0;
   scene::Lens lens;
   scene::Camera camera;

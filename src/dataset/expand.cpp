@@ -51,7 +51,8 @@ std::int64_t frames_of(const Catalogue& catalogue,
                        const std::optional<std::int64_t>& of_trajectory) {
   if (own) return *own;
   if (of_trajectory) return *of_trajectory;
-  const auto* flight = std::get_if<VirtualBackground>(&catalogue.backgrounds[background].source);
+  const auto* flight =
+      std::get_if<synthetic::FlightOptions>(&catalogue.backgrounds[background].source);
   return flight != nullptr ? flight->frame_count : 0;  // 0: to the video's end
 }
 

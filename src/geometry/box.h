@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "geometry/transform.h"
@@ -36,6 +37,14 @@ struct PixelBox {
   }
   bool operator==(const PixelBox&) const = default;
 };
+
+// The whole pixels that a box touches; far outside any picture it is cut at a million pixels.
+inline PixelBox pixels_of(const Box& box) {
+  const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
+  const int x = bounded(std::floor(box.x));
+  const int y = bounded(std::floor(box.y));
+  return {x, y, bounded(std::ceil(box.right())) - x, bounded(std::ceil(box.bottom())) - y};
+}
 
 inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b) {
   const int x = std::max(a.x, b.x);

@@ -69,8 +69,6 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
 }
 
-constexpr float kOpaque = 0.996f;
-
 // How many of a texture's texels are translucent, over any rectangle (a summed-area table: Crow
 // 1984).
 class TranslucentTexels {
@@ -85,7 +83,7 @@ class TranslucentTexels {
       for (int x = 0; x < width_; ++x) {
         row += texture.levels.front()
                    .texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                           static_cast<std::size_t>(x)][3] < kOpaque;
+                           static_cast<std::size_t>(x)][3] < aircraft::kOpaque;
         sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + row;
       }
     }
@@ -138,7 +136,7 @@ std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& me
       const TranslucentTexels* table =
           material.texture < 0 ? nullptr : tables[static_cast<std::size_t>(material.texture)].get();
       const bool holes = table != nullptr && table->any({mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
-      flags.push_back(material.opacity >= kOpaque && !holes ? 1 : 0);
+      flags.push_back(material.opacity >= aircraft::kOpaque && !holes ? 1 : 0);
     }
   }
   return result;

@@ -92,14 +92,14 @@ float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const bool textured = material.texture >= 0 &&
                         mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
   const float alpha = material.opacity * (textured ? texel_at(placed, hit, footprint_m)[3] : 1.0f);
-  return alpha >= 0.996f ? 1.0f : alpha;
+  return alpha >= aircraft::kOpaque ? 1.0f : alpha;
 }
 
-Shaded shade(const Placed& placed,
-             const BodyRay& ray,
-             const Hit& hit,
-             const Light& light,
-             float footprint_m) {
+std::array<float, 3> shade(const Placed& placed,
+                           const BodyRay& ray,
+                           const Hit& hit,
+                           const Light& light,
+                           float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
   const auto part = static_cast<std::size_t>(hit.part);
   const aircraft::Triangle& triangle = mesh.parts[part].triangles[hit.triangle];
@@ -135,19 +135,17 @@ Shaded shade(const Placed& placed,
     const float alpha = texel[3];
     for (float& channel : texel) channel = std::min(1.0f, channel / alpha);
   }
-  Shaded result;
-  result.alpha = material.opacity * texel[3];
-  if (result.alpha >= 0.996f) result.alpha = 1;
+  std::array<float, 3> rgb{};
   constexpr float kGlossShare =
       0.08f;  // painted metal; the files' own specular colours are the game's taste
   for (std::size_t i = 0; i < 3; ++i) {
     const float ambient = light.ground[i] + upward * (light.sky[i] - light.ground[i]);
     const float albedo = material.diffuse[i] * texel[i];
-    result.rgb[i] =
+    rgb[i] =
         material.opacity * (albedo * (sun * light.sun[i] + ambient) +
                             texel[3] * kGlossShare * material.specular[i] * glint * light.sun[i]);
   }
-  return result;
+  return rgb;
 }
 
 }  // namespace airtruth::render

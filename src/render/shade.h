@@ -23,23 +23,17 @@ struct Placed {
   std::vector<Eigen::Affine3f> body_from_part;
 };
 
-// Light premultiplied by opacity, linear.
-struct Shaded {
-  std::array<float, 3> rgb{};
-  float alpha = 0;
-};
-
 // Opacity of the surface at a hit, texture included. `footprint_m`: the width that a sample stands
 // for, there.
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
 
-// Opacity and light: Lambert for the sun (with the aircraft's own shadow) and for a sky that goes
-// evenly from ground to zenith colour (hemisphere lighting), Blinn-Phong (Blinn 1977) for the sun's
-// glint. Two-sided.
-Shaded shade(const Placed& placed,
-             const BodyRay& ray,
-             const Hit& hit,
-             const Light& light,
-             float footprint_m);
+// Linear light, premultiplied by opacity: Lambert for the sun (with the aircraft's own shadow) and
+// for a sky that goes evenly from ground to zenith colour (hemisphere lighting), Blinn-Phong (Blinn
+// 1977) for the sun's glint. Two-sided.
+std::array<float, 3> shade(const Placed& placed,
+                           const BodyRay& ray,
+                           const Hit& hit,
+                           const Light& light,
+                           float footprint_m);
 
 }  // namespace airtruth::render

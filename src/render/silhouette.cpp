@@ -96,6 +96,16 @@ bool mark_one(
 
 }  // namespace
 
+struct Silhouette::Eye {
+  const View& view;
+  Homography frame_from_nominal;
+  Quaternion cam_from_world;
+
+  std::optional<Pixel> pixel(const Vector3& in_world) const {
+    return frame_pixel(view, frame_from_nominal, cam_from_world, in_world);
+  }
+};
+
 Silhouette::Silhouette(const Actor& actor, const View& view, const PixelBox& patch)
     : patch_(patch) {
   std::vector<Reach> reaches;
@@ -111,8 +121,7 @@ void Silhouette::add_part(const Actor& actor,
   const Model::Impl& model = *actor.placed.model;
   const aircraft::Mesh& mesh = model.mesh;
   const Matrix3 world_from_body = actor.body_from_world.transpose();
-  const Quaternion cam_from_world = view.world_from_cam.rotation.conjugate();
-  const Homography frame_from_nominal = view.nominal_from_frame.inverse();
+  const Eye eye{view, view.nominal_from_frame.inverse(), view.world_from_cam.rotation.conjugate()};
   const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   std::vector<Seen> seen(mesh.positions.size());
   std::vector<bool> known(mesh.positions.size(), false);
@@ -122,7 +131,7 @@ void Silhouette::add_part(const Actor& actor,
     known[vertex] = true;
     const Eigen::Vector3f in_body = actor.placed.body_from_part[part] * mesh.positions[vertex];
     result.in_world = world_from_body * (in_body.cast<double>() - actor.eye_in_body);
-    const auto pixel = frame_pixel(view, frame_from_nominal, cam_from_world, result.in_world);
+    const auto pixel = eye.pixel(result.in_world);
     result.pixel = pixel ? *pixel : Pixel(nowhere.head<2>());
     return result;
   };
@@ -130,7 +139,7 @@ void Silhouette::add_part(const Actor& actor,
   for (std::size_t i = 0; i < source.size(); ++i) {
     const std::array<const Seen*, 3> corners = {
         &at(source[i].vertex[0]), &at(source[i].vertex[1]), &at(source[i].vertex[2])};
-    const Reach reach = reach_of(corners, view);
+    const Reach reach = reach_of(corners, eye);
     if (reach.x0 >= reach.x1 || reach.y0 >= reach.y1) continue;
     const Vector3& a = corners[0]->in_world;
     const Vector3& b = corners[1]->in_world;
@@ -148,7 +157,7 @@ void Silhouette::add_part(const Actor& actor,
 // A box about the triangle's picture. Its sides may bend under a wide lens: by twice what their
 // middles do, at most.
 Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners,
-                                       const View& view) const {
+                                       const Eye& eye) const {
   const Reach whole{patch_.x, patch_.y, patch_.right(), patch_.bottom()};
   Pixel low = corners[0]->pixel;
   Pixel high = low;
@@ -159,14 +168,12 @@ Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners
   }
   double margin = kMarginPx;
   if ((high - low).maxCoeff() > kStraightPx) {
-    const Quaternion cam_from_world = view.world_from_cam.rotation.conjugate();
-    const Homography frame_from_nominal = view.nominal_from_frame.inverse();
     for (std::size_t k = 0; k < 3; ++k) {
       const Seen& from = *corners[k];
       const Seen& to = *corners[(k + 1) % 3];
       // The middle of the side's picture, not of the side: the point's weight is its nearness.
       const Vector3 middle = from.in_world.normalized() + to.in_world.normalized();
-      const auto pixel = frame_pixel(view, frame_from_nominal, cam_from_world, middle);
+      const auto pixel = eye.pixel(middle);
       if (!pixel) return whole;
       const Pixel along = to.pixel - from.pixel;
       const Pixel off = *pixel - from.pixel;

@@ -54,7 +54,8 @@ class Silhouette {
     Pixel pixel;       // in the frame; not finite where the lens has none
   };
 
-  Reach reach_of(const std::array<const Seen*, 3>& corners, const View& view) const;
+  struct Eye;  // of the view, as a point's picture needs it
+  Reach reach_of(const std::array<const Seen*, 3>& corners, const Eye& eye) const;
   void add_part(const Actor& actor,
                 std::size_t part,
                 const View& view,

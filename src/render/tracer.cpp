@@ -11,16 +11,6 @@ constexpr float kStep = 1e-4f;         // past a translucent surface, metres
 constexpr double kSampleShare = 0.25;  // of a pixel's side, for one of the many samples of opacity
 constexpr int kMaxLayers = 24;         // translucent surfaces along one ray
 
-// The pixels that a search box touches, within the frame.
-std::optional<PixelBox> pixels_of(const Box& search, const View& view) {
-  const double limit = 1e6;
-  const int x0 = static_cast<int>(std::floor(std::clamp(search.x, -limit, limit)));
-  const int y0 = static_cast<int>(std::floor(std::clamp(search.y, -limit, limit)));
-  const int x1 = static_cast<int>(std::ceil(std::clamp(search.right(), -limit, limit)));
-  const int y1 = static_cast<int>(std::ceil(std::clamp(search.bottom(), -limit, limit)));
-  return intersection({x0, y0, x1 - x0, y1 - y0}, {0, 0, view.width, view.height});
-}
-
 Vector3 interpolated(const std::array<Vector3, 4>& corners, const std::array<double, 2>& at) {
   const auto [x, y] = at;
   return ((1 - y) * ((1 - x) * corners[0] + x * corners[1]) +
@@ -86,7 +76,7 @@ Actor place(const Instance& instance,
     actor.placed.body_from_part.push_back(aircraft::body_from_part(part, instance.time_s));
     actor.placed.part_from_body.push_back(actor.placed.body_from_part.back().inverse());
   }
-  if (search) actor.pixels = pixels_of(*search, view);
+  if (search) actor.pixels = intersection(pixels_of(*search), {0, 0, view.width, view.height});
   return actor;
 }
 
@@ -154,11 +144,11 @@ bool Tracer::shade_covered(
     const auto hit = nearest_hit(actor.placed, body_ray(actor, direction), 0);
     if (!hit) continue;  // a hair's breadth from an edge, where floats and doubles part
     const Fragment fragment{actor.start_m + hit->t, actor_index, 1, *hit};
-    const Shaded shaded = colour(direction, pixel_rad, fragment);
+    const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
     for (std::size_t c = 0; c < 3; ++c) {
-      sum.opaque_rgb[c] += shaded.rgb[c];
-      low[c] = std::min(low[c], shaded.rgb[c]);
-      high[c] = std::max(high[c], shaded.rgb[c]);
+      sum.opaque_rgb[c] += rgb[c];
+      low[c] = std::min(low[c], rgb[c]);
+      high[c] = std::max(high[c], rgb[c]);
     }
     distance_sum += fragment.distance_m;
     ++sum.opaque_shaded;
@@ -200,20 +190,22 @@ void Tracer::blend(const Vector3& direction,
     if (simple) {
       sum.opaque += share;
       if (sum.opaque_shaded < counts_.shaded) {
-        const Shaded shaded = colour(direction, pixel_rad, fragment);
-        for (std::size_t c = 0; c < 3; ++c) sum.opaque_rgb[c] += shaded.rgb[c];
+        const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
+        for (std::size_t c = 0; c < 3; ++c) sum.opaque_rgb[c] += rgb[c];
         ++sum.opaque_shaded;
       }
       return;
     }
-    const Shaded shaded = colour(direction, pixel_rad, fragment);
-    for (std::size_t c = 0; c < 3; ++c) sum.translucent_rgb[c] += through * shaded.rgb[c];
+    const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
+    for (std::size_t c = 0; c < 3; ++c) sum.translucent_rgb[c] += through * rgb[c];
     through *= 1.0 - fragment.alpha;
     if (through <= 0) return;
   }
 }
 
-Shaded Tracer::colour(const Vector3& direction, double pixel_rad, const Fragment& fragment) const {
+std::array<float, 3> Tracer::colour(const Vector3& direction,
+                                    double pixel_rad,
+                                    const Fragment& fragment) const {
   const Actor& actor = actors_[static_cast<std::size_t>(fragment.actor)];
   return shade(actor.placed,
                body_ray(actor, direction),

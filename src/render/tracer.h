@@ -85,7 +85,9 @@ class Tracer {
              const std::vector<Fragment>& fragments,
              Sum& sum,
              double* coverage) const;
-  Shaded colour(const Vector3& direction, double pixel_rad, const Fragment& fragment) const;
+  std::array<float, 3> colour(const Vector3& direction,
+                              double pixel_rad,
+                              const Fragment& fragment) const;
   float footprint(double distance_m, double pixel_rad) const;
 
   const Light& light_;

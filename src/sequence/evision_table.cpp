@@ -150,6 +150,8 @@ std::optional<PixelBox> keyed_box(const Model& model, const Frame& frame, const 
 
 bool is_box(const PixelBox& box) { return box.width > 0 && box.height > 0; }
 
+bool is_in_picture(double x, double y) { return x >= 0 && x < kWidth && y >= 0 && y < kHeight; }
+
 bool touches_border(const PixelBox& box) {
   constexpr int kNear = 3;
   return box.x < kNear || box.y < kNear || box.right() > kWidth - kNear ||
@@ -175,9 +177,7 @@ class Comparison {
     const std::optional<Box> outline = outline_box(model, frame);
     auto ours = outline ? keyed_box(model, frame, *outline) : std::nullopt;
     const bool centre_in_view =
-        outline && Box{0, 0, kWidth, kHeight}.x <= outline->x + outline->width / 2 &&
-        outline->x + outline->width / 2 < kWidth && outline->y + outline->height / 2 >= 0 &&
-        outline->y + outline->height / 2 < kHeight;
+        outline && is_in_picture(outline->x + outline->width / 2, outline->y + outline->height / 2);
     if (!ours && centre_in_view) ++row_.without_box_ours;
     const bool whole = ours && !touches_border(*ours);
     if (whole && !is_box(frame.published)) ++row_.without_box_published;

@@ -53,7 +53,7 @@ struct EvisionRow {
   int compared = 0;         // both boxes there, neither cut by the frame
   int without_box_published =
       0;                     // the whole aircraft is in the picture and the published box is empty
-  int without_box_ours = 0;  // a part of it is in the picture and ours is empty
+  int without_box_ours = 0;  // the middle of its outline is in the picture and ours is empty
   double published_width_px = 0;  // medians over the compared frames
   double published_height_px = 0;
   double width_off_px = 0;  // of |ours - published|

@@ -55,11 +55,14 @@ std::size_t intruder_index(const annotation::Frame& truth, const std::string& id
 
 PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
   const double margin = std::max(4.0, 0.25 * std::max(box.width, box.height));
-  const int x0 = static_cast<int>(std::floor(std::max(box.x, -8.0) - margin));
-  const int y0 = static_cast<int>(std::floor(std::max(box.y, -8.0) - margin));
-  const int x1 = static_cast<int>(std::ceil(std::min(box.right(), lens.width + 8.0) + margin));
-  const int y1 = static_cast<int>(std::ceil(std::min(box.bottom(), lens.height + 8.0) + margin));
-  return {x0, y0, std::max(1, x1 - x0), std::max(1, y1 - y0)};
+  const double x0 = std::max(box.x, -8.0) - margin;
+  const double y0 = std::max(box.y, -8.0) - margin;
+  const double x1 = std::min(box.right(), lens.width + 8.0) + margin;
+  const double y1 = std::min(box.bottom(), lens.height + 8.0) + margin;
+  PixelBox area = pixels_of({x0, y0, x1 - x0, y1 - y0});
+  area.width = std::max(1, area.width);
+  area.height = std::max(1, area.height);
+  return area;
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
   ready_ = true;
 }
 
+void MotionSource::measure(video::Reader& reader,
+                           const std::stop_token& stop,
+                           const std::function<void(std::int64_t)>& seen) {
+  set_pass(measure_motion(reader, options_, mask_, stop, seen));
+}
+
 motion::FrameMotion MotionSource::next(const video::Frame& frame) {
   if (none_) {
     motion::FrameMotion still;

@@ -34,7 +34,10 @@ class MotionSource {
   // True when frames must be seen once before the first homography is known (reference "smoothed",
   // not cached).
   bool needs_pass() const { return smoothed_ && !ready_; }
-  void set_pass(std::vector<motion::FrameMotion> against_first);
+  // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
+  void measure(video::Reader& reader,
+               const std::stop_token& stop,
+               const std::function<void(std::int64_t)>& seen);
 
   // Frames in order.
   motion::FrameMotion next(const video::Frame& frame);
@@ -44,6 +47,7 @@ class MotionSource {
   bool from_cache() const { return from_cache_; }
 
  private:
+  void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
 
   bool none_ = false;

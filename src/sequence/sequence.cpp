@@ -31,6 +31,19 @@ fs::path cache_of(const Options& options) {
   return options.cache.empty() ? cache_folder() / "motion" : options.cache;
 }
 
+video::Reader open(const scene::Scene& scene, const Options& options) {
+  video::ReaderOptions reader_options;
+  reader_options.first_frame = scene.background.first_frame;
+  reader_options.frame_count = scene.background.frame_count;
+  reader_options.threads = options.threads;
+  return video::Reader(scene.background.video, reader_options, options.warn);
+}
+
+std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {
+  if (!scene.background.mask) return std::nullopt;
+  return video::read_mask(*scene.background.mask, size.width, size.height);
+}
+
 // One frame on its way through the pipeline.
 struct Work {
   video::Frame frame;
@@ -45,11 +58,7 @@ std::optional<PixelBox> around_intruders(const Moment& moment) {
   std::optional<PixelBox> all;
   for (const auto& box : moment.search) {
     if (!box) continue;
-    const PixelBox whole{static_cast<int>(std::floor(box->x)),
-                         static_cast<int>(std::floor(box->y)),
-                         static_cast<int>(std::ceil(box->width)),
-                         static_cast<int>(std::ceil(box->height))};
-    all = all ? bounds(*all, whole) : whole;
+    all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
   }
   return all;
 }
@@ -59,9 +68,9 @@ class Run {
   Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
       : scene_(scene),
         options_(options),
-        reader_(open()),
+        reader_(open(scene, options)),
         size_{reader_.info().width, reader_.info().height},
-        mask_(read_mask()),
+        mask_(read_mask(scene, size_)),
         world_(load_world(scene, size_, options.warn)),
         video_sha256_(sha256_of_video(scene.background.video)),
         motion_(scene, video_sha256_, mask_ptr(), cache_of(options)),
@@ -69,7 +78,10 @@ class Run {
         painter_(make_painter(scene, world_, mask_ptr(), options)),
         staged_(folder, options.overwrite) {
     outputs_.emplace(staged_.path(), scene_, world_.lens, stream_info(), options_.threads);
-    if (motion_.needs_pass()) measure_first();
+    if (motion_.needs_pass()) {
+      motion_.measure(reader_, options_.stop, {});
+      reader_ = open(scene_, options_);
+    }
     seen_.assign(world_.actors.size(), false);
   }
 
@@ -90,18 +102,6 @@ class Run {
   }
 
  private:
-  video::Reader open() const {
-    video::ReaderOptions reader_options;
-    reader_options.first_frame = scene_.background.first_frame;
-    reader_options.frame_count = scene_.background.frame_count;
-    reader_options.threads = options_.threads;
-    return video::Reader(scene_.background.video, reader_options, options_.warn);
-  }
-
-  std::optional<image::Mask> read_mask() const {
-    if (!scene_.background.mask) return std::nullopt;
-    return video::read_mask(*scene_.background.mask, size_.width, size_.height);
-  }
   const image::Mask* mask_ptr() const { return mask_ ? &*mask_ : nullptr; }
 
   // The stream, with the number of frames that this run will make of it.
@@ -115,14 +115,6 @@ class Run {
                                            : *scene_.background.frame_count;
     total_ = info.frame_count_estimate;
     return info;
-  }
-
-  void measure_first() {
-    motion::Options motion_options;
-    motion_options.seed = scene_.seed;
-    motion_options.smoothing_s = scene_.motion.smoothing_s;
-    motion_.set_pass(measure_motion(reader_, motion_options, mask_ptr(), options_.stop, {}));
-    reader_ = open();
   }
 
   WorkPtr read() {
@@ -314,25 +306,16 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
 
 void measure_ahead(const scene::Scene& scene, const Options& options) {
   if (scene.motion.model == "none") return;
-  video::ReaderOptions reader_options;
-  reader_options.first_frame = scene.background.first_frame;
-  reader_options.frame_count = scene.background.frame_count;
-  reader_options.threads = options.threads;
-  video::Reader reader(scene.background.video, reader_options, options.warn);
-  std::optional<image::Mask> mask;
-  if (scene.background.mask)
-    mask = video::read_mask(*scene.background.mask, reader.info().width, reader.info().height);
-  const image::Mask* mask_ptr = mask ? &*mask : nullptr;
-  MotionSource source(scene, sha256_of_video(scene.background.video), mask_ptr, cache_of(options));
+  video::Reader reader = open(scene, options);
+  const auto mask = read_mask(scene, {reader.info().width, reader.info().height});
+  MotionSource source(
+      scene, sha256_of_video(scene.background.video), mask ? &*mask : nullptr, cache_of(options));
   if (source.from_cache()) return;
-  motion::Options motion_options;
-  motion_options.seed = scene.seed;
   const std::int64_t total =
       scene.background.frame_count.value_or(reader.info().frame_count_estimate);
-  source.set_pass(
-      measure_motion(reader, motion_options, mask_ptr, options.stop, [&](std::int64_t done) {
-        if (options.progress) options.progress({done, total});
-      }));
+  source.measure(reader, options.stop, [&](std::int64_t done) {
+    if (options.progress) options.progress({done, total});
+  });
   source.store();
 }
 
