@@ -28,6 +28,7 @@ class Work {
 
   BuildSummary run() {
     count();
+    jobs_ = static_cast<int>(std::clamp<std::int64_t>(missing_, 1, jobs_));
     prepare_backgrounds();
     std::vector<std::jthread> threads;
     for (int i = 0; i < std::min<std::int64_t>(jobs_, missing_); ++i)

@@ -263,6 +263,31 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
   return worst;
 }
 
+// An aircraft that flies past and through the eye: parts before and behind the lens's plane.
+TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
+  const Stand stand("733/733-AirBaltic");
+  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {60, 60}),
+                                 lens::fisheye_from_vertical_fov(170, {60, 60})}) {
+    const View view = view_through(lens);
+    const Box whole{0, 0, 60, 60};
+    for (const Vector3& place : {Vector3(0.5, 3, 1), Vector3(-4, 8, 4), Vector3(8, -10, -15)}) {
+      const Rigid world_from_body{airtruth::world_from_body({170, -7, 3}), place};
+      const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};
+      const image::Layer fast = render(view, white(), one, {whole}, {.quality = 3});
+      const image::Layer oracle = render(view, white(), one, {whole}, {.quality = 5});
+      ASSERT_EQ(fast.pixels.size(), oracle.pixels.size());
+      double worst = 0;
+      double seen = 0;
+      for (std::size_t i = 0; i < fast.pixels.size(); ++i) {
+        worst = std::max(worst, std::abs(double(fast.pixels[i].alpha) - oracle.pixels[i].alpha));
+        seen += oracle.pixels[i].alpha;
+      }
+      EXPECT_LT(worst, 1.0 / 16) << lens.name() << " at " << place.transpose();
+      EXPECT_GT(seen, 10) << lens.name() << " at " << place.transpose();
+    }
+  }
+}
+
 TEST(Quality3, HoldsAlphaWithinOne64thOfTheOracleUpTo50PixelsAndOne40thAbove) {
   for (const char* name : {"738/738-Ryanair", "c172/news"}) {
     const Stand stand(name);

@@ -6,12 +6,16 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <variant>
 
 namespace airtruth::render {
 namespace {
 
 // More triangles than this over one pixel, and rays are faster.
 constexpr std::size_t kMostTriangles = 192;
+// More entries than this in the lists of a patch (an aircraft that closes round the eye), and rays
+// do all of it.
+constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 25;
 constexpr double kMarginPx = 0.02;
 // A side shorter than this is as good as straight under any lens.
 constexpr double kStraightPx = 4;
@@ -104,6 +108,8 @@ struct Silhouette::Eye {
   std::optional<Pixel> pixel(const Vector3& in_world) const {
     return frame_pixel(view, frame_from_nominal, cam_from_world, in_world);
   }
+  bool is_pinhole() const { return std::holds_alternative<lens::Pinhole>(view.lens->model()); }
+  double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
 
 Silhouette::Silhouette(const Actor& actor, const View& view, const PixelBox& patch)
@@ -154,6 +160,32 @@ void Silhouette::add_part(const Actor& actor,
   }
 }
 
+// The picture of the part of a triangle that lies before a pinhole's plane; empty where none does,
+// or where a point of it has no picture.
+BoxBounds Silhouette::bounds_before_plane(const std::array<const Seen*, 3>& corners,
+                                          const Eye& eye,
+                                          bool& all_have_pictures) {
+  double size = 0;
+  for (const Seen* corner : corners) size = std::max(size, corner->in_world.norm());
+  const double near = 1e-7 * size;
+  BoxBounds bounds;
+  const auto add = [&](const Vector3& point) {
+    const auto pixel = eye.pixel(point);
+    if (pixel) bounds.add(*pixel);
+    all_have_pictures = all_have_pictures && pixel;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3& from = corners[k]->in_world;
+    const Vector3& to = corners[(k + 1) % 3]->in_world;
+    const double from_depth = eye.depth(from) - near;
+    const double to_depth = eye.depth(to) - near;
+    if (from_depth >= 0) add(from);
+    if ((from_depth < 0) != (to_depth < 0))
+      add(from + from_depth / (from_depth - to_depth) * (to - from));
+  }
+  return bounds;
+}
+
 // A box about the triangle's picture. Its sides may bend under a wide lens: by twice what their
 // middles do, at most.
 Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners,
@@ -162,7 +194,14 @@ Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners
   Pixel low = corners[0]->pixel;
   Pixel high = low;
   for (const Seen* corner : corners) {
-    if (!corner->pixel.allFinite()) return whole;
+    if (!corner->pixel.allFinite()) {
+      if (!eye.is_pinhole()) return whole;
+      bool all_have_pictures = true;
+      const auto box = bounds_before_plane(corners, eye, all_have_pictures).box();
+      if (!all_have_pictures) return whole;
+      return box ? reach_within(patch_, {box->x, box->y}, {box->right(), box->bottom()}, kMarginPx)
+                 : Reach{};
+    }
     low = low.cwiseMin(corner->pixel);
     high = high.cwiseMax(corner->pixel);
   }
@@ -183,19 +222,33 @@ Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners
       margin = std::max(margin, 2 * bend + kMarginPx);
     }
   }
+  return reach_within(patch_, low, high, margin);
+}
+
+Silhouette::Reach Silhouette::reach_within(const PixelBox& patch,
+                                           const Pixel& low,
+                                           const Pixel& high,
+                                           double margin) {
   const auto bounded = [](double value, int from, int to) {
     return static_cast<int>(std::clamp(value, double(from), double(to)));
   };
-  return {bounded(std::floor(low.x() - margin), whole.x0, whole.x1),
-          bounded(std::floor(low.y() - margin), whole.y0, whole.y1),
-          bounded(std::ceil(high.x() + margin), whole.x0, whole.x1),
-          bounded(std::ceil(high.y() + margin), whole.y0, whole.y1)};
+  return {bounded(std::floor(low.x() - margin), patch.x, patch.right()),
+          bounded(std::floor(low.y() - margin), patch.y, patch.bottom()),
+          bounded(std::ceil(high.x() + margin), patch.x, patch.right()),
+          bounded(std::ceil(high.y() + margin), patch.y, patch.bottom())};
 }
 
 void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   const std::size_t pixels =
       static_cast<std::size_t>(patch_.width) * static_cast<std::size_t>(patch_.height);
   first_.assign(pixels + 1, 0);
+  std::uint64_t entries = 0;
+  for (const Reach& r : reaches)
+    entries += static_cast<std::uint64_t>(r.x1 - r.x0) * static_cast<std::uint64_t>(r.y1 - r.y0);
+  if (entries > kMostEntries) {
+    touch_.assign(pixels, Touch::kRays);
+    return;
+  }
   touch_.assign(pixels, Touch::kNone);
   const auto each = [&](const auto& body) {
     for (std::size_t i = 0; i < reaches.size(); ++i) {

@@ -55,6 +55,13 @@ class Silhouette {
   };
 
   struct Eye;  // of the view, as a point's picture needs it
+  static BoxBounds bounds_before_plane(const std::array<const Seen*, 3>& corners,
+                                       const Eye& eye,
+                                       bool& all_have_pictures);
+  static Reach reach_within(const PixelBox& patch,
+                            const Pixel& low,
+                            const Pixel& high,
+                            double margin);
   Reach reach_of(const std::array<const Seen*, 3>& corners, const Eye& eye) const;
   void add_part(const Actor& actor,
                 std::size_t part,
