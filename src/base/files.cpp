@@ -102,13 +102,13 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   return bytes;
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
+void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
   const fs::path part = part_path(path);
   try {
     Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
     if (file.get() < 0) throw Error("cannot create: " + reason(), {path.string()});
     write_all(file, bytes, path);
-    if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
+    if (flush == Flush::kNow && ::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
       throw Error("cannot write: " + reason(), {path.string()});
     if (!file.close()) throw Error("cannot write: " + reason(), {path.string()});
     if (::rename(part.c_str(), path.c_str()) != 0)
@@ -117,6 +117,12 @@ void write_file(const fs::path& path, std::string_view bytes) {
     ::unlink(part.c_str());
     throw;
   }
+}
+
+void flush_files(const fs::path& folder) {
+  const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (file.get() < 0 || ::syncfs(file.get()) != 0)
+    throw Error("cannot write: " + reason(), {folder.string()});
 }
 
 fs::path part_path(const fs::path& path) {

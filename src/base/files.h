@@ -16,8 +16,13 @@ std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{
 
 // Writes beside the final name, flushes to disk and renames, so that `path` holds either what it
 // held before or all of `bytes`. Throws Error where that fails (folder missing, no permission, disk
-// full) and leaves nothing.
-void write_file(const fs::path& path, std::string_view bytes);
+// full) and leaves nothing. kLater is for many small files: they outlive a power cut only after
+// flush_files().
+enum class Flush { kNow, kLater };
+void write_file(const fs::path& path, std::string_view bytes, Flush flush = Flush::kNow);
+
+// Everything that was written to the file system of `folder` is on the disk when this returns.
+void flush_files(const fs::path& folder);
 
 // The name under which a file is written before it is renamed: "dir/a.mp4" -> "dir/.a.part.mp4"
 // (the extension stays, since encoders choose by it).

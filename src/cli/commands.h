@@ -27,6 +27,7 @@ void add_inspect(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
 void add_evision(CLI::App& app, Context& context);
 void add_dataset(CLI::App& app, Context& context);
+void add_dataset_exchange(CLI::App& group, Context& context);  // `dataset export` and `import`
 void add_demo(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli

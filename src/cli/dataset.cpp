@@ -20,6 +20,8 @@ struct Arguments {
   dataset::SlurmOptions slurm;
   bool on_slurm = false;
   bool finish = false;
+  bool deep = false;
+  std::int64_t deep_every = 30;
 };
 
 std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string>& backgrounds) {
@@ -132,13 +134,16 @@ void verify(const Arguments& arguments, Context& context) {
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("verifying", done, total, "sequences");
   };
+  if (arguments.deep) options.deep_every = arguments.deep_every;
   const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);
-  console.result(fmt::format("{}: {} sequences, {} frames, {} faults",
-                             arguments.folder,
-                             result.sequences,
-                             result.frames,
-                             result.faults.size()));
+  console.result(
+      fmt::format("{}: {} sequences, {} frames{}, {} faults",
+                  arguments.folder,
+                  result.sequences,
+                  result.frames,
+                  arguments.deep ? fmt::format(", {} drawn anew", result.recomposed) : "",
+                  result.faults.size()));
   if (!result.faults.empty()) context.exit_code = 1;
 }
 
@@ -200,7 +205,13 @@ void add_dataset(CLI::App& app, Context& context) {
   verify_command->add_flag("--finish",
                            arguments->finish,
                            "First write the manifest, where several workers made the sequences");
+  verify_command->add_flag(
+      "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
+  verify_command
+      ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
+      ->check(CLI::PositiveNumber);
   verify_command->callback([arguments, &context] { verify(*arguments, context); });
+  add_dataset_exchange(*group, context);
   auto* submit_command = group->add_subcommand("submit", "Have a cluster make a data set");
   submit_command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")
       ->required();

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "dataset/expand.h"
 #include "sequence/finished.h"
+#include "sequence/recompose.h"
 #include "video/reader.h"
 
 namespace airtruth::dataset {
@@ -36,7 +37,8 @@ bool is_at_work(const Folder& folder) {
 // Sequences of one data set, looked into one by one.
 class Check {
  public:
-  Check(const Folder& folder, VerifyResult& result) : folder_(folder), result_(result) {}
+  Check(const Folder& folder, const VerifyOptions& options, VerifyResult& result)
+      : folder_(folder), options_(options), result_(result) {}
 
   void sequence(const Item& item) {
     name_ = item.name;
@@ -44,7 +46,9 @@ class Check {
     if (!folder_.holds(item.name)) return fault("is not there");
     try {
       files(Json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
-      truth(sequence::open_finished(folder_.sequence(item.name)));
+      const sequence::Finished finished = sequence::open_finished(folder_.sequence(item.name));
+      truth(finished);
+      if (options_.deep_every > 0) deep(finished);
     } catch (const Json::exception&) {
       fault("sequence.json is not a record that airtruth wrote");
     } catch (const Error& error) {
@@ -87,6 +91,12 @@ class Check {
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
 
+  void deep(const sequence::Finished& finished) {
+    const auto recomposed = sequence::recompose(finished, options_.deep_every, options_.stop);
+    result_.recomposed += recomposed.compared;
+    for (const std::string& what : recomposed.faults) fault(what);
+  }
+
   void box(const annotation::Frame& frame,
            const annotation::Intruder& intruder,
            int width,
@@ -103,6 +113,7 @@ class Check {
   }
 
   const Folder& folder_;
+  const VerifyOptions& options_;
   VerifyResult& result_;
   std::string name_;
 };
@@ -153,7 +164,7 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   const Catalogue catalogue = catalogue_of(folder);
   const Expansion expansion(catalogue);
   VerifyResult result;
-  Check check(folder, result);
+  Check check(folder, options, result);
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     if (options.stop.stop_requested()) throw Interrupted();
     check.sequence(expansion.at(i));

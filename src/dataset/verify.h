@@ -24,6 +24,7 @@ struct Status {
 Status status(const fs::path& root);
 
 struct VerifyOptions {
+  std::int64_t deep_every = 0;  // draw every n-th frame anew and compare (sequence/recompose.h)
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;
 };
@@ -34,6 +35,7 @@ struct VerifyOptions {
 struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
+  std::int64_t recomposed = 0;  // frames that were drawn anew
   std::vector<std::string> faults;
 };
 VerifyResult verify(const fs::path& root, const VerifyOptions& options);

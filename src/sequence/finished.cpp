@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "exchange/labels.h"
 #include "image/colour.h"
 #include "report/pictures.h"
 #include "sequence/paint.h"
@@ -65,9 +66,45 @@ PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
   return area;
 }
 
+// Boxes of an import, as a rendered sequence's truth would have them.
+annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
+  annotation::Frame frame;
+  frame.frame = labelled.frame;
+  frame.time_s = labelled.time_s.value_or(0);
+  for (const exchange::Label& label : labelled.labels) {
+    annotation::Intruder intruder;
+    intruder.id = label.category + " " + std::to_string(label.track);
+    intruder.aircraft = label.category;
+    intruder.state = annotation::State::kVisible;
+    intruder.exact_box_px = label.box_px;
+    intruder.visible_box_px = pixels_of(label.box_px);
+    intruder.range_m = label.range_m;
+    frame.intruders.push_back(intruder);
+  }
+  return frame;
+}
+
+Finished open_labelled(const fs::path& folder) {
+  const exchange::Clip clip = exchange::read_labels(folder / "labels.jsonl");
+  Finished finished;
+  finished.folder = folder;
+  finished.name = clip.name;
+  finished.video = clip.media;
+  if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    while (std::ssize(finished.truth.frames) < frame.frame) {
+      finished.truth.frames.emplace_back();
+      finished.truth.frames.back().frame = std::ssize(finished.truth.frames) - 1;
+    }
+    finished.truth.frames.push_back(frame_of(frame));
+  }
+  return finished;
+}
+
 }  // namespace
 
 Finished open_finished(const fs::path& folder) {
+  if (fs::exists(folder / "labels.jsonl")) return open_labelled(folder);
   const fs::path record_file = folder / "sequence.json";
   if (!fs::exists(record_file))
     throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished",
@@ -82,7 +119,7 @@ Finished open_finished(const fs::path& folder) {
     throw Error(std::string("is not a record of airtruth: ") + error.what(),
                 {record_file.string()});
   }
-  const auto format = video::format_from_name(finished.scene.output.video);
+  const auto format = video::format_from_name(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
@@ -94,15 +131,18 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   refuse_existing(out, options.overwrite);
   video::WriterOptions writer_options;
   writer_options.format = format_of(out);
-  writer_options.quality = sequence.scene.output.quality;
+  if (sequence.scene) writer_options.quality = sequence.scene->output.quality;
   video::Reader reader(sequence.video);
   video::StreamInfo info = reader.info();
   video::Writer writer(out, info, writer_options);
   const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
   while (auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
-    if (frame->index >= total)
+    if (frame->index >= total) {
+      // An import may stop before its video does.
+      if (!sequence.scene) break;
       throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
+    }
     const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
     frame->picture =
         image::picture_from_rgb8(report::overlay(frame->picture, truth), frame->picture.colour);
@@ -116,6 +156,9 @@ image::Rgb8 inspect(const Finished& sequence,
                     std::int64_t frame,
                     const std::string& intruder_id,
                     int zoom) {
+  if (!sequence.scene)
+    throw Error("was imported, so that its background is not known", {sequence.folder.string()});
+  const scene::Scene& scene = *sequence.scene;
   const auto count = static_cast<std::int64_t>(sequence.truth.frames.size());
   if (frame < 0 || frame >= count)
     throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " +
@@ -124,12 +167,12 @@ image::Rgb8 inspect(const Finished& sequence,
   const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
   const std::size_t i = intruder_index(truth, intruder_id);
   const video::Frame before =
-      frame_at(sequence.scene.background.video, sequence.scene.background.first_frame + frame);
+      frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
-  const World world = load_world(sequence.scene, {before.picture.width, before.picture.height}, {});
+  const World world = load_world(scene, {before.picture.width, before.picture.height}, {});
   const Moment moment = moment_at(world, truth.time_s, truth.frame_from_reference);
-  const image::Layer layer = render_layer(sequence.scene, world, moment, Ambient{});
-  const bool matte = sequence.scene.composite.method == "matte";
+  const image::Layer layer = render_layer(scene, world, moment, Ambient{});
+  const bool matte = scene.composite.method == "matte";
   return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
                          truth,
                          area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -11,7 +12,7 @@
 #include "image/picture.h"
 #include "scene/scene.h"
 
-// A folder that `render` has left, opened again.
+// A folder that `render` or `dataset import` has left, opened again.
 namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
@@ -20,7 +21,7 @@ struct Finished {
   fs::path folder;
   std::string name;
   fs::path video;
-  scene::Scene scene;
+  std::optional<scene::Scene> scene;  // empty: imported; then truth holds boxes and ranges alone
   annotation::Truth truth;
 };
 
@@ -36,7 +37,8 @@ struct OverlayOptions {
 void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options);
 
 // Background, alpha and result of a frame around its intruder at `zoom`. `intruder_id` empty: the
-// first that is in view. Error where the frame does not exist or no intruder is in view in it.
+// first that is in view. Error where the frame does not exist, no intruder is in view in it, or the
+// clip was imported.
 image::Rgb8 inspect(const Finished& sequence,
                     std::int64_t frame,
                     const std::string& intruder_id,

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "composite/chroma_key.h"
 #include "sequence/stopwatch.h"
+#include "video/still.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -184,6 +185,20 @@ std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
   if (scene.composite.method == "chroma-key")
     return std::make_unique<ChromaKey>(scene, world, mask, options);
   return std::make_unique<Matte>(scene, world, mask, options.stop);
+}
+
+void write_moment(const World& world,
+                  const Moment& moment,
+                  const Painted& painted,
+                  annotation::Frame& truth) {
+  truth.camera_position_ned_m = moment.camera.position_in_world;
+  truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
+  truth.intruders = truth_of(world, moment, painted.layer, painted.visible);
+}
+
+std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {
+  if (!scene.background.mask) return std::nullopt;
+  return video::read_mask(*scene.background.mask, size.width, size.height);
 }
 
 }  // namespace airtruth::sequence

@@ -30,11 +30,21 @@ class Painter {
                         const Ambient& ambient) const = 0;
 };
 
+// The part of a frame's truth that geometry and compositing know: where the camera is, and every
+// intruder.
+void write_moment(const World& world,
+                  const Moment& moment,
+                  const Painted& painted,
+                  annotation::Frame& truth);
+
 // Error where the method cannot draw through the scene's lens.
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
                                       const World& world,
                                       const image::Mask* mask,
                                       const Options& options);
+
+// The scene's mask of the own aircraft, if it has one.
+std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);
 
 // The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
 image::Layer render_layer(const scene::Scene& scene,

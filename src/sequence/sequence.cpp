@@ -39,11 +39,6 @@ video::Reader open(const scene::Scene& scene, const Options& options) {
   return video::Reader(scene.background.video, reader_options, options.warn);
 }
 
-std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {
-  if (!scene.background.mask) return std::nullopt;
-  return video::read_mask(*scene.background.mask, size.width, size.height);
-}
-
 // One frame on its way through the pipeline.
 struct Work {
   video::Frame frame;
@@ -53,15 +48,6 @@ struct Work {
   annotation::Frame truth;
 };
 using WorkPtr = std::shared_ptr<Work>;
-
-std::optional<PixelBox> around_intruders(const Moment& moment) {
-  std::optional<PixelBox> all;
-  for (const auto& box : moment.search) {
-    if (!box) continue;
-    all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
-  }
-  return all;
-}
 
 class Run {
  public:
@@ -131,7 +117,7 @@ class Run {
     const Timed timed(clocks_.move);
     work.motion = motion_.next(work.frame);
     work.moment = moment_at(world_, work.frame.time_s, work.motion.frame_from_reference);
-    work.ambient = ambient_.next(work.frame.picture, around_intruders(work.moment));
+    work.ambient = ambient_.next(work.frame.picture, search_bounds(work.moment));
   }
 
   void paint(Work& work) {
@@ -142,11 +128,9 @@ class Run {
     truth.frame = work.frame.index;
     truth.time_s = work.frame.time_s;
     truth.damaged = work.frame.damaged;
-    truth.camera_position_ned_m = work.moment.camera.position_in_world;
-    truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(work.moment.camera.world_from_body);
     truth.frame_from_reference = work.motion.frame_from_reference;
     truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
-    truth.intruders = truth_of(world_, work.moment, painted.layer, painted.visible);
+    write_moment(world_, work.moment, painted, truth);
     clocks_.composite += painting.seconds() - painted.render_s;
   }
 

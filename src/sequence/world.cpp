@@ -207,6 +207,13 @@ World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& wa
   return world;
 }
 
+std::optional<PixelBox> search_bounds(const Moment& moment) {
+  std::optional<PixelBox> all;
+  for (const auto& box : moment.search)
+    if (box) all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
+  return all;
+}
+
 Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference) {
   const auto camera = world.camera.at(time_s);
   if (!camera)

@@ -48,6 +48,9 @@ struct Moment {
       search;  // where to look for pixels: boxes with a margin, if in view
 };
 
+// Around all the places to look.
+std::optional<PixelBox> search_bounds(const Moment& moment);
+
 // Error where the camera's path does not reach that time.
 Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference);
 

@@ -48,7 +48,7 @@ FramePtr frame_of(const image::Rgb8& rgb, AVPixelFormat format) {
   return frame;
 }
 
-std::string encoded(const image::Rgb8& rgb, bool jpeg, const fs::path& path) {
+std::string encoded(const image::Rgb8& rgb, bool jpeg, int quality, const fs::path& path) {
   keep_libav_quiet();
   const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
   const CodecPtr codec(avcodec_alloc_context3(encoder));
@@ -60,7 +60,7 @@ std::string encoded(const image::Rgb8& rgb, bool jpeg, const fs::path& path) {
   codec->color_range = AVCOL_RANGE_JPEG;
   if (jpeg) {
     codec->flags |= AV_CODEC_FLAG_QSCALE;
-    codec->global_quality = FF_QP2LAMBDA * 3;
+    codec->global_quality = FF_QP2LAMBDA * quality;
   }
   const FramePtr frame = frame_of(rgb, codec->pix_fmt);
   frame->quality = codec->global_quality;
@@ -84,12 +84,14 @@ image::Rgb8 read_still(const fs::path& path) {
   return image::rgb8_from_picture(frame->picture);
 }
 
-void write_still(const fs::path& path, const image::Rgb8& rgb) {
+std::string jpeg_of(const image::Rgb8& rgb, int quality) { return encoded(rgb, true, quality, {}); }
+
+void write_still(const fs::path& path, const image::Rgb8& rgb, Flush flush) {
   const std::string extension = lower_extension(path);
   const bool jpeg = extension == ".jpg" || extension == ".jpeg";
   if (!jpeg && extension != ".png")
     throw Error("has an unknown ending; expected .png or .jpg", {path.string()});
-  write_file(path, encoded(rgb, jpeg, path));
+  write_file(path, encoded(rgb, jpeg, 3, path), flush);
 }
 
 image::Mask read_mask(const fs::path& path, int width, int height) {

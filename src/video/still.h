@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
+#include "base/files.h"
 #include "image/layer.h"
 #include "image/picture.h"
 
@@ -13,7 +15,12 @@ namespace airtruth::video {
 image::Rgb8 read_still(const std::filesystem::path& path);
 
 // By extension: .png (lossless) or .jpg. Whole or not at all. Throws Error.
-void write_still(const std::filesystem::path& path, const image::Rgb8& rgb);
+void write_still(const std::filesystem::path& path,
+                 const image::Rgb8& rgb,
+                 Flush flush = Flush::kNow);
+
+// The bytes of such a .jpg; quality from 1 (best) to 31.
+std::string jpeg_of(const image::Rgb8& rgb, int quality = 3);
 
 // An own-aircraft mask: darker than middle grey = own aircraft. Error if its size is not width x
 // height, or if it is black all over.

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/commands.h"
+#include "dataset/export.h"
+#include "dataset/import.h"
+#include "dataset/report.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct Export {
+  std::string set;
+  std::string out;
+  std::string format;
+  std::string images = "jpg";
+  std::string split = "by-background";
+  std::vector<double> shares = {0.8, 0.1, 0.1};
+  dataset::ExportOptions options;
+};
+
+dataset::Images images_from_name(const std::string& name) {
+  if (name == "jpg") return dataset::Images::kJpg;
+  if (name == "png") return dataset::Images::kPng;
+  if (name == "none") return dataset::Images::kNone;
+  throw Error("--images is '" + name + "'; expected jpg, png or none");
+}
+
+void run_export(Export arguments, Context& context) {
+  Console& console = context.console();
+  dataset::ExportOptions& options = arguments.options;
+  options.format = exchange::format_from_name(arguments.format);
+  options.images = images_from_name(arguments.images);
+  options.split = dataset::split_from_name(arguments.split);
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
+  if (!(sum > 0)) throw Error("--shares are all 0; expected a share for one part at least");
+  for (double& share : options.shares) share /= sum;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("exporting", done, total, "sequences");
+  };
+  const dataset::ExportSummary summary = dataset::export_set(arguments.set, arguments.out, options);
+  std::string parts;
+  for (const auto& [part, frames] : summary.frames_of_part)
+    parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part, frames);
+  console.result(fmt::format("{}: {} sequences, {} frames ({}){}",
+                             arguments.out,
+                             summary.sequences,
+                             summary.frames,
+                             parts,
+                             summary.was_there
+                                 ? "; was there already"
+                                 : fmt::format(", {} pictures written", summary.images)));
+}
+
+struct Import {
+  std::string source;
+  std::string out;
+  std::string format;
+  std::string size;
+  std::vector<std::string> videos;
+  dataset::ImportOptions options;
+};
+
+std::pair<int, int> size_from(const std::string& text) {
+  int width = 0;
+  int height = 0;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  const bool parted = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  const auto second = parted ? std::from_chars(first.ptr + 1, end, height) : first;
+  if (!parted || second.ec != std::errc() || second.ptr != end || width < 1 || height < 1)
+    throw Error("--size is '" + text + "'; expected WIDTHxHEIGHT, as 1280x960");
+  return {width, height};
+}
+
+void run_import(Import arguments, Context& context) {
+  Console& console = context.console();
+  dataset::ImportOptions& options = arguments.options;
+  options.format = exchange::format_from_name(arguments.format);
+  if (!arguments.size.empty()) options.read.size = size_from(arguments.size);
+  for (const std::string& given : arguments.videos) {
+    const auto equals = given.find('=');
+    if (equals == std::string::npos)
+      options.videos[""] = given;
+    else
+      options.videos[given.substr(0, equals)] = given.substr(equals + 1);
+  }
+  options.warn = console.warn();
+  const dataset::ImportSummary summary =
+      dataset::import_set(arguments.source, arguments.out, options);
+  console.result(fmt::format("{}: {} clips, {} frames, {} boxes",
+                             arguments.out,
+                             summary.clips,
+                             summary.frames,
+                             summary.labels));
+}
+
+struct Report {
+  std::string set;
+  std::string out = "report.html";
+  dataset::ReportOptions options;
+};
+
+void run_report(Report arguments, Context& context) {
+  Console& console = context.console();
+  arguments.options.stop = context.stop;
+  arguments.options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("looking", done, total, "sequences");
+  };
+  dataset::write_report(arguments.set, arguments.out, arguments.options);
+  console.result(arguments.out);
+}
+
+constexpr const char* kWritten = "coco, yolo, mot, voc, cvat, aot, otb, got10k or vot";
+
+}  // namespace
+
+void add_dataset_exchange(CLI::App& group, Context& context) {
+  auto out = std::make_shared<Export>();
+  auto* export_command = group.add_subcommand("export", "Write a data set in a format of others");
+  export_command->add_option("DIR", out->set, "A data set, or a folder that `render` made")
+      ->required();
+  export_command->add_option("--format,-f", out->format, kWritten)->required();
+  export_command
+      ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
+      ->required();
+  export_command->add_option("--images", out->images, "jpg (default), png or none");
+  export_command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
+      ->check(CLI::PositiveNumber);
+  export_command->add_option("--split",
+                             out->split,
+                             "by-background (default): a video is in one part alone; by-sequence; "
+                             "none");
+  export_command
+      ->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
+      ->expected(3)
+      ->check(CLI::NonNegativeNumber);
+  export_command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  export_command->add_flag(
+      "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
+  export_command
+      ->add_option("--jobs,-j", out->options.jobs, "Sequences at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  export_command->callback([out, &context] { run_export(*out, context); });
+
+  auto page = std::make_shared<Report>();
+  auto* report_command =
+      group.add_subcommand("report", "A page on a data set: what is in it, and each sequence");
+  report_command->add_option("DIR", page->set, "A data set, or a folder that `render` made")
+      ->required();
+  report_command->add_option("--out,-o", page->out, "The page (default: report.html)");
+  report_command->add_flag(
+      "--overwrite", page->options.overwrite, "Replace the page if it is there");
+  report_command
+      ->add_option("--jobs,-j", page->options.jobs, "Sequences at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  report_command->callback([page, &context] { run_report(*page, context); });
+
+  auto in = std::make_shared<Import>();
+  auto* import_command = group.add_subcommand(
+      "import", "Read labelled video of others, to look at and to evaluate on");
+  import_command->add_option("SOURCE", in->source, "Its folder, or its annotation file")
+      ->required();
+  import_command
+      ->add_option(
+          "--format,-f", in->format, std::string(kWritten) + "; evision or csv (frame,x,y,w,h)")
+      ->required();
+  import_command->add_option("--out,-o", in->out, "A new folder")->required();
+  import_command->add_option(
+      "--video", in->videos, "CLIP=VIDEO, or VIDEO where there is one clip: where it is not found");
+  import_command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
+  import_command->add_option(
+      "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
+  import_command->callback([in, &context] { run_import(*in, context); });
+}
+
+}  // namespace airtruth::cli

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/export.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "image/colour.h"
+#include "video/reader.h"
+#include "video/still.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* extension_of(Images images) { return images == Images::kPng ? ".png" : ".jpg"; }
+
+// What decides every byte of an export.
+Json options_json(const fs::path& set, const ExportOptions& options) {
+  const char* split = options.split == Split::kNone           ? "none"
+                      : options.split == Split::kByBackground ? "by-background"
+                                                              : "by-sequence";
+  const fs::path record = set / "dataset.json";
+  return {{"set", fs::absolute(set).lexically_normal().string()},
+          {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
+          {"format", exchange::name(options.format)},
+          {"images", options.images == Images::kNone ? "none" : extension_of(options.images) + 1},
+          {"every", options.every},
+          {"split", split},
+          {"shares", options.shares},
+          {"seed", options.seed},
+          {"one_class", options.one_class}};
+}
+
+// The folder of an export while it is being made.
+class Place {
+ public:
+  Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
+    if (fs::exists(record())) {
+      if (Json::parse(read_file(record()), nullptr, false).value("options", Json()) != options_)
+        throw Error("holds an export made with other options; expected a new folder",
+                    {root_.string()});
+      complete_ = true;
+      return;
+    }
+    const bool begun = fs::exists(begun_file());
+    if (begun && Json::parse(read_file(begun_file()), nullptr, false) != options_)
+      throw Error(
+          "holds an unfinished export with other options; expected the same, or a new folder",
+          {root_.string()});
+    if (!begun && fs::exists(root_) && (!fs::is_directory(root_) || !fs::is_empty(root_)))
+      throw Error("exists and is not empty; expected a new folder", {root_.string()});
+    std::error_code failed;
+    fs::create_directories(done_folder(), failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
+    write_file(begun_file(), options_.dump());
+  }
+
+  bool is_complete() const { return complete_; }
+  const fs::path& root() const { return root_; }
+  bool has_images_of(const std::string& name) const { return fs::exists(done_folder() / name); }
+  void mark_images_of(const std::string& name) const {
+    flush_files(root_);
+    write_file(done_folder() / name, "");
+  }
+  void finish(const Json& summary) const {
+    flush_files(root_);
+    write_file(record(), Json{{"options", options_}, {"summary", summary}}.dump(2) + "\n");
+    fs::remove_all(root_ / ".export");
+  }
+  fs::path record() const { return root_ / "export.json"; }
+
+ private:
+  fs::path begun_file() const { return root_ / ".export" / "options.json"; }
+  fs::path done_folder() const { return root_ / ".export" / "done"; }
+
+  fs::path root_;
+  Json options_;
+  bool complete_ = false;
+};
+
+class Export {
+ public:
+  Export(const LabelledSet& set, const Place& place, const ExportOptions& options)
+      : set_(set), place_(place), options_(options) {}
+
+  ExportSummary run() {
+    survey();
+    if (options_.images != Images::kNone) write_images();
+    write_labels();
+    write_file(place_.root() / "LOSS.md", exchange::loss(options_.format));
+    place_.finish({{"sequences", summary_.sequences},
+                   {"frames", summary_.frames},
+                   {"frames_of_part", summary_.frames_of_part}});
+    return summary_;
+  }
+
+ private:
+  void survey() {
+    std::vector<ClipFacts> facts;
+    std::set<std::string> categories;
+    for (const std::string& name : set_.names()) {
+      facts.push_back(set_.facts(name));
+      for (const std::string& category : facts.back().categories)
+        categories.insert(options_.one_class ? "aircraft" : category);
+    }
+    parts_ = parted(facts, options_.split, options_.shares, options_.seed, options_.warn);
+    write_.categories = {categories.begin(), categories.end()};
+    write_.image_extension = extension_of(options_.images);
+    const std::vector<std::string> order = {"train", "val", "test", "all"};
+    for (const std::string& part : order)
+      if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
+        write_.parts.push_back(part);
+    writer_ = exchange::make_writer(options_.format, place_.root(), write_);
+  }
+
+  exchange::Clip clip_of(const std::string& name) const {
+    exchange::Clip clip = set_.clip(name);
+    std::erase_if(clip.frames, [&](const exchange::LabelledFrame& frame) {
+      return frame.frame % options_.every != 0;
+    });
+    if (clip.frame_rate_hz) *clip.frame_rate_hz /= static_cast<double>(options_.every);
+    if (options_.one_class)
+      for (exchange::LabelledFrame& frame : clip.frames)
+        for (exchange::Label& label : frame.labels) label.category = "aircraft";
+    return clip;
+  }
+
+  void write_images() {
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int jobs = options_.jobs > 0 ? options_.jobs : cores;
+    {
+      std::vector<std::jthread> threads;
+      for (int i = 0; i < std::min<std::int64_t>(jobs, std::ssize(set_.names())); ++i)
+        threads.emplace_back([this] { work(); });
+    }
+    if (options_.stop.stop_requested()) throw Interrupted();
+    if (failed_) std::rethrow_exception(failed_);
+  }
+
+  void work() {
+    for (;;) {
+      const std::size_t i = next_.fetch_add(1);
+      if (i >= set_.names().size() || options_.stop.stop_requested() || stopped_) return;
+      try {
+        write_images_of(set_.names()[i]);
+      } catch (const Interrupted&) {
+        return;
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!failed_) failed_ = std::current_exception();
+        stopped_ = true;
+      }
+      const std::lock_guard lock(mutex_);
+      ++done_;
+      if (options_.progress) options_.progress(done_, std::ssize(set_.names()));
+    }
+  }
+
+  void write_images_of(const std::string& name) {
+    if (place_.has_images_of(name)) return;
+    const exchange::Clip clip = clip_of(name);
+    if (clip.media.empty())
+      throw Error(name + " has no video to take pictures from; expected --images none");
+    const std::string& part = parts_.at(name);
+    const std::map<std::int64_t, std::vector<fs::path>> wanted = places_of(clip, part);
+    video::Reader reader(clip.media, {.threads = 1});
+    std::int64_t written = 0;
+    std::size_t left = wanted.size();
+    while (left > 0) {
+      const auto frame = reader.next();
+      if (!frame) break;
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const auto found = wanted.find(frame->index);
+      if (found == wanted.end()) continue;
+      --left;
+      const image::Rgb8 picture = image::rgb8_from_picture(frame->picture);
+      for (const fs::path& file : found->second) {
+        fs::create_directories(file.parent_path());
+        video::write_still(file, picture, Flush::kLater);
+        ++written;
+      }
+    }
+    if (left > 0)
+      throw Error("ends before the labels of " + name + " do: " + std::to_string(left) +
+                      " labelled frames are not in it",
+                  {clip.media.string()});
+    place_.mark_images_of(name);
+    const std::lock_guard lock(mutex_);
+    summary_.images += written;
+  }
+
+  // Which pictures are made of which frame.
+  std::map<std::int64_t, std::vector<fs::path>> places_of(const exchange::Clip& clip,
+                                                          const std::string& part) const {
+    std::map<std::int64_t, std::vector<fs::path>> places;
+    for (const exchange::Clip& one : exchange::arranged(options_.format, clip))
+      for (std::size_t i = 0; i < one.frames.size(); ++i)
+        places[one.frames[i].frame].push_back(place_.root() / writer_->image(one, part, i));
+    return places;
+  }
+
+  void write_labels() {
+    for (const std::string& name : set_.names()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const exchange::Clip clip = clip_of(name);
+      const std::string& part = parts_.at(name);
+      ++summary_.sequences;
+      summary_.frames += std::ssize(clip.frames);
+      summary_.frames_of_part[part] += std::ssize(clip.frames);
+      const auto clips = exchange::arranged(options_.format, clip);
+      if (clips.empty())
+        warn(options_.warn,
+             name + " never shows an object, and " + exchange::name(options_.format) +
+                 " has no place for such a sequence: it is left out");
+      for (const exchange::Clip& one : clips) writer_->add(one, part);
+    }
+    writer_->finish();
+  }
+
+  const LabelledSet& set_;
+  const Place& place_;
+  const ExportOptions& options_;
+  exchange::WriteOptions write_;
+  std::unique_ptr<exchange::Writer> writer_;
+  std::map<std::string, std::string> parts_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  std::int64_t done_ = 0;
+  std::exception_ptr failed_;
+  ExportSummary summary_;
+};
+
+}  // namespace
+
+ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& options) {
+  const LabelledSet labelled(set);
+  const Place place(out, options_json(set, options));
+  if (place.is_complete()) {
+    ExportSummary summary;
+    const Json record = Json::parse(read_file(place.record())).at("summary");
+    summary.sequences = record.at("sequences");
+    summary.frames = record.at("frames");
+    summary.frames_of_part = record.at("frames_of_part");
+    summary.was_there = true;
+    return summary;
+  }
+  if (labelled.missing() > 0)
+    warn(options.warn,
+         set.string() + ": " + std::to_string(labelled.missing()) +
+             " sequences of the catalogue are not there yet; the export is of the others");
+  return Export(labelled, place, options).run();
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/export.h"
+
+#include <fstream>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "dataset/build.h"
+#include "dataset/import.h"
+#include "dataset/verify.h"
+#include "image/colour.h"
+#include "sequence/finished.h"
+#include "video/reader.h"
+#include "video/still.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kCatalogue = R"(
+name = "small"
+[[background]]
+name = "sky"
+flight = { seed = 3, frame_count = 8, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -150] }
+[[background]]
+name = "more"
+flight = { seed = 4, frame_count = 8, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -150] }
+[[aircraft]]
+name = "b737"
+aircraft = "738/738-Ryanair"
+[[aircraft]]
+name = "c172"
+aircraft = "c172/news"
+[[trajectory]]
+name = "across"
+waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
+speed_mps = 60
+[[product]]
+name = "{background}-{aircraft}"
+[output]
+video = "mkv"
+)";
+
+// A small data set, made once for all the tests.
+class Made : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("airtruth_export_" + std::to_string(::getpid()));
+    fs::create_directories(root_);
+    write_file(root_ / "c.toml", kCatalogue);
+    const BuildSummary summary = build(read_catalogue(root_ / "c.toml"), set(), {});
+    ASSERT_EQ(summary.made, 4);
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  static fs::path set() { return root_ / "set"; }
+  fs::path fresh() {
+    static int number = 0;
+    return root_ / ("out" + std::to_string(number++));
+  }
+  static std::set<std::string> files(const fs::path& folder) {
+    std::set<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file()) found.insert(fs::relative(entry.path(), folder).string());
+    return found;
+  }
+  inline static fs::path root_;
+};
+
+const std::vector<exchange::Format> kAll = {exchange::Format::kCoco,
+                                            exchange::Format::kYolo,
+                                            exchange::Format::kMot,
+                                            exchange::Format::kVoc,
+                                            exchange::Format::kCvat,
+                                            exchange::Format::kAot,
+                                            exchange::Format::kOtb,
+                                            exchange::Format::kGot10k,
+                                            exchange::Format::kVot};
+
+TEST_F(Made, EveryFormatComesBackWithTheBoxesOfTheTruthAndPicturesOfTheVideo) {
+  const LabelledSet made(set());
+  for (const exchange::Format format : kAll) {
+    SCOPED_TRACE(exchange::name(format));
+    ExportOptions options;
+    options.format = format;
+    options.images = Images::kPng;
+    const fs::path out = fresh();
+    const ExportSummary summary = export_set(set(), out, options);
+    EXPECT_EQ(summary.sequences, 4);
+    EXPECT_EQ(summary.frames, 32);
+    EXPECT_TRUE(fs::exists(out / "LOSS.md"));
+    EXPECT_FALSE(fs::exists(out / ".export"));
+    ImportOptions back;
+    back.format = format;
+    const fs::path again = fresh();
+    EXPECT_EQ(import_set(out, again, back).clips, 4);
+    const LabelledSet read(again);
+    EXPECT_EQ(read.names(), made.names());
+    for (const std::string& name : made.names()) {
+      const auto expected = exchange::arranged(format, made.clip(name)).at(0);
+      const exchange::Clip clip = read.clip(name);
+      ASSERT_EQ(clip.frames.size(), expected.frames.size());
+      EXPECT_EQ(clip.width, 160);
+      for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+        ASSERT_EQ(clip.frames[i].labels.size(), expected.frames[i].labels.size());
+        if (clip.frames[i].labels.empty()) continue;
+        EXPECT_NEAR(clip.frames[i].labels[0].box_px.x, expected.frames[i].labels[0].box_px.x, 1e-9);
+      }
+      // The picture of the second frame is the video's: boxes and pixels are of one frame.
+      video::Reader pictures(clip.media);
+      video::Reader frames(expected.media);
+      for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+        auto frame = frames.next();
+        while (frame->index < expected.frames[i].frame) frame = frames.next();
+        const image::Rgb8 a = image::rgb8_from_picture(pictures.next()->picture);
+        const image::Rgb8 b = image::rgb8_from_picture(frame->picture);
+        ASSERT_TRUE(std::equal(a.at(0, 0), a.at(0, 0) + 3 * 160 * 120, b.at(0, 0))) << name;
+      }
+    }
+  }
+}
+
+TEST_F(Made, AnExportGoesOnWhereItStoppedAndTheSecondRunCostsNothing) {
+  ExportOptions options;
+  options.format = exchange::Format::kMot;
+  const fs::path whole = fresh();
+  export_set(set(), whole, options);
+  const fs::path out = fresh();
+  std::stop_source source;
+  ExportOptions stopped = options;
+  stopped.jobs = 1;
+  stopped.stop = source.get_token();
+  stopped.progress = [&](std::int64_t done, std::int64_t) {
+    if (done == 2) source.request_stop();
+  };
+  EXPECT_THROW(export_set(set(), out, stopped), Interrupted);
+  EXPECT_FALSE(fs::exists(out / "export.json"));
+  const ExportSummary rest = export_set(set(), out, options);
+  EXPECT_EQ(rest.images, 16);  // of 32
+  EXPECT_EQ(files(out), files(whole));
+  for (const std::string& name : files(out))
+    EXPECT_EQ(sha256_of_file(out / name), sha256_of_file(whole / name)) << name;
+  EXPECT_TRUE(export_set(set(), out, options).was_there);
+}
+
+TEST_F(Made, AnExportOverSomethingElseIsRefused) {
+  const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
+    try {
+      export_set(set(), out, options);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  const fs::path out = fresh();
+  fs::create_directories(out);
+  write_file(out / "mine.txt", "precious");
+  EXPECT_THAT(error(out, {}), HasSubstr("exists and is not empty"));
+  EXPECT_THAT(files(out), ElementsAre("mine.txt"));
+  const fs::path other = fresh();
+  ExportOptions options;
+  options.images = Images::kNone;
+  export_set(set(), other, options);
+  options.every = 2;
+  EXPECT_THAT(error(other, options), HasSubstr("made with other options"));
+  EXPECT_THAT(error(fresh() / "x", {.jobs = 1}), "no error");
+}
+
+TEST_F(Made, ABackgroundIsInOnePartAloneUnlessAskedFor) {
+  std::vector<std::string> warnings;
+  ExportOptions options;
+  options.format = exchange::Format::kMot;
+  options.images = Images::kNone;
+  options.shares = {0.5, 0.5, 0};
+  options.warn = [&](const std::string& w) { warnings.push_back(w); };
+  const fs::path out = fresh();
+  const ExportSummary summary = export_set(set(), out, options);
+  EXPECT_THAT(warnings, ElementsAre());
+  EXPECT_EQ(summary.frames_of_part,
+            (std::map<std::string, std::int64_t>{{"train", 16}, {"val", 16}}));
+  for (const char* part : {"train", "val"}) {
+    std::set<std::string> backgrounds;
+    for (const auto& entry : fs::directory_iterator(out / part))
+      backgrounds.insert(entry.path().filename().string().substr(0, 3));
+    EXPECT_EQ(backgrounds.size(), 1u) << part;
+  }
+  options.split = Split::kBySequence;
+  options.shares = {0.75, 0.25, 0};
+  export_set(set(), fresh(), options);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("in more than one part")));
+}
+
+TEST_F(Made, EveryNthFrameAndOneClass) {
+  ExportOptions options;
+  options.format = exchange::Format::kYolo;
+  options.images = Images::kNone;
+  options.every = 3;
+  options.one_class = true;
+  options.split = Split::kNone;
+  const fs::path out = fresh();
+  EXPECT_EQ(export_set(set(), out, options).frames, 12);
+  EXPECT_THAT(read_file(out / "data.yaml"), HasSubstr("0: \"aircraft\"\n"));
+  const auto truth = LabelledSet(set()).clip("sky-b737");
+  ASSERT_FALSE(truth.frames[3].labels.empty());
+  const std::string second = read_file(out / "labels/all/sky-b737_000001.txt");
+  const Box& box = truth.frames[3].labels[0].box_px;
+  EXPECT_THAT(
+      second,
+      testing::StartsWith("0 " + std::to_string((box.x + box.width / 2) / 160).substr(0, 5)));
+}
+
+TEST_F(Made, WhatIsImportedCanBeLookedAt) {
+  const fs::path out = fresh();
+  ImportOptions options;
+  options.format = exchange::Format::kCsv;
+  const fs::path csv = root_ / "boxes.csv";
+  write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n5,11.5,20,30,40\n");
+  options.videos[""] = LabelledSet(set()).clip("sky-b737").media;
+  import_set(csv, out, options);
+  const auto finished = sequence::open_finished(out / "sequences" / "boxes");
+  ASSERT_EQ(finished.truth.frames.size(), 6u);
+  EXPECT_EQ(*finished.truth.frames[5].intruders[0].visible_box_px, (PixelBox{11, 20, 31, 40}));
+  sequence::write_overlay(finished, root_ / "look.mp4", {});
+  EXPECT_TRUE(fs::exists(root_ / "look.mp4"));
+  EXPECT_THROW(import_set(csv, out, options), Error);
+}
+
+TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
+  VerifyOptions options;
+  options.deep_every = 1;
+  const VerifyResult sound = verify(set(), options);
+  EXPECT_THAT(sound.faults, ElementsAre());
+  EXPECT_EQ(sound.recomposed, 32);
+  // A set whose truth was moved by one pixel, and its record made to fit.
+  const fs::path copy = fresh();
+  fs::copy(set(), copy, fs::copy_options::recursive);
+  const fs::path folder = copy / "sequences" / "sky-c172";
+  std::string truth = read_file(folder / "truth.jsonl");
+  const std::string key = "\"visible_box_px\":[";
+  const std::size_t at = truth.find(key) + key.size();
+  ASSERT_LT(at, truth.size());
+  const std::size_t comma = truth.find(',', at);
+  truth.replace(at, comma - at, std::to_string(std::stoi(truth.substr(at, comma - at)) + 1));
+  const std::string before = sha256_of_file(folder / "truth.jsonl");
+  write_file(folder / "truth.jsonl", truth);
+  std::string record = read_file(folder / "sequence.json");
+  record.replace(record.find(before), before.size(), sha256_of(truth));
+  write_file(folder / "sequence.json", record);
+  EXPECT_THAT(verify(copy, options).faults,
+              testing::Contains(HasSubstr("has another truth when it is computed again")));
+}
+
+}  // namespace
+}  // namespace airtruth::dataset

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/import.h"
+
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/version.h"
+#include "video/reader.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Sizes, rates and times that the labels do not say and the video does.
+void ask_video(exchange::Clip& clip, const Warn& warn) {
+  if (clip.media.empty()) return;
+  const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
+  if (clip.width == 0) {
+    clip.width = info.width;
+    clip.height = info.height;
+  } else if (clip.width != info.width || clip.height != info.height) {
+    throw Error("is " + std::to_string(info.width) + "x" + std::to_string(info.height) +
+                    ", and the labels of " + clip.name + " are for " + std::to_string(clip.width) +
+                    "x" + std::to_string(clip.height),
+                {clip.media.string()});
+  }
+  const bool is_video = fs::is_regular_file(clip.media);
+  if (!clip.frame_rate_hz && is_video) clip.frame_rate_hz = info.frame_rate.value();
+  const std::int64_t labelled = clip.frames.empty() ? 0 : clip.frames.back().frame + 1;
+  if (is_video && info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
+    airtruth::warn(warn,
+                   clip.media.string() + ": has about " +
+                       std::to_string(info.frame_count_estimate) + " frames, and the labels of " +
+                       clip.name + " go on to the " + std::to_string(labelled) + "th");
+}
+
+Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
+  std::set<std::string> categories;
+  std::int64_t labels = 0;
+  for (const exchange::LabelledFrame& frame : clip.frames)
+    for (const exchange::Label& label : frame.labels) {
+      categories.insert(label.category);
+      ++labels;
+    }
+  Json record = {{"format", "airtruth labelled clip 1"},
+                 {"version", kVersion},
+                 {"name", clip.name},
+                 {"imported_from", exchange::name(options.format)},
+                 {"frames", clip.frames.size()},
+                 {"labels", labels},
+                 {"categories", categories}};
+  if (!clip.media.empty()) record["media"] = clip.media.string();
+  return record;
+}
+
+// Names that are good for a folder, each once.
+std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
+  std::string name = wanted;
+  for (char& c : name)
+    if (c == '/' || static_cast<unsigned char>(c) < 0x20) c = '-';
+  if (name.empty() || name == "." || name == "..") name = "clip";
+  if (name.size() > 200) name.resize(200);
+  std::string unique = name;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "-" + std::to_string(i);
+  return unique;
+}
+
+}  // namespace
+
+ImportSummary import_set(const fs::path& source,
+                         const fs::path& out,
+                         const ImportOptions& options) {
+  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
+    throw Error("exists and is not empty; expected a new folder", {out.string()});
+  std::vector<exchange::Clip> clips =
+      exchange::read_clips(options.format, source, options.read, options.warn);
+  std::set<std::string> taken;
+  for (exchange::Clip& clip : clips) {
+    auto video = options.videos.find(clip.name);
+    if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
+    if (video != options.videos.end()) clip.media = video->second;
+    if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    ask_video(clip, options.warn);
+    clip.name = free_name(clip.name, taken);
+  }
+  // Nothing is written before everything is read.
+  ImportSummary summary;
+  for (const exchange::Clip& clip : clips) {
+    const fs::path folder = out / "sequences" / clip.name;
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
+    const Json record = record_of(clip, options);
+    write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
+    write_file(folder / "sequence.json", record.dump(2) + "\n", Flush::kLater);
+    ++summary.clips;
+    summary.frames += std::ssize(clip.frames);
+    summary.labels += record.at("labels").get<std::int64_t>();
+  }
+  flush_files(out);
+  return summary;
+}
+
+}  // namespace airtruth::dataset

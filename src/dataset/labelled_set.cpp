@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/labelled_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "dataset/expand.h"
+#include "dataset/folder.h"
+#include "sequence/finished.h"
+#include "video/reader.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kEarthRadiusM = 6'371'000;
+
+// The horizon is seen below the level by its dip, sqrt(2 h / R) of the height.
+bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
+  const Vector3 way = position_ned_m - camera_ned_m;
+  const double elevation = std::atan2(-way.z(), std::hypot(way.x(), way.y()));
+  const double dip = std::sqrt(2 * std::max(0.0, -camera_ned_m.z()) / kEarthRadiusM);
+  return elevation > -dip;
+}
+
+exchange::Label label_of(const annotation::Intruder& intruder,
+                         const annotation::Frame& frame,
+                         std::int64_t track) {
+  const PixelBox& box = *intruder.visible_box_px;
+  exchange::Label label;
+  label.track = track;
+  label.category = category_of(intruder.aircraft);
+  label.box_px = {double(box.x), double(box.y), double(box.width), double(box.height)};
+  const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_intruder;
+  label.visible = std::clamp(1 - hidden - intruder.cut_by_frame, 0.0, 1.0);
+  label.occluded = hidden > 0;
+  label.truncated = intruder.cut_by_frame > 0;
+  label.range_m = intruder.range_m;
+  if (intruder.position_ned_m)
+    label.above_horizon = is_above_horizon(*intruder.position_ned_m, frame.camera_position_ned_m);
+  return label;
+}
+
+exchange::Clip clip_of(const sequence::Finished& finished) {
+  exchange::Clip clip;
+  clip.name = finished.name;
+  clip.media = finished.video;
+  clip.width = finished.truth.lens.width;
+  clip.height = finished.truth.lens.height;
+  clip.frame_rate_hz = video::Reader(finished.video, {.threads = 1}).info().frame_rate.value();
+  for (const annotation::Frame& truth : finished.truth.frames) {
+    exchange::LabelledFrame frame{truth.frame, truth.time_s, {}};
+    for (std::size_t i = 0; i < truth.intruders.size(); ++i)
+      if (truth.intruders[i].visible_box_px)
+        frame.labels.push_back(
+            label_of(truth.intruders[i], truth, static_cast<std::int64_t>(i) + 1));
+    clip.frames.push_back(std::move(frame));
+  }
+  return clip;
+}
+
+bool is_sequence(const fs::path& folder) { return fs::exists(folder / "sequence.json"); }
+
+std::vector<std::string> sequences_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.is_directory() && is_sequence(entry.path()))
+        names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+std::string category_of(const std::string& aircraft) {
+  const fs::path path(aircraft);
+  if (path.has_extension()) return path.stem().string();
+  return aircraft.substr(0, aircraft.find('/'));
+}
+
+LabelledSet::LabelledSet(const fs::path& root) : root_(root) {
+  if (!fs::is_directory(root)) throw Error("is no folder", {root.string()});
+  if (is_sequence(root)) {
+    root_ = fs::absolute(root).lexically_normal();
+    if (!root_.has_filename()) root_ = root_.parent_path();
+    names_ = {root_.filename().string()};
+    root_ = root_.parent_path();
+    return;
+  }
+  const Folder folder{root};
+  if (fs::is_directory(folder.sequences())) root_ = folder.sequences();
+  names_ = sequences_in(root_);
+  if (fs::exists(folder.catalogue())) {
+    const Catalogue catalogue = read_catalogue(folder.catalogue());
+    missing_ = Expansion(catalogue).size() - std::ssize(names_);
+  }
+  if (names_.empty())
+    throw Error(
+        "holds no finished sequence; expected what `airtruth dataset build`, `dataset import` "
+        "or `render` has made",
+        {root.string()});
+}
+
+fs::path LabelledSet::folder(const std::string& name) const { return root_ / name; }
+
+exchange::Clip LabelledSet::clip(const std::string& name) const {
+  const fs::path labels = folder(name) / "labels.jsonl";
+  if (fs::exists(labels)) return exchange::read_labels(labels);
+  return clip_of(sequence::open_finished(folder(name)));
+}
+
+ClipFacts LabelledSet::facts(const std::string& name) const {
+  ClipFacts facts;
+  facts.name = name;
+  const fs::path file = folder(name) / "sequence.json";
+  std::set<std::string> categories;
+  try {
+    const Json record = Json::parse(read_file(file));
+    if (record.contains("scene_toml")) {
+      const scene::Scene scene =
+          scene::parse_scene(record.at("scene_toml").get<std::string>(), file);
+      facts.background = scene.background.video.string();
+      facts.frames = record.at("summary").at("frames").get<std::int64_t>();
+      for (const scene::Intruder& intruder : scene.intruders)
+        categories.insert(category_of(intruder.aircraft));
+    } else {
+      facts.background = record.value("media", name);
+      facts.frames = record.at("frames").get<std::int64_t>();
+      for (const Json& category : record.at("categories")) categories.insert(category);
+    }
+  } catch (const Json::exception&) {
+    throw Error("is not a record that airtruth wrote", {file.string()});
+  }
+  facts.categories = {categories.begin(), categories.end()};
+  return facts;
+}
+
+}  // namespace airtruth::dataset

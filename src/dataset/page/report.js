@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+(() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const byId = (id) => document.getElementById(id);
+  const colours = ['#0b6bcb', '#d4652f', '#2da44e', '#8250df', '#bf8700'];
+  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
+  Chart.defaults.color = dark ? '#9aa7b4' : '#5c6b7a';
+  Chart.defaults.borderColor = dark ? '#30363d' : '#e3e8ed';
+  Chart.defaults.animation = false;
+  Chart.defaults.maintainAspectRatio = false;
+  Chart.defaults.font.size = 11;
+
+  const element = (tag, text, name) => {
+    const made = document.createElement(tag);
+    if (text !== undefined) made.textContent = text;
+    if (name) made.className = name;
+    return made;
+  };
+  const known = (values) => values.filter((v) => v !== null);
+  const least = (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null);
+  const most = (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null);
+  const number = (value, digits = 0) =>
+    value === null ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
+
+  // What a sequence is sorted and filtered by: over the frames that show an intruder.
+  data.sequences.forEach((sequence, index) => {
+    sequence.index = index;
+    const ranges = [];
+    const sizes = [];
+    for (const intruder of sequence.intruders)
+      intruder.width_px.forEach((width, i) => {
+        if (width === null) return;
+        sizes.push(Math.max(width, intruder.height_px[i]));
+        if (intruder.range_m[i] !== null) ranges.push(intruder.range_m[i]);
+      });
+    sequence.nearest = least(ranges);
+    sequence.farthest = most(ranges);
+    sequence.largest = most(sizes);
+    sequence.smallest = least(sizes);
+  });
+
+  const drawOverview = () => {
+    byId('title').textContent = data.title;
+    document.title = data.title;
+    const missing = data.missing > 0 ? `, ${number(data.missing)} sequences missing` : '';
+    byId('summary').textContent =
+      `${number(data.sequences.length)} sequences, ${number(data.frames)} frames${missing}; ` +
+      `visible without a box: ${number(data.visible_without_box)}`;
+    for (const [key, value] of Object.entries(data.card)) {
+      byId('card').append(element('dt', key), element('dd', String(value)));
+    }
+    for (const [key, histogram] of Object.entries(data.histograms)) {
+      const labels = histogram.counts.map((_, i) => `${histogram.edges[i]}–${histogram.edges[i + 1]}`);
+      new Chart(byId(`hist-${key}`), {
+        type: 'bar',
+        data: { labels, datasets: [{ data: histogram.counts, backgroundColor: colours[0] }] },
+        options: {
+          plugins: { legend: { display: false } },
+          scales: { x: { ticks: { maxRotation: 60 }, grid: { display: false } }, y: { beginAtZero: true, ticks: { precision: 0 } } },
+        },
+      });
+    }
+    new Chart(byId('states'), {
+      type: 'bar',
+      data: {
+        labels: ['visible', 'hidden', 'outside', 'behind', 'ended'],
+        datasets: [{ data: data.states, backgroundColor: colours }],
+      },
+      options: { indexAxis: 'y', plugins: { legend: { display: false } }, scales: { x: { ticks: { precision: 0, maxTicksLimit: 5 } } } },
+    });
+  };
+
+  const line = (label, points, colour, more = {}) =>
+    ({ label, data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more });
+  const axis = (text, more = {}) => ({ type: 'linear', title: { display: true, text }, ...more });
+  const legend = { position: 'top', labels: { boxWidth: 12, filter: (item) => !item.text.startsWith('_') } };
+
+  // From above, north up, one scale for both axes, with the camera's view at the first frame.
+  const planView = (canvas, sequence) => {
+    const camera = sequence.camera;
+    const sets = [line('camera', camera.east_m.map((x, i) => ({ x, y: camera.north_m[i] })), '#7d8590')];
+    sequence.intruders.forEach((intruder, k) => {
+      const points = intruder.east_m.map((x, i) => ({ x, y: intruder.north_m[i] })).filter((p) => p.x !== null);
+      if (!points.length) return;
+      sets.push(line(intruder.id, points, colours[k % colours.length]));
+      sets.push(line('_start', [points[0]], colours[k % colours.length], { pointRadius: 3 }));
+    });
+    const all = sets.flatMap((s) => s.data);
+    let [west, east] = [least(all.map((p) => p.x)), most(all.map((p) => p.x))];
+    let [south, north] = [least(all.map((p) => p.y)), most(all.map((p) => p.y))];
+    const reach = 0.9 * Math.max(east - west, north - south, 50);
+    if (sequence.fov_deg) {
+      const at = { x: camera.east_m[0], y: camera.north_m[0] };
+      const half = Math.min(sequence.fov_deg, 359) / 2;
+      const arm = (degrees) => {
+        const angle = ((camera.yaw_deg[0] + degrees) * Math.PI) / 180;
+        return { x: at.x + reach * Math.sin(angle), y: at.y + reach * Math.cos(angle) };
+      };
+      sets.push(line('view', [arm(-half), at, arm(half)], '#7d8590', { borderDash: [5, 4], borderWidth: 1 }));
+    }
+    const shown = sets.filter((s) => s.label !== 'view').flatMap((s) => s.data);
+    west = least(shown.map((p) => p.x)); east = most(shown.map((p) => p.x));
+    south = least(shown.map((p) => p.y)); north = most(shown.map((p) => p.y));
+    const aspect = Math.max(0.4, (canvas.parentNode.clientWidth - 60) / (canvas.parentNode.clientHeight - 80));
+    const tall = Math.max((north - south) * 1.15, ((east - west) * 1.15) / aspect, 20);
+    const wide = tall * aspect;
+    const middle = { x: (west + east) / 2, y: (south + north) / 2 };
+    return new Chart(canvas, {
+      type: 'scatter',
+      data: { datasets: sets },
+      options: {
+        plugins: { legend },
+        scales: {
+          x: axis('east, m', { min: middle.x - wide / 2, max: middle.x + wide / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
+          y: axis('north, m', { min: middle.y - tall / 2, max: middle.y + tall / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
+        },
+      },
+    });
+  };
+
+  const profile = (canvas, sequence) => {
+    const camera = sequence.camera;
+    const sets = [line('camera height, m', camera.frame.map((x, i) => ({ x, y: -camera.down_m[i] })), '#7d8590')];
+    sequence.intruders.forEach((intruder, k) =>
+      sets.push(line(`${intruder.id} height, m`, intruder.frame.map((x, i) => ({ x, y: intruder.down_m[i] === null ? null : -intruder.down_m[i] })), colours[k % colours.length])));
+    sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#bf8700', { yAxisID: 'shift', borderWidth: 1 }));
+    return new Chart(canvas, {
+      type: 'scatter',
+      data: { datasets: sets },
+      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('height, m'), shift: axis('shift, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
+    });
+  };
+
+  const sizes = (canvas, sequence) => {
+    const sets = [];
+    sequence.intruders.forEach((intruder, k) => {
+      const colour = colours[k % colours.length];
+      sets.push(line(`${intruder.id} range, m`, intruder.frame.map((x, i) => ({ x, y: intruder.range_m[i] })), colour));
+      sets.push(line('width, px', intruder.frame.map((x, i) => ({ x, y: intruder.width_px[i] })), colour, { yAxisID: 'px', borderDash: [4, 3] }));
+      sets.push(line('height, px', intruder.frame.map((x, i) => ({ x, y: intruder.height_px[i] })), '#2da44e', { yAxisID: 'px', borderDash: [2, 3] }));
+    });
+    return new Chart(canvas, {
+      type: 'scatter',
+      data: { datasets: sets },
+      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('range, m', { beginAtZero: true }), px: axis('box, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
+    });
+  };
+
+  const picture = (kind, index) => {
+    const holder = byId(`${kind}-${index}`);
+    return holder ? `data:image/jpeg;base64,${holder.textContent}` : null;
+  };
+
+  const link = (path) => {
+    const a = element('a', path.split('/').pop());
+    a.href = path.split('/').map(encodeURIComponent).join('/');
+    return a;
+  };
+
+  // The frame of a card is made at once; what costs is drawn when it comes into view.
+  const cardOf = (sequence) => {
+    const card = element('article', undefined, 'sequence');
+    card.append(element('h2', sequence.name));
+    const light = sequence.sun_elevation_deg === null ? '' :
+      ` · sun ${number(sequence.sun_azimuth_deg)}° / ${number(sequence.sun_elevation_deg)}° high`;
+    card.append(element('p',
+      `${sequence.aircraft.join(', ') || 'nothing labelled'} over ${sequence.background} · ${number(sequence.frames)} frames, ${number(sequence.seconds, 1)} s, ` +
+      `${sequence.width}×${sequence.height} · seen in ${number(sequence.visible)}, hidden in ${number(sequence.hidden)} · ` +
+      `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` +
+      `contrast ${number(sequence.contrast, 1)}${light}${sequence.motion_model ? ` · motion: ${sequence.motion_model}` : ''}`));
+    const row = element('div', undefined, 'row');
+    const pictures = element('div', undefined, 'pictures');
+    const image = element('img');
+    image.alt = `A frame of ${sequence.name}`;
+    const pair = element('div', undefined, 'pair');
+    const loop = element('div', undefined, 'loop');
+    loop.setAttribute('role', 'img');
+    loop.setAttribute('aria-label', 'The intruder, enlarged');
+    const links = element('div', undefined, 'links');
+    sequence.files.forEach((path) => links.append(link(path)));
+    pair.append(loop, links);
+    pictures.append(image, pair);
+    row.append(pictures);
+    const plots = ['plan', 'profile', 'sizes'].map(() => {
+      const plot = element('div', undefined, 'plot');
+      plot.append(element('canvas'));
+      row.append(plot);
+      return plot.firstChild;
+    });
+    card.append(row);
+    card.draw = () => {
+      const preview = picture('preview', sequence.index);
+      if (preview) image.src = preview; else image.remove();
+      const strip = picture('loop', sequence.index);
+      if (strip) {
+        const side = sequence.loop_side;
+        loop.style.backgroundImage = `url(${strip})`;
+        if (sequence.loop_frames > 1)
+          loop.animate(
+            [{ backgroundPosition: '0 0' }, { backgroundPosition: `${-side * sequence.loop_frames}px 0` }],
+            { duration: 220 * sequence.loop_frames, easing: `steps(${sequence.loop_frames})`, iterations: Infinity });
+      } else loop.remove();
+      if (sequence.camera.frame.length) {
+        planView(plots[0], sequence);
+        profile(plots[1], sequence);
+      } else plots.slice(0, 2).forEach((p) => p.parentNode.replaceChildren(element('span', 'imported: no geometry', 'none')));
+      sizes(plots[2], sequence);
+      card.draw = null;
+    };
+    return card;
+  };
+
+  const seen = new IntersectionObserver((entries) => {
+    for (const entry of entries)
+      if (entry.isIntersecting && entry.target.draw) entry.target.draw();
+  }, { rootMargin: '200px' });
+
+  const cards = data.sequences.map(cardOf);
+
+  const list = () => {
+    const find = byId('find').value.toLowerCase();
+    const limit = (id, otherwise) => (byId(id).value === '' ? otherwise : Number(byId(id).value));
+    const [from, to] = [limit('nearest-from', -Infinity), limit('nearest-to', Infinity)];
+    const limited = byId('nearest-from').value !== '' || byId('nearest-to').value !== '';
+    const key = byId('sort').value;
+    const shown = data.sequences.filter((s) =>
+      s.name.toLowerCase().includes(find) &&
+      (!byId('aircraft').value || s.aircraft.includes(byId('aircraft').value)) &&
+      (!byId('background').value || s.background === byId('background').value) &&
+      (!limited || (s.nearest !== null && s.nearest >= from && s.nearest <= to)));
+    const order = byId('descending').checked ? -1 : 1;
+    // What has no such number comes last, whichever way.
+    shown.sort((a, b) => {
+      if (key === 'name') return order * a.name.localeCompare(b.name, 'en', { numeric: true });
+      if (a[key] === null || b[key] === null) return (a[key] === null) - (b[key] === null);
+      return order * (a[key] - b[key]);
+    });
+    byId('sequences').replaceChildren(...shown.map((s) => cards[s.index]));
+    byId('count').textContent = `${number(shown.length)} of ${number(cards.length)}`;
+  };
+
+  const choices = (id, values) => {
+    for (const value of [...new Set(values)].sort()) {
+      const option = element('option', value);
+      option.value = value;
+      byId(id).append(option);
+    }
+  };
+
+  drawOverview();
+  choices('aircraft', data.sequences.flatMap((s) => s.aircraft));
+  choices('background', data.sequences.map((s) => s.background));
+  byId('filters').addEventListener('input', list);
+  list();
+  cards.forEach((card) => seen.observe(card));
+})();

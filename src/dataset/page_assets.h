@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+// The report page's parts, put into the program when it is built: src/dataset/page/* and Debian's
+// Chart.js (package libjs-chart.js, MIT licence).
+namespace airtruth::dataset {
+
+std::string_view page_css();
+std::string_view page_body();
+std::string_view page_js();
+std::string_view chart_js();
+
+}  // namespace airtruth::dataset

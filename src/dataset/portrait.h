@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "dataset/labelled_set.h"
+
+namespace airtruth::dataset {
+
+// What the report page shows of one sequence, read from its record, its truth and its video.
+// Series are thinned to at most kMostPoints.
+struct Portrait {
+  static constexpr std::size_t kMostPoints = 120;
+
+  struct Point {  // of one intruder in one frame
+    std::int64_t frame = 0;
+    double time_s = 0;
+    std::optional<double> range_m, azimuth_deg, elevation_deg;
+    std::optional<std::array<double, 3>> position_ned_m;
+    std::optional<double> width_px, height_px;  // of its visible box
+    const char* state = "";
+  };
+  struct Intruder {
+    std::string id;
+    std::string aircraft;
+    std::vector<Point> points;
+  };
+  struct Camera {
+    std::int64_t frame = 0;
+    std::array<double, 3> position_ned_m{};
+    double yaw_deg = 0;
+    double shift_px = 0;  // of the picture's middle, by the measured motion
+    double roll_deg = 0;
+  };
+
+  ClipFacts facts;
+  std::string folder;              // of its files
+  std::vector<std::string> files;  // in it
+  int width = 0, height = 0;
+  double duration_s = 0;
+  std::optional<double> horizontal_fov_deg;
+  std::optional<double> sun_azimuth_deg, sun_elevation_deg;
+  std::string motion_model;
+  std::vector<Intruder> intruders;
+  std::vector<Camera> camera;
+  std::array<std::int64_t, 5> frames_by_state{};  // visible, hidden, outside, behind, ended
+  std::int64_t visible_without_box = 0;           // of all frames and intruders
+  std::vector<double> contrasts;                  // of sampled frames
+  std::string preview_jpeg;                       // bytes; empty where nothing is ever seen
+  std::string loop_jpeg;                          // kLoopFrames squares side by side
+  int loop_frames = 0;
+  int loop_side = 0;
+};
+
+Portrait portrait_of(const LabelledSet& set, const std::string& name, const std::stop_token& stop);
+
+}  // namespace airtruth::dataset

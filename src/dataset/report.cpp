@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/report.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/base64.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/version.h"
+#include "dataset/folder.h"
+#include "dataset/page_assets.h"
+#include "dataset/portrait.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A histogram over stated edges; what lies beyond them counts in the first and last bin.
+struct Histogram {
+  std::vector<double> edges;
+  std::vector<std::int64_t> counts;
+
+  explicit Histogram(std::vector<double> e) : edges(std::move(e)), counts(edges.size() - 1) {}
+  void add(double value) {
+    const auto above = std::upper_bound(edges.begin(), edges.end(), value) - edges.begin();
+    ++counts[static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(counts) - 1))];
+  }
+  Json json() const { return {{"edges", edges}, {"counts", counts}}; }
+};
+
+std::vector<double> steps(double from, double to, double step) {
+  std::vector<double> edges;
+  for (int i = 0; from + i * step <= to + 1e-9; ++i) edges.push_back(from + i * step);
+  return edges;
+}
+
+// What is counted over the whole set, from the thinned series.
+struct Totals {
+  std::int64_t frames = 0;
+  std::array<std::int64_t, 5> by_state{};
+  std::int64_t visible_without_box = 0;
+  Histogram range_m{
+      {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
+  Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
+  Histogram azimuth_deg{steps(-90, 90, 10)};
+  Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
+
+  void add(const Portrait& portrait) {
+    frames += portrait.facts.frames;
+    for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
+    visible_without_box += portrait.visible_without_box;
+    for (const Portrait::Intruder& intruder : portrait.intruders)
+      for (const Portrait::Point& point : intruder.points) {
+        if (!point.width_px) continue;
+        size_px.add(std::max(*point.width_px, *point.height_px));
+        if (point.range_m) range_m.add(*point.range_m);
+        if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
+      }
+    for (const double value : portrait.contrasts) contrast.add(value);
+  }
+};
+
+template <typename T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+Json rounded(const std::optional<double>& value, double unit) {
+  return value ? Json(rounded(*value, unit)) : Json();
+}
+
+// Columns, since a page of a thousand sequences holds a hundred thousand points.
+Json series_of(const Portrait::Intruder& intruder) {
+  Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
+       east = frame, down = frame, state = frame;
+  for (const Portrait::Point& p : intruder.points) {
+    frame.push_back(p.frame);
+    range.push_back(rounded(p.range_m, 0.1));
+    width.push_back(json_of(p.width_px));
+    height.push_back(json_of(p.height_px));
+    const auto at = [&](std::size_t i) {
+      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[i], 0.1)) : Json();
+    };
+    north.push_back(at(0));
+    east.push_back(at(1));
+    down.push_back(at(2));
+    state.push_back(p.state);
+  }
+  return {{"id", intruder.id},
+          {"aircraft", intruder.aircraft},
+          {"frame", frame},
+          {"range_m", range},
+          {"width_px", width},
+          {"height_px", height},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"state", state}};
+}
+
+Json camera_of(const Portrait& portrait) {
+  Json frame = Json::array(), north = frame, east = frame, down = frame, yaw = frame, shift = frame,
+       roll = frame;
+  for (const Portrait::Camera& c : portrait.camera) {
+    frame.push_back(c.frame);
+    north.push_back(rounded(c.position_ned_m[0], 0.1));
+    east.push_back(rounded(c.position_ned_m[1], 0.1));
+    down.push_back(rounded(c.position_ned_m[2], 0.1));
+    yaw.push_back(rounded(c.yaw_deg, 0.01));
+    shift.push_back(rounded(c.shift_px, 0.01));
+    roll.push_back(rounded(c.roll_deg, 0.001));
+  }
+  return {{"frame", frame},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"yaw_deg", yaw},
+          {"shift_px", shift},
+          {"roll_deg", roll}};
+}
+
+Json json_of(const Portrait& portrait, const fs::path& page) {
+  Json files = Json::array();
+  const fs::path folder =
+      fs::absolute(portrait.folder).lexically_relative(fs::absolute(page).parent_path());
+  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+  Json intruders = Json::array();
+  for (const Portrait::Intruder& intruder : portrait.intruders)
+    intruders.push_back(series_of(intruder));
+  double contrast = 0;
+  for (const double value : portrait.contrasts) contrast += value;
+  return {{"name", portrait.facts.name},
+          {"background", fs::path(portrait.facts.background).filename().string()},
+          {"aircraft", portrait.facts.categories},
+          {"frames", portrait.facts.frames},
+          {"seconds", rounded(portrait.duration_s, 0.01)},
+          {"width", portrait.width},
+          {"height", portrait.height},
+          {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+          {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
+          {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
+          {"motion_model", portrait.motion_model},
+          {"visible", portrait.frames_by_state[0]},
+          {"hidden", portrait.frames_by_state[1]},
+          {"contrast",
+           portrait.contrasts.empty()
+               ? Json()
+               : Json(rounded(contrast / static_cast<double>(portrait.contrasts.size()), 0.1))},
+          {"loop_frames", portrait.loop_frames},
+          {"loop_side", portrait.loop_side},
+          {"intruders", intruders},
+          {"camera", camera_of(portrait)},
+          {"files", files}};
+}
+
+// Fit for a <script> element: no text of the user's can end it or begin a comment.
+std::string in_script(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+// The data card: what the set is, how it was made, and what it does not say.
+Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portrait>& portraits) {
+  Json card = {{"made by", std::string("airtruth ") + kVersion}};
+  const Folder folder{set};
+  if (fs::exists(folder.catalogue())) {
+    const Catalogue catalogue = read_catalogue(folder.catalogue());
+    card["name"] = catalogue.name;
+    card["seed"] = catalogue.seed;
+    card["rendering"] = fmt::format("quality {}, {}, {}",
+                                    catalogue.render.quality,
+                                    catalogue.composite.method,
+                                    catalogue.output.video);
+    card["complete"] = fs::exists(folder.record()) ? "yes" : "no: sequences are missing";
+    for (const Background& background : catalogue.backgrounds) {
+      const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+      card["background " + background.name] =
+          flight != nullptr
+              ? fmt::format(
+                    "virtual flight, seed {}, {} frames, {}x{}; made by airtruth, free of "
+                    "others' rights",
+                    flight->seed,
+                    flight->frame_count,
+                    flight->width,
+                    flight->height)
+              : std::get<fs::path>(background.source).filename().string() +
+                    ": a video; its licence is its owner's to state";
+    }
+  }
+  card["frames"] = totals.frames;
+  const bool rendered = std::any_of(
+      portraits.begin(), portraits.end(), [](const Portrait& p) { return !p.camera.empty(); });
+  if (rendered) {
+    card["aircraft"] =
+        "models of FlightGear's AI traffic (Debian package flightgear-data-ai, GPL-2+), unless a "
+        "sequence names a file; pictures of them in this set derive from those models";
+    card["labels"] =
+        "exact: boxes bound the pixels that the compositing changed; geometry is the scene's own. "
+        "Visible without a box: " +
+        std::to_string(totals.visible_without_box) + " of " + std::to_string(totals.frames) +
+        " frames";
+    card["known limits"] =
+        "no motion blur, rolling shutter, haze or sensor noise on the intruder; the camera's "
+        "motion "
+        "is a homography, exact for far scenes through a pinhole; virtual backgrounds are drawn, "
+        "not "
+        "filmed";
+  }
+  return card;
+}
+
+class Gathering {
+ public:
+  Gathering(const LabelledSet& set, const ReportOptions& options) : set_(set), options_(options) {}
+
+  std::vector<Portrait> run() {
+    portraits_.resize(set_.names().size());
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    {
+      std::vector<std::jthread> threads;
+      for (int i = 0; i < (options_.jobs > 0 ? options_.jobs : cores); ++i)
+        threads.emplace_back([this] { work(); });
+    }
+    if (failed_) std::rethrow_exception(failed_);
+    return std::move(portraits_);
+  }
+
+ private:
+  void work() {
+    for (;;) {
+      const std::size_t i = next_.fetch_add(1);
+      if (i >= portraits_.size() || stopped_) return;
+      try {
+        portraits_[i] = portrait_of(set_, set_.names()[i], options_.stop);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!failed_) failed_ = std::current_exception();
+        stopped_ = true;
+        return;
+      }
+      const std::lock_guard lock(mutex_);
+      if (options_.progress) options_.progress(++done_, std::ssize(portraits_));
+    }
+  }
+
+  const LabelledSet& set_;
+  const ReportOptions& options_;
+  std::vector<Portrait> portraits_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  std::int64_t done_ = 0;
+  std::exception_ptr failed_;
+};
+
+}  // namespace
+
+void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
+  if (fs::exists(out) && !options.overwrite)
+    throw Error("exists already; give --overwrite to replace it", {out.string()});
+  const LabelledSet labelled(set);
+  const std::vector<Portrait> portraits = Gathering(labelled, options).run();
+  Totals totals;
+  Json sequences = Json::array();
+  for (const Portrait& portrait : portraits) {
+    totals.add(portrait);
+    sequences.push_back(json_of(portrait, out));
+  }
+  const Json card = card_of(set, totals, portraits);
+  const fs::path named = fs::absolute(set).lexically_normal();
+  const std::string title = card.contains("name")  ? card.at("name").get<std::string>()
+                            : named.has_filename() ? named.filename().string()
+                                                   : named.parent_path().filename().string();
+  const Json data = {{"title", title},
+                     {"frames", totals.frames},
+                     {"states", totals.by_state},
+                     {"visible_without_box", totals.visible_without_box},
+                     {"missing", labelled.missing()},
+                     {"histograms",
+                      {{"range_m", totals.range_m.json()},
+                       {"size_px", totals.size_px.json()},
+                       {"azimuth_deg", totals.azimuth_deg.json()},
+                       {"contrast", totals.contrast.json()}}},
+                     {"card", card},
+                     {"sequences", sequences}};
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>airtruth data set</title>\n<style>\n";
+  page += page_css();
+  page += "</style>\n</head>\n<body>\n";
+  page += page_body();
+  page += "<script type=\"application/json\" id=\"data\">" + in_script(data) + "</script>\n";
+  for (std::size_t i = 0; i < portraits.size(); ++i) {
+    if (portraits[i].preview_jpeg.empty()) continue;
+    page += fmt::format("<script type=\"text/plain\" id=\"preview-{}\">{}</script>\n",
+                        i,
+                        base64_of(portraits[i].preview_jpeg));
+    page += fmt::format("<script type=\"text/plain\" id=\"loop-{}\">{}</script>\n",
+                        i,
+                        base64_of(portraits[i].loop_jpeg));
+  }
+  page += "<script>\n";
+  page += chart_js();
+  page += "\n</script>\n<script>\n";
+  page += page_js();
+  page += "</script>\n</body>\n</html>\n";
+  write_file(out, page);
+}
+
+}  // namespace airtruth::dataset

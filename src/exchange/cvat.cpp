@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "exchange/parts.h"
+#include "exchange/text.h"
+#include "exchange/xml_file.h"
+
+// "CVAT for video 1.1" (docs.cvat.ai, "XML annotation format"), a file a clip: a <track> an object,
+// with a <box> in every frame that shows it and one with outside="1" where it has gone. Frames from
+// 0, corners from (0, 0).
+namespace airtruth::exchange {
+namespace {
+
+constexpr const char* kAttributes[] = {"visible", "truncated", "range_m", "above_horizon"};
+
+pugi::xml_node add(pugi::xml_node node, const char* name, const std::string& text) {
+  pugi::xml_node child = node.append_child(name);
+  child.text().set(text.c_str());
+  return child;
+}
+
+std::string number(double value) { return fmt::format("{}", value); }
+
+class CvatWriter : public Writer {
+ public:
+  CvatWriter(fs::path root, const WriteOptions& options)
+      : root_(std::move(root)), options_(options) {}
+
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path(part) / clip.name / "images" /
+           ("frame_" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension);
+  }
+
+  void add(const Clip& clip, const std::string& part) override {
+    pugi::xml_document document;
+    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "utf-8";
+    pugi::xml_node top = document.append_child("annotations");
+    exchange::add(top, "version", "1.1");
+    add_task(top.append_child("meta").append_child("task"), clip);
+    for (const std::int64_t track : tracks_of(clip)) add_track(top, clip, track);
+    fs::create_directories(root_ / part / clip.name);
+    write_file(root_ / part / clip.name / "annotations.xml", text_of(document));
+  }
+
+  void finish() override {}
+
+ private:
+  void add_task(pugi::xml_node task, const Clip& clip) const {
+    const std::size_t last = clip.frames.empty() ? 0 : clip.frames.size() - 1;
+    exchange::add(task, "name", clip.name);
+    exchange::add(task, "size", std::to_string(clip.frames.size()));
+    exchange::add(task, "mode", "interpolation");
+    exchange::add(task, "overlap", "0");
+    exchange::add(task, "start_frame", "0");
+    exchange::add(task, "stop_frame", std::to_string(last));
+    exchange::add(task, "frame_filter", "");
+    pugi::xml_node labels = task.append_child("labels");
+    for (const std::string& category : options_.categories) {
+      pugi::xml_node label = labels.append_child("label");
+      exchange::add(label, "name", category);
+      exchange::add(label, "type", "any");
+      pugi::xml_node attributes = label.append_child("attributes");
+      for (const char* name : kAttributes) {
+        pugi::xml_node attribute = attributes.append_child("attribute");
+        exchange::add(attribute, "name", name);
+        exchange::add(attribute, "mutable", "True");
+        exchange::add(attribute, "input_type", "text");
+        exchange::add(attribute, "default_value", "");
+        exchange::add(attribute, "values", "");
+      }
+    }
+    pugi::xml_node size = task.append_child("original_size");
+    exchange::add(size, "width", std::to_string(clip.width));
+    exchange::add(size, "height", std::to_string(clip.height));
+  }
+
+  static void add_track(pugi::xml_node top, const Clip& clip, std::int64_t id) {
+    pugi::xml_node track;
+    const Label* last = nullptr;
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+      const auto& labels = clip.frames[i].labels;
+      const auto found = std::find_if(
+          labels.begin(), labels.end(), [&](const Label& label) { return label.track == id; });
+      const bool shown = found != labels.end();
+      if (shown && !track) {
+        track = top.append_child("track");
+        track.append_attribute("id") = static_cast<long long>(id - 1);
+        track.append_attribute("label") = found->category.c_str();
+        track.append_attribute("source") = "file";
+      }
+      if (shown)
+        add_box(track, *found, i, false);
+      else if (last != nullptr)
+        add_box(track, *last, i, true);
+      last = shown ? &*found : nullptr;
+    }
+  }
+
+  static void add_box(pugi::xml_node track, const Label& label, std::size_t i, bool outside) {
+    pugi::xml_node box = track.append_child("box");
+    const Box& b = label.box_px;
+    box.append_attribute("frame") = static_cast<unsigned long long>(i);
+    box.append_attribute("outside") = outside ? 1 : 0;
+    box.append_attribute("occluded") = label.occluded.value_or(false) ? 1 : 0;
+    box.append_attribute("keyframe") = 1;
+    box.append_attribute("xtl") = number(b.x).c_str();
+    box.append_attribute("ytl") = number(b.y).c_str();
+    box.append_attribute("xbr") = number(b.right()).c_str();
+    box.append_attribute("ybr") = number(b.bottom()).c_str();
+    box.append_attribute("z_order") = 0;
+    const auto attribute = [&](const char* name, const std::string& value) {
+      exchange::add(box, "attribute", value).append_attribute("name") = name;
+    };
+    if (label.visible) attribute("visible", number(*label.visible));
+    if (label.truncated) attribute("truncated", *label.truncated ? "true" : "false");
+    if (label.range_m) attribute("range_m", number(*label.range_m));
+    if (label.above_horizon) attribute("above_horizon", *label.above_horizon ? "true" : "false");
+  }
+
+  fs::path root_;
+  WriteOptions options_;
+};
+
+Label label_of(const XmlFile& xml, const pugi::xml_node& track, const pugi::xml_node& box) {
+  Label label;
+  label.track = static_cast<std::int64_t>(xml.attribute(track, "id")) + 1;
+  label.category = track.attribute("label").value();
+  const double x = xml.attribute(box, "xtl");
+  const double y = xml.attribute(box, "ytl");
+  label.box_px = {x, y, xml.attribute(box, "xbr") - x, xml.attribute(box, "ybr") - y};
+  label.occluded = xml.attribute(box, "occluded") != 0;
+  for (const pugi::xml_node& attribute : box.children("attribute")) {
+    const std::string name = attribute.attribute("name").value();
+    const std::string value = attribute.child_value();
+    if (name == "visible") label.visible = number_in(value);
+    if (name == "range_m") label.range_m = number_in(value);
+    if (value != "true" && value != "false") continue;
+    if (name == "truncated") label.truncated = value == "true";
+    if (name == "above_horizon") label.above_horizon = value == "true";
+  }
+  return label;
+}
+
+// Between two key frames CVAT draws a box between theirs.
+Label between(const Label& from, const Label& to, double share) {
+  Label label = from;
+  const auto mix = [&](double a, double b) { return a + share * (b - a); };
+  label.box_px = {mix(from.box_px.x, to.box_px.x),
+                  mix(from.box_px.y, to.box_px.y),
+                  mix(from.box_px.width, to.box_px.width),
+                  mix(from.box_px.height, to.box_px.height)};
+  return label;
+}
+
+class CvatReader {
+ public:
+  CvatReader(const fs::path& file, LeftOut& left_out)
+      : file_(file), xml_(file), left_out_(left_out) {}
+
+  Clip read() {
+    const pugi::xml_node top = xml_.top("annotations");
+    about(top.child("meta"));
+    for (const pugi::xml_node& track : top.children("track")) add(track);
+    for (std::size_t i = 0; i < clip_.frames.size(); ++i) {
+      clip_.frames[i].frame = static_cast<std::int64_t>(i);
+      auto& labels = clip_.frames[i].labels;
+      std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) {
+        return a.track < b.track;
+      });
+    }
+    return clip_;
+  }
+
+ private:
+  // <task>, or <job> as newer servers write.
+  void about(const pugi::xml_node& meta) {
+    pugi::xml_node task = meta.child("task");
+    if (!task) task = meta.child("job");
+    clip_.name = task.child_value("name");
+    if (clip_.name.empty() || clip_.name.find('/') != std::string::npos)
+      clip_.name = file_.parent_path().filename().string();
+    const double frames = number_in(task.child_value("size")).value_or(0);
+    if (!(frames >= 0 && frames < 1e8)) xml_.fail(task, "has an odd size");
+    clip_.frames.resize(static_cast<std::size_t>(frames));
+    const pugi::xml_node size = task.child("original_size");
+    clip_.width = static_cast<int>(number_in(size.child_value("width")).value_or(0));
+    clip_.height = static_cast<int>(number_in(size.child_value("height")).value_or(0));
+    if (const fs::path images = file_.parent_path() / "images"; !entries(images).empty())
+      clip_.media = images;
+  }
+
+  void add(const pugi::xml_node& track) {
+    std::optional<Label> last;
+    std::size_t last_frame = 0;
+    for (const pugi::xml_node& box : track.children("box")) {
+      const double number = xml_.attribute(box, "frame");
+      if (!(number >= 0 && number < 1e8)) xml_.fail(box, "frame is out of range");
+      const auto frame = static_cast<std::size_t>(number);
+      const Label label = label_of(xml_, track, box);
+      if (last) {
+        const bool gone = xml_.attribute(box, "outside") != 0;
+        for (std::size_t i = last_frame + 1; i < frame; ++i)
+          put(gone ? *last
+                   : between(*last,
+                             label,
+                             static_cast<double>(i - last_frame) /
+                                 static_cast<double>(frame - last_frame)),
+              i);
+      }
+      last.reset();
+      if (xml_.attribute(box, "outside") != 0) continue;
+      put(label, frame);
+      last = label;
+      last_frame = frame;
+    }
+    // The last one stays to the end.
+    if (last)
+      for (std::size_t i = last_frame + 1; i < clip_.frames.size(); ++i) put(*last, i);
+  }
+
+  void put(const Label& label, std::size_t frame) {
+    if (frame >= clip_.frames.size()) clip_.frames.resize(frame + 1);
+    if (is_in_picture(label.box_px, clip_.width, clip_.height))
+      clip_.frames[frame].labels.push_back(label);
+    else
+      left_out_.add("boxes that are empty or outside their image", file_.string());
+  }
+
+  fs::path file_;
+  XmlFile xml_;
+  LeftOut& left_out_;
+  Clip clip_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> cvat_writer(const fs::path& root, const WriteOptions& options) {
+  return std::make_unique<CvatWriter>(root, options);
+}
+
+Clips read_cvat(const fs::path& source, const ReadOptions&, const Warn& warn) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(source)) {
+    files = files_with(source, ".xml");
+    for (const fs::path& folder : entries(source)) {
+      for (const fs::path& file : files_with(folder, ".xml")) files.push_back(file);
+      for (const fs::path& inner : entries(folder))
+        if (fs::exists(inner / "annotations.xml")) files.push_back(inner / "annotations.xml");
+    }
+  } else {
+    files = {source};
+  }
+  if (files.empty()) throw Error("holds no annotations.xml", {source.string()});
+  LeftOut left_out(warn);
+  Clips clips;
+  for (const fs::path& file : files) clips.push_back(CvatReader(file, left_out).read());
+  return clips;
+}
+
+}  // namespace airtruth::exchange

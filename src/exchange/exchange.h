@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/log.h"
+#include "exchange/labels.h"
+
+// The annotation formats that trainers and toolkits read (docs/formats/exchange.md has each one's
+// folders, origins and sources).
+namespace airtruth::exchange {
+
+enum class Format {
+  kCoco,
+  kYolo,
+  kMot,
+  kVoc,
+  kCvat,
+  kAot,
+  kOtb,
+  kGot10k,
+  kVot,
+  kEvision,  // read only, as the next: `render` writes it
+  kCsv,
+};
+
+// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision", "csv"; throws
+// Error with the nearest for anything else.
+Format format_from_name(std::string_view name);
+const char* name(Format format);
+bool can_write(Format format);
+
+// One object a sequence, from the first frame that shows it to the last: OTB, GOT-10k, VOT.
+bool is_single_object(Format format);
+
+// The clips that a format makes of one: itself, or a clip for each of its tracks.
+std::vector<Clip> arranged(Format format, const Clip& clip);
+
+struct WriteOptions {
+  std::vector<std::string> categories;  // every one that the clips use, in the order of the classes
+  std::vector<std::string> parts;       // "train", "val", ...
+  std::string image_extension = ".jpg";
+};
+
+// Writes a set into a folder, clip by clip; memory does not grow with their number.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+  // Where the picture of clip.frames[i] belongs, relative to the folder. `clip` as arranged().
+  virtual fs::path image(const Clip& clip, const std::string& part, std::size_t i) const = 0;
+  virtual void add(const Clip& clip, const std::string& part) = 0;
+  virtual void finish() = 0;
+};
+std::unique_ptr<Writer> make_writer(Format format,
+                                    const fs::path& root,
+                                    const WriteOptions& options);
+
+// LOSS.md: what a format keeps of our truth, and what it has no place for.
+std::string loss(Format format);
+
+struct ReadOptions {
+  std::optional<std::pair<int, int>>
+      size;                           // of the pictures, where neither labels nor pictures say
+  std::string category = "aircraft";  // where the format has none
+};
+
+// Every clip of a set. `source`: the folder that a Writer filled, or one of the same form; for
+// COCO, CVAT and AOT also the annotation file; for E-Vision an XML file or a folder of them; for
+// CSV
+// (`frame,x,y,w,h`) a file or a folder. Frames without an object are there and empty. Throws Error
+// at file and line; warns of what it left out.
+std::vector<Clip> read_clips(Format format,
+                             const fs::path& source,
+                             const ReadOptions& options,
+                             const Warn& warn);
+
+}  // namespace airtruth::exchange

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "geometry/box.h"
+#include "image/picture.h"
+
+// Small pictures for pages.
+namespace airtruth::report {
+
+// The whole picture, at most `width` pixels wide.
+image::Rgb8 small_copy(const image::Picture& picture, int width);
+
+// A square around a box, `side` pixels large, with some of its surroundings. Black where the square
+// sticks out of the picture.
+image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side);
+
+// Pictures of one size, side by side.
+image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
+
+// How far the luma within a box is from that around it, in levels: root mean square difference from
+// the median of a ring as wide as the box's shorter side (at least 4 px).
+double contrast(const image::Picture& picture, const PixelBox& box);
+
+}  // namespace airtruth::report
