@@ -120,8 +120,9 @@ void add_pictures(const sequence::Finished& finished,
     if (!in_loop[i] && i != largest) continue;
     const PixelBox& box = *first_visible(frames[i])->visible_box_px;
     if (i == largest)
-      portrait.preview_jpeg =
-          video::jpeg_of(report::small_copy(frame->picture, kPreviewWidth), kJpegQuality);
+      portrait.preview_jpeg = video::jpeg_of(
+          report::small_copy(report::overlay(frame->picture, frames[i]), kPreviewWidth),
+          kJpegQuality);
     if (!in_loop[i]) continue;
     portrait.contrasts.push_back(report::contrast(frame->picture, box));
     squares.push_back(

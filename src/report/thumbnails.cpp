@@ -20,12 +20,12 @@ constexpr int kSmallestPx = 24;
 
 }  // namespace
 
-image::Rgb8 small_copy(const image::Picture& picture, int width) {
-  image::Rgb8 whole = image::rgb8_from_picture(picture);
-  if (whole.width <= width) return whole;
-  const int height =
-      std::max(1, static_cast<int>(std::lround(double(whole.height) * width / whole.width)));
-  return resized(whole, width, height, cv::INTER_AREA);
+image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
+  const double scale = std::min(1.0, static_cast<double>(width) / picture.width);
+  const auto scaled = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(length * scale)));
+  };
+  return resized(picture, scaled(picture.width), scaled(picture.height), cv::INTER_AREA);
 }
 
 image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side) {

@@ -10,7 +10,7 @@
 namespace airtruth::report {
 
 // The whole picture, at most `width` pixels wide.
-image::Rgb8 small_copy(const image::Picture& picture, int width);
+image::Rgb8 small_copy(const image::Rgb8& picture, int width);
 
 // A square around a box, `side` pixels large, with some of its surroundings. Black where the square
 // sticks out of the picture.
