@@ -8,6 +8,7 @@
 #include "dataset/build.h"
 #include "dataset/slurm.h"
 #include "dataset/verify.h"
+#include "synthetic/flight.h"
 
 namespace airtruth::cli {
 namespace {
@@ -37,7 +38,10 @@ std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string
 
 std::string time_of(double seconds) {
   const auto s = static_cast<std::int64_t>(seconds + 0.5);
-  return s < 60 ? fmt::format("{} s", s) : fmt::format("{}:{:02} min", s / 60, s % 60);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 2 * 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return s < 4 * 86400 ? fmt::format("{} hours", (s + 1800) / 3600)
+                       : fmt::format("{} days", (s + 43200) / 86400);
 }
 
 void build(Arguments arguments, Context& context) {
@@ -64,20 +68,36 @@ void build(Arguments arguments, Context& context) {
   if (!summary.failures.empty()) context.exit_code = 1;
 }
 
+// What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
+constexpr double kCoreSecondsPerFrame = 0.034;
+constexpr double kCoreSecondsPerFlownFrame = 0.16;
+constexpr double kBytesPerFrame = 15'000;
+constexpr double kBytesPerSequence = 580'000;  // preview.jpg
+
 // Frames and bytes in round numbers: what a sequence costs is known only once it is made.
 void plan(const Arguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   const dataset::Expansion expansion(catalogue);
   constexpr std::int64_t kMostListed = 50;
-  constexpr double kFramesPerCoreSecond = 26;  // 1280x960 (docs/performance.md)
-  constexpr double kMegabytesPerFrame = 0.03;  // H.264 at quality 18
+  std::vector<double> size_of;  // of each background's frame, in frames of 1280x960
+  double core_s = 0;
+  for (const dataset::Background& background : catalogue.backgrounds) {
+    const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+    size_of.push_back(flight != nullptr ? flight->width * flight->height / (1280.0 * 960.0) : 1);
+    if (flight != nullptr)
+      core_s += flight->frame_count * size_of.back() * kCoreSecondsPerFlownFrame;
+  }
   std::int64_t frames = 0;
   std::int64_t open_ended = 0;
+  double bytes = 0;
   Console& console = context.console();
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     if (context.stop.stop_requested()) throw Interrupted();
     const dataset::Item item = expansion.at(i);
+    const double size = static_cast<double>(item.frame_count) * size_of[item.background];
     frames += item.frame_count;
+    core_s += size * kCoreSecondsPerFrame;
+    bytes += size * kBytesPerFrame + kBytesPerSequence * size_of[item.background];
     open_ended += item.frame_count == 0 ? 1 : 0;
     if (i >= kMostListed) continue;
     console.result(fmt::format("{:<28} {:>6}  {:<12} {}",
@@ -89,12 +109,13 @@ void plan(const Arguments& arguments, Context& context) {
   if (expansion.size() > kMostListed)
     console.result(fmt::format("... and {} more", expansion.size() - kMostListed));
   console.result(
-      fmt::format("{} sequences, {} frames{}: about {} on one core, {:.1f} GB",
+      fmt::format("{} sequences, {} frames{}: about {} of one core, {}",
                   expansion.size(),
                   frames,
                   open_ended > 0 ? fmt::format(" and {} videos to their end", open_ended) : "",
-                  time_of(static_cast<double>(frames) / kFramesPerCoreSecond),
-                  static_cast<double>(frames) * kMegabytesPerFrame / 1000));
+                  time_of(core_s),
+                  bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9)
+                               : fmt::format("{:.1f} TB", bytes / 1e12)));
 }
 
 void status(const Arguments& arguments, Context& context) {
@@ -137,13 +158,16 @@ void verify(const Arguments& arguments, Context& context) {
   if (arguments.deep) options.deep_every = arguments.deep_every;
   const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);
-  console.result(
-      fmt::format("{}: {} sequences, {} frames{}, {} faults",
-                  arguments.folder,
-                  result.sequences,
-                  result.frames,
-                  arguments.deep ? fmt::format(", {} drawn anew", result.recomposed) : "",
-                  result.faults.size()));
+  console.result(fmt::format(
+      "{}: {} sequences, {} frames, an intruder in view by geometry {} times ({} without "
+      "a box){}, {} faults",
+      arguments.folder,
+      result.sequences,
+      result.frames,
+      result.in_view,
+      result.in_view_without_box,
+      arguments.deep ? fmt::format(", {} drawn anew", result.recomposed) : "",
+      result.faults.size()));
   if (!result.faults.empty()) context.exit_code = 1;
 }
 

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "image/colour.h"
 #include "video/reader.h"
 #include "video/still.h"
 
@@ -181,10 +180,9 @@ class Export {
       const auto found = wanted.find(frame->index);
       if (found == wanted.end()) continue;
       --left;
-      const image::Rgb8 picture = image::rgb8_from_picture(frame->picture);
       for (const fs::path& file : found->second) {
         fs::create_directories(file.parent_path());
-        video::write_still(file, picture, Flush::kLater);
+        video::write_still(file, frame->picture, Flush::kLater);
         ++written;
       }
     }

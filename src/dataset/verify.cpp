@@ -34,6 +34,17 @@ bool is_at_work(const Folder& folder) {
   }
 }
 
+lens::Lens lens_from(const annotation::LensFacts& facts) {
+  const Pixel focal(facts.focal_px[0], facts.focal_px[1]);
+  const Pixel principal(facts.principal_point_px[0], facts.principal_point_px[1]);
+  const lens::ImageSize size{facts.width, facts.height};
+  if (facts.model == "fisheye")
+    return lens::Lens(lens::Fisheye{focal, principal, facts.distortion}, size);
+  if (facts.model == "brown_conrady")
+    return lens::Lens(lens::BrownConrady{focal, principal, facts.distortion}, size);
+  return lens::Lens(lens::Pinhole{focal, principal}, size);
+}
+
 // Sequences of one data set, looked into one by one.
 class Check {
  public:
@@ -85,9 +96,12 @@ class Check {
     if (frames != finished.truth.frames.size())
       fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
             std::to_string(finished.truth.frames.size()));
+    const lens::Lens lens = lens_from(finished.truth.lens);
     for (const annotation::Frame& frame : finished.truth.frames)
-      for (const annotation::Intruder& intruder : frame.intruders)
+      for (const annotation::Intruder& intruder : frame.intruders) {
         box(frame, intruder, width, height);
+        view(frame, intruder, lens);
+      }
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
 
@@ -95,6 +109,24 @@ class Check {
     const auto recomposed = sequence::recompose(finished, options_.deep_every, options_.stop);
     result_.recomposed += recomposed.compared;
     for (const std::string& what : recomposed.faults) fault(what);
+  }
+
+  void view(const annotation::Frame& frame,
+            const annotation::Intruder& intruder,
+            const lens::Lens& lens) {
+    if (!intruder.position_in_cam_m) return;
+    const auto nominal = lens.pixel_from_cam(*intruder.position_in_cam_m);
+    if (!nominal) return;
+    const Vector3 h = frame.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
+    const Pixel pixel = h.head<2>() / h.z();
+    const bool inside = h.z() > 0 && pixel.x() >= 0 && pixel.y() >= 0 &&
+                        pixel.x() < lens.size().width && pixel.y() < lens.size().height;
+    if (!inside) return;
+    ++result_.in_view;
+    if (intruder.visible_box_px || intruder.state == annotation::State::kHidden) return;
+    ++result_.in_view_without_box;
+    fault("frame " + std::to_string(frame.frame) + ", " + intruder.id +
+          ": in view by its position, and without a box");
   }
 
   void box(const annotation::Frame& frame,

@@ -36,6 +36,11 @@ struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
   std::int64_t recomposed = 0;  // frames that were drawn anew
+  // By geometry alone (its position through the stated lens and motion, no pixel looked at): how
+  // often an intruder's reference point lies in the picture, and how often no box says so although
+  // nothing hides it. The second is a fault.
+  std::int64_t in_view = 0;
+  std::int64_t in_view_without_box = 0;
   std::vector<std::string> faults;
 };
 VerifyResult verify(const fs::path& root, const VerifyOptions& options);

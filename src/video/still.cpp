@@ -48,21 +48,83 @@ FramePtr frame_of(const image::Rgb8& rgb, AVPixelFormat format) {
   return frame;
 }
 
-std::string encoded(const image::Rgb8& rgb, bool jpeg, int quality, const fs::path& path) {
+struct FreeScaler {
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+};
+
+AVPixelFormat planar_format(const image::Colour& colour) {
+  if (colour.matrix == image::Matrix::kRgb) return AV_PIX_FMT_GBRP;
+  switch (colour.chroma) {
+    case image::Chroma::kNone:
+      return AV_PIX_FMT_GRAY8;
+    case image::Chroma::k422:
+      return AV_PIX_FMT_YUV422P;
+    case image::Chroma::k440:
+      return AV_PIX_FMT_YUV440P;
+    case image::Chroma::k444:
+      return AV_PIX_FMT_YUV444P;
+    default:
+      return AV_PIX_FMT_YUV420P;
+  }
+}
+
+int sws_matrix(image::Matrix matrix) {
+  if (matrix == image::Matrix::kBt709) return SWS_CS_ITU709;
+  return matrix == image::Matrix::kBt2020 ? SWS_CS_BT2020 : SWS_CS_ITU601;
+}
+
+// As JPEG has it: BT.601, full range. Halved chroma stays halved, with no way through RGB.
+FramePtr jpeg_frame(const image::Picture& picture) {
   keep_libav_quiet();
+  const AVPixelFormat from = planar_format(picture.colour);
+  const AVPixelFormat to = from == AV_PIX_FMT_YUV420P ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUVJ444P;
+  const int w = picture.width;
+  const int h = picture.height;
+  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_getContext(
+      w, h, from, w, h, to, SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
+  if (!scaler) throw std::bad_alloc();
+  const bool is_full = picture.colour.range == image::Range::kFull || from == AV_PIX_FMT_GBRP;
+  sws_setColorspaceDetails(scaler.get(),
+                           sws_getCoefficients(sws_matrix(picture.colour.matrix)),
+                           is_full ? 1 : 0,
+                           sws_getCoefficients(SWS_CS_ITU601),
+                           1,
+                           0,
+                           1 << 16,
+                           1 << 16);
+  FramePtr frame(av_frame_alloc());
+  frame->format = to;
+  frame->width = w;
+  frame->height = h;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  const std::uint8_t* data[4] = {};
+  int strides[4] = {};
+  for (int i = 0; i < picture.plane_count; ++i) {
+    data[i] = picture.planes[static_cast<std::size_t>(i)].row(0);
+    strides[i] = picture.planes[static_cast<std::size_t>(i)].stride;
+  }
+  sws_scale(scaler.get(), data, strides, 0, h, frame->data, frame->linesize);
+  frame->color_range = AVCOL_RANGE_JPEG;
+  return frame;
+}
+
+std::string encoded(const FramePtr& frame, int quality, const fs::path& path) {
+  keep_libav_quiet();
+  const auto format = static_cast<AVPixelFormat>(frame->format);
+  const bool jpeg = format != AV_PIX_FMT_RGB24;
   const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
   const CodecPtr codec(avcodec_alloc_context3(encoder));
-  codec->width = rgb.width;
-  codec->height = rgb.height;
-  codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_RGB24;
+  codec->width = frame->width;
+  codec->height = frame->height;
+  codec->pix_fmt = format;
   codec->time_base = {1, 1};
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   codec->color_range = AVCOL_RANGE_JPEG;
+  codec->thread_count = 1;
   if (jpeg) {
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = FF_QP2LAMBDA * quality;
   }
-  const FramePtr frame = frame_of(rgb, codec->pix_fmt);
   frame->quality = codec->global_quality;
   frame->pts = 0;
   const PacketPtr packet(av_packet_alloc());
@@ -71,6 +133,16 @@ std::string encoded(const image::Rgb8& rgb, bool jpeg, int quality, const fs::pa
   if (result >= 0) result = avcodec_receive_packet(codec.get(), packet.get());
   if (result < 0) throw Error("cannot encode the picture: " + reason(result), {path.string()});
   return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
+}
+
+constexpr int kQuality = 3;
+
+bool is_jpeg(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  const bool jpeg = extension == ".jpg" || extension == ".jpeg";
+  if (!jpeg && extension != ".png")
+    throw Error("has an unknown ending; expected .png or .jpg", {path.string()});
+  return jpeg;
 }
 
 }  // namespace
@@ -84,14 +156,18 @@ image::Rgb8 read_still(const fs::path& path) {
   return image::rgb8_from_picture(frame->picture);
 }
 
-std::string jpeg_of(const image::Rgb8& rgb, int quality) { return encoded(rgb, true, quality, {}); }
+std::string jpeg_of(const image::Rgb8& rgb, int quality) {
+  return encoded(frame_of(rgb, AV_PIX_FMT_YUVJ444P), quality, {});
+}
 
 void write_still(const fs::path& path, const image::Rgb8& rgb, Flush flush) {
-  const std::string extension = lower_extension(path);
-  const bool jpeg = extension == ".jpg" || extension == ".jpeg";
-  if (!jpeg && extension != ".png")
-    throw Error("has an unknown ending; expected .png or .jpg", {path.string()});
-  write_file(path, encoded(rgb, jpeg, 3, path), flush);
+  const AVPixelFormat format = is_jpeg(path) ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_RGB24;
+  write_file(path, encoded(frame_of(rgb, format), kQuality, path), flush);
+}
+
+void write_still(const fs::path& path, const image::Picture& picture, Flush flush) {
+  if (!is_jpeg(path)) return write_still(path, image::rgb8_from_picture(picture), flush);
+  write_file(path, encoded(jpeg_frame(picture), kQuality, path), flush);
 }
 
 image::Mask read_mask(const fs::path& path, int width, int height) {

@@ -19,6 +19,11 @@ void write_still(const std::filesystem::path& path,
                  const image::Rgb8& rgb,
                  Flush flush = Flush::kNow);
 
+// The same of a decoded picture; a .jpg keeps its halved chroma.
+void write_still(const std::filesystem::path& path,
+                 const image::Picture& picture,
+                 Flush flush = Flush::kNow);
+
 // The bytes of such a .jpg; quality from 1 (best) to 31.
 std::string jpeg_of(const image::Rgb8& rgb, int quality = 3);
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/seed.h"
+#include "image/colour.h"
 #include "video/libav.h"
 #include "video/reader.h"
 #include "video/still.h"
@@ -296,6 +297,33 @@ TEST_F(Video, SameFramesGiveTheSameFile) {
     }
     EXPECT_EQ(sums[0], sums[1]) << extension(format);
   }
+}
+
+// A .jpg of a decoded picture shows the colours that the picture has, however they are coded.
+TEST_F(Video, JpegsOfPicturesKeepTheirColours) {
+  image::Rgb8 rgb = image::make_rgb8(96, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      rgb.at(x, y)[0] = static_cast<std::uint8_t>(40 + 2 * x);
+      rgb.at(x, y)[1] = static_cast<std::uint8_t>(30 + 3 * y);
+      rgb.at(x, y)[2] = static_cast<std::uint8_t>(220 - x - y);
+    }
+  using image::Chroma;
+  using image::Matrix;
+  for (const Chroma chroma : {Chroma::k420, Chroma::k422, Chroma::k444})
+    for (const Matrix matrix : {Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020, Matrix::kRgb})
+      for (const image::Range range : {image::Range::kLimited, image::Range::kFull}) {
+        if (matrix == Matrix::kRgb && (chroma != Chroma::k444 || range == image::Range::kLimited))
+          continue;
+        const image::Picture picture =
+            image::picture_from_rgb8(rgb, {chroma, matrix, range, image::Siting::kCenter});
+        write_still(folder_ / "c.jpg", picture);
+        const image::Rgb8 back = read_still(folder_ / "c.jpg");
+        double sum = 0;
+        for (int i = 0; i < 3 * 96 * 64; ++i) sum += std::abs(back.at(0, 0)[i] - rgb.at(0, 0)[i]);
+        EXPECT_LT(sum / (3 * 96 * 64), 2.0)
+            << int(chroma) << ' ' << int(matrix) << ' ' << int(range);
+      }
 }
 
 TEST_F(Video, StillsAndMasks) {
