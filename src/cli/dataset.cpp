@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "cli/commands.h"
 #include "dataset/build.h"
+#include "dataset/check.h"
 #include "dataset/slurm.h"
 #include "dataset/verify.h"
 #include "synthetic/flight.h"
@@ -77,6 +78,7 @@ constexpr double kBytesPerSequence = 580'000;  // preview.jpg
 // Frames and bytes in round numbers: what a sequence costs is known only once it is made.
 void plan(const Arguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  dataset::check_sources(catalogue, {});
   const dataset::Expansion expansion(catalogue);
   constexpr std::int64_t kMostListed = 50;
   std::vector<double> size_of;  // of each background's frame, in frames of 1280x960
@@ -114,8 +116,9 @@ void plan(const Arguments& arguments, Context& context) {
                   frames,
                   open_ended > 0 ? fmt::format(" and {} videos to their end", open_ended) : "",
                   time_of(core_s),
-                  bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9)
-                               : fmt::format("{:.1f} TB", bytes / 1e12)));
+                  bytes < 1e9    ? fmt::format("{:.0f} MB", bytes / 1e6)
+                  : bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9)
+                                 : fmt::format("{:.1f} TB", bytes / 1e12)));
 }
 
 void status(const Arguments& arguments, Context& context) {

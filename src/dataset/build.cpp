@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "dataset/backgrounds.h"
+#include "dataset/check.h"
 #include "dataset/folder.h"
 #include "dataset/manifest.h"
 #include "sequence/sequence.h"
@@ -168,6 +169,7 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
     if (!known)
       throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
   }
+  check_sources(catalogue, options.videos);
   const Folder folder = open_folder(catalogue, out);
   const FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();

@@ -194,6 +194,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
 Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
   Listed listed;
   listed.name = required_name(table);
+  listed.where = table.where("name");
   listed.background = place_of(catalogue.backgrounds,
                                required(table, "background"),
                                "background",
@@ -232,7 +233,7 @@ void refuse_same_names(const Catalogue& catalogue) {
   for (const Rule& rule : catalogue.rules)
     if (const auto* listed = std::get_if<Listed>(&rule);
         listed != nullptr && !seen.insert(listed->name).second)
-      throw Error("two sequences are named '" + listed->name + "'", {catalogue.file.string()});
+      throw Error("two sequences are named '" + listed->name + "'", listed->where);
 }
 
 }  // namespace
@@ -271,7 +272,8 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
            {"name", "video", "flight", "mask", "first_frame", "lens", "camera", "motion", "light"}))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
-    catalogue.aircraft.push_back({required_name(table), required(table, "aircraft")});
+    catalogue.aircraft.push_back(
+        {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
   for (const TableReader& table : root.tables(
            "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
     catalogue.trajectories.push_back(trajectory_from(table));

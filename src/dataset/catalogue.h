@@ -36,6 +36,7 @@ struct Background {
 struct Aircraft {
   std::string name;      // in this catalogue
   std::string aircraft;  // of `airtruth aircraft list`, or a model file
+  Where where;
 };
 
 struct Trajectory {
@@ -50,6 +51,7 @@ struct Trajectory {
 // One of the above each, by its place in the catalogue.
 struct Listed {
   std::string name;
+  Where where;
   std::size_t background = 0;
   std::size_t trajectory = 0;
   std::size_t aircraft = 0;

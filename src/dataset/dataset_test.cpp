@@ -187,13 +187,36 @@ TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
   EXPECT_TRUE(verify(root_ / "two", {}).faults.empty());
 }
 
+TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
+  const auto error = [&](const std::string& text) -> std::string {
+    try {
+      build(parse_catalogue(text, "c.toml"), root_ / "never", {});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  const std::string text = kCatalogue;
+  EXPECT_THAT(error(text + "[[aircraft]]\nname = \"none\"\naircraft = \"738/738-Ryanaair\"\n"),
+              testing::MatchesRegex(
+                  "c.toml:[0-9]+:12: unknown aircraft '738/738-Ryanaair'.*738-Ryanair.*"));
+  EXPECT_THAT(error(text + "[[background]]\nname = \"gone\"\nvideo = \"nowhere.mp4\"\nlens = { "
+                           "vertical_fov_deg = 60 }\n"),
+              HasSubstr("the video of background 'gone', nowhere.mp4, does not exist"));
+  EXPECT_THAT(error(text + "[[sequence]]\nname = \"sky-across-b737\"\nbackground = "
+                           "\"sky\"\ntrajectory = \"across\"\naircraft = \"b737\"\n"),
+              HasSubstr("two sequences are named 'sky-across-b737'"));
+  EXPECT_FALSE(fs::exists(root_ / "never"));
+}
+
 TEST_F(Build, OneBadSequenceDoesNotStopTheOthers) {
   std::string text = kCatalogue;
-  text += "[[aircraft]]\nname = \"none\"\naircraft = \"738/nosuch\"\n";
+  write_file(root_ / "broken.ac", "this is no model");
+  text += "[[aircraft]]\nname = \"none\"\naircraft = \"" + (root_ / "broken.ac").string() + "\"\n";
   const BuildSummary summary = build(parse_catalogue(text, "c.toml"), root_ / "bad", {});
   EXPECT_EQ(summary.made, 4);
   ASSERT_EQ(summary.failures.size(), 2u);
-  EXPECT_THAT(summary.failures[0].reason, HasSubstr("738/nosuch"));
+  EXPECT_THAT(summary.failures[0].reason, HasSubstr("broken.ac"));
   EXPECT_FALSE(summary.complete);
   EXPECT_TRUE(fs::exists(root_ / "bad" / "failed.jsonl"));
 }

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "dataset/check.h"
 #include "dataset/expand.h"
 
 namespace airtruth::dataset {
@@ -92,6 +93,7 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   };
   if (std::any_of(options.partition.begin(), options.partition.end(), odd))
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
+  check_sources(catalogue, options.videos);
   open_folder(catalogue, root);
   const std::int64_t sequences = Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0

@@ -107,14 +107,15 @@ class FlightReader {
     const JsonObject about = flight_.object("metadata");
     clip_.frame_rate_hz = about.maybe_number("fps");
     if (about.has("resolution")) {
-      clip_.width = static_cast<int>(about.object("resolution").whole("width"));
-      clip_.height = static_cast<int>(about.object("resolution").whole("height"));
+      clip_.width = side_of(about.object("resolution").number("width"));
+      clip_.height = side_of(about.object("resolution").number("height"));
     }
     const fs::path pictures = file_.parent_path().parent_path() / "Images" / clip_.name;
     if (!entries(pictures).empty()) clip_.media = pictures;
-    const auto frames = about.maybe_number("number_of_frames").value_or(0);
-    if (!(frames >= 0 && frames < 1e8)) about.fail("number_of_frames is odd");
-    clip_.frames.resize(static_cast<std::size_t>(frames));
+    const auto frames =
+        whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMostFrames);
+    if (!frames) about.fail("number_of_frames is no number of frames");
+    clip_.frames.resize(static_cast<std::size_t>(*frames));
     for (const JsonObject& entity : flight_.objects("entities")) add(entity);
     for (std::size_t i = 0; i < clip_.frames.size(); ++i)
       clip_.frames[i].frame = static_cast<std::int64_t>(i);
@@ -125,7 +126,7 @@ class FlightReader {
   void add(const JsonObject& entity) {
     const JsonObject blob = entity.object("blob");
     const std::int64_t number = blob.whole("frame");
-    if (number < 0 || number >= 100'000'000) blob.fail("frame is out of range");
+    if (number < 0 || number > kMostFrames) blob.fail("frame is out of range");
     const auto i = static_cast<std::size_t>(number);
     if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
     LabelledFrame& frame = clip_.frames[i];

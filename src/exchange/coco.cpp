@@ -188,8 +188,8 @@ class CocoReader {
       const std::int64_t id = image.whole("id");
       Picture picture;
       picture.file_name = image.text("file_name");
-      picture.width = static_cast<int>(image.whole("width"));
-      picture.height = static_cast<int>(image.whole("height"));
+      picture.width = side_of(image.number("width"));
+      picture.height = side_of(image.number("height"));
       picture.labels.time_s = image.maybe_number("time_s");
       Video& video = video_of(image, picture.file_name);
       picture.frame = image.has("frame_id") ? image.whole("frame_id")

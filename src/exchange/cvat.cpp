@@ -129,7 +129,9 @@ class CvatWriter : public Writer {
 
 Label label_of(const XmlFile& xml, const pugi::xml_node& track, const pugi::xml_node& box) {
   Label label;
-  label.track = static_cast<std::int64_t>(xml.attribute(track, "id")) + 1;
+  const auto id = whole_in(xml.attribute(track, "id"), 0, 1'000'000'000);
+  if (!id) xml.fail(track, "has an id that is no whole number");
+  label.track = *id + 1;
   label.category = track.attribute("label").value();
   const double x = xml.attribute(box, "xtl");
   const double y = xml.attribute(box, "ytl");
@@ -185,12 +187,12 @@ class CvatReader {
     clip_.name = task.child_value("name");
     if (clip_.name.empty() || clip_.name.find('/') != std::string::npos)
       clip_.name = file_.parent_path().filename().string();
-    const double frames = number_in(task.child_value("size")).value_or(0);
-    if (!(frames >= 0 && frames < 1e8)) xml_.fail(task, "has an odd size");
-    clip_.frames.resize(static_cast<std::size_t>(frames));
+    const auto frames = whole_in(number_in(task.child_value("size")).value_or(0), 0, kMostFrames);
+    if (!frames) xml_.fail(task, "has a size that is no number of frames");
+    clip_.frames.resize(static_cast<std::size_t>(*frames));
     const pugi::xml_node size = task.child("original_size");
-    clip_.width = static_cast<int>(number_in(size.child_value("width")).value_or(0));
-    clip_.height = static_cast<int>(number_in(size.child_value("height")).value_or(0));
+    clip_.width = side_of(number_in(size.child_value("width")));
+    clip_.height = side_of(number_in(size.child_value("height")));
     if (const fs::path images = file_.parent_path() / "images"; !entries(images).empty())
       clip_.media = images;
   }
@@ -199,9 +201,9 @@ class CvatReader {
     std::optional<Label> last;
     std::size_t last_frame = 0;
     for (const pugi::xml_node& box : track.children("box")) {
-      const double number = xml_.attribute(box, "frame");
-      if (!(number >= 0 && number < 1e8)) xml_.fail(box, "frame is out of range");
-      const auto frame = static_cast<std::size_t>(number);
+      const auto number = whole_in(xml_.attribute(box, "frame"), 0, kMostFrames);
+      if (!number) xml_.fail(box, "has a frame that is no whole number from 0 on");
+      const auto frame = static_cast<std::size_t>(*number);
       const Label label = label_of(xml_, track, box);
       if (last) {
         const bool gone = xml_.attribute(box, "outside") != 0;

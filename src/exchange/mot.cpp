@@ -77,6 +77,8 @@ class MotWriter : public Writer {
   std::map<std::string, std::string> maps_;
 };
 
+constexpr std::int64_t kMostTracks = 1'000'000'000;
+
 Clip read_clip(const fs::path& folder,
                const std::vector<std::string>& categories,
                const ReadOptions& options,
@@ -88,27 +90,29 @@ Clip read_clip(const fs::path& folder,
     const auto about = settings_of(folder / "seqinfo.ini");
     if (const auto named = about.find("name"); named != about.end()) clip.name = named->second;
     clip.frame_rate_hz = number_in(about, "frameRate");
-    clip.width = static_cast<int>(number_in(about, "imWidth").value_or(0));
-    clip.height = static_cast<int>(number_in(about, "imHeight").value_or(0));
+    clip.width = side_of(number_in(about, "imWidth"));
+    clip.height = side_of(number_in(about, "imHeight"));
     length = number_in(about, "seqLength").value_or(0);
   }
   if (!entries(folder / "img1").empty()) clip.media = folder / "img1";
-  if (!(length >= 0 && length < 1e8))
-    throw Error("seqLength is odd", {(folder / "seqinfo.ini").string()});
-  clip.frames.resize(static_cast<std::size_t>(length));
+  const auto frames = whole_in(length, 0, kMostFrames);
+  if (!frames) throw Error("seqLength is no number of frames", {(folder / "seqinfo.ini").string()});
+  clip.frames.resize(static_cast<std::size_t>(*frames));
   const fs::path file = folder / "gt" / "gt.txt";
   for (const Line& line : lines_of(file)) {
     const std::vector<double> n = numbers_of(line, file);
     const Where where{file.string(), line.number};
     if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
-    if (!(n[0] >= 1 && n[0] < 1e8) || n[0] != std::floor(n[0]))
-      throw Error("the frame is no whole number from 1 on", where);
+    const auto frame = whole_in(n[0], 1, kMostFrames);
+    if (!frame) throw Error("the frame is no whole number from 1 on", where);
+    const auto track = whole_in(n[1], -1, kMostTracks);
+    if (!track) throw Error("the id is no whole number", where);
     if (n.size() > 6 && n[6] == 0) {
       left_out.add("lines that are not to be considered (conf 0)", to_string(where));
       continue;
     }
     Label label;
-    label.track = static_cast<std::int64_t>(n[1]);
+    label.track = *track;
     label.box_px = {n[2] - 1, n[3] - 1, n[4], n[5]};
     const double category = n.size() > 7 ? n[7] : 0;
     label.category = category >= 1 && category <= static_cast<double>(categories.size())
@@ -121,7 +125,7 @@ Clip read_clip(const fs::path& folder,
       left_out.add("boxes that are empty or outside their image", to_string(where));
       continue;
     }
-    const auto i = static_cast<std::size_t>(n[0]) - 1;
+    const auto i = static_cast<std::size_t>(*frame) - 1;
     if (i >= clip.frames.size()) clip.frames.resize(i + 1);
     clip.frames[i].labels.push_back(label);
   }

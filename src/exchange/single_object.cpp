@@ -179,8 +179,8 @@ class SequenceReader {
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
       clip_.frame_rate_hz = number_in(settings, "fps");
-      clip_.width = static_cast<int>(number_in(settings, "width").value_or(clip_.width));
-      clip_.height = static_cast<int>(number_in(settings, "height").value_or(clip_.height));
+      clip_.width = side_of(number_in(settings, "width").value_or(clip_.width));
+      clip_.height = side_of(number_in(settings, "height").value_or(clip_.height));
       if (const auto found = settings.find("category"); found != settings.end())
         category_ = found->second;
     }
@@ -193,14 +193,15 @@ class SequenceReader {
       category_ = kind;
     std::string rate = got10k_value(file, "anno_fps");
     if (rate.ends_with("Hz")) rate.resize(rate.size() - 2);
-    if (!rate.empty()) clip_.frame_rate_hz = numbers_of({0, rate}, file).at(0);
+    const std::vector<double> rates = numbers_of({0, rate}, file);
+    if (rates.size() == 1 && rates[0] > 0) clip_.frame_rate_hz = rates[0];
     std::string size = got10k_value(file, "resolution");
     std::replace_if(
         size.begin(), size.end(), [](char c) { return c == '(' || c == ')'; }, ' ');
     const std::vector<double> numbers = numbers_of({0, size}, file);
     if (numbers.size() == 2) {
-      clip_.width = static_cast<int>(numbers[0]);
-      clip_.height = static_cast<int>(numbers[1]);
+      clip_.width = side_of(numbers[0]);
+      clip_.height = side_of(numbers[1]);
     }
   }
 

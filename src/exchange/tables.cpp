@@ -47,6 +47,8 @@ Clips read_evision(const fs::path& source, const ReadOptions& options) {
       const auto& frame = evision.frames[i];
       const auto number =
           static_cast<std::int64_t>(frame ? frame->number - 1 : static_cast<int>(i));
+      if (number > kMostFrames)
+        throw Error("frame_" + std::to_string(number + 1) + " is beyond any clip", {file.string()});
       // Numbers that the file passes over are frames without a word on them.
       while (std::ssize(clip.frames) < number)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
@@ -82,12 +84,11 @@ Clips read_csv(const fs::path& source, const ReadOptions& options) {
       const std::vector<double> n = numbers_of(line, file);
       if (n.size() < 5)
         throw Error(fmt::format("has {} columns; expected frame,x,y,w,h", n.size()), where);
-      if (!(n[0] >= 0 && n[0] < 1e8) || n[0] != std::floor(n[0]))
-        throw Error("the frame is no whole number from 0 on", where);
-      const auto i = static_cast<std::int64_t>(n[0]);
-      while (std::ssize(clip.frames) <= i)
+      const auto i = whole_in(n[0], 0, kMostFrames);
+      if (!i) throw Error("the frame is no whole number from 0 on", where);
+      while (std::ssize(clip.frames) <= *i)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
-      LabelledFrame& frame = clip.frames[static_cast<std::size_t>(i)];
+      LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
       const Box box{n[1], n[2], n[3], n[4]};
       if (!is_in_picture(box, clip.width, clip.height)) continue;  // "0,0,0,0" and "nan": nothing
       Label label;

@@ -86,6 +86,16 @@ std::optional<double> number_in(const std::map<std::string, std::string>& settin
   return found == settings.end() ? std::nullopt : number_from(found->second);
 }
 
+std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high) {
+  const bool inside = value >= static_cast<double>(low) && value <= static_cast<double>(high);
+  if (!inside || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::int64_t>(value);
+}
+
+int side_of(const std::optional<double>& value) {
+  return static_cast<int>(value ? whole_in(*value, 1, 1'000'000).value_or(0) : 0);
+}
+
 std::string padded(std::int64_t number, int digits) {
   return fmt::format("{:0{}}", number, digits);
 }

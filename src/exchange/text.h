@@ -32,6 +32,14 @@ std::map<std::string, std::string> settings_of(const fs::path& file);
 std::optional<double> number_in(const std::map<std::string, std::string>& settings,
                                 const std::string& key);
 
+// A clip longer than this (18 hours at 30 frames/s) is a slip of the pen.
+constexpr std::int64_t kMostFrames = 2'000'000;
+
+// The number, where it is whole and within [low, high].
+std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);
+// A picture's side: 0 (unknown) where the number is none.
+int side_of(const std::optional<double>& value);
+
 // Whole numbers with zeros in front.
 std::string padded(std::int64_t number, int digits);
 

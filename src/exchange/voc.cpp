@@ -94,8 +94,8 @@ void read_picture(const fs::path& file, Clip& clip, LeftOut& left_out) {
   const XmlFile xml(file);
   const pugi::xml_node top = xml.top("annotation");
   const pugi::xml_node size = xml.child(top, "size");
-  clip.width = static_cast<int>(xml.number(size, "width"));
-  clip.height = static_cast<int>(xml.number(size, "height"));
+  clip.width = side_of(xml.number(size, "width"));
+  clip.height = side_of(xml.number(size, "height"));
   const auto [name, number] = name_and_number(file.stem().string());
   LabelledFrame frame;
   frame.frame = number.value_or(static_cast<std::int64_t>(clip.frames.size()));

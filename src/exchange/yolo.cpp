@@ -171,9 +171,9 @@ class YoloReader {
            const std::pair<int, int>& size,
            LabelledFrame& frame) {
     const std::vector<double> n = numbers_of(line, file);
-    if (n.size() < 5 || n[0] != static_cast<double>(static_cast<int>(n[0])) || n[0] < 0)
-      throw Error("is no 'class x y width height'", {file.string(), line.number});
-    const auto category = static_cast<std::size_t>(n[0]);
+    const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
+    if (!whole) throw Error("is no 'class x y width height'", {file.string(), line.number});
+    const auto category = static_cast<std::size_t>(*whole);
     Label label;
     label.track = static_cast<std::int64_t>(frame.labels.size()) + 1;
     label.category = category < names_.size() ? names_[category] : std::to_string(category);

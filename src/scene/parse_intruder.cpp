@@ -8,20 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "scene/tables.h"
+
 namespace airtruth::scene {
 namespace {
-
-// A catalogue name stays as it is; the path of a model file is taken from the folder of the scene
-// file.
-std::string aircraft_of(const TableReader& table) {
-  const auto name = table.text("aircraft");
-  if (!name)
-    throw Error(
-        "[[intruder]] has no aircraft; expected a name (see `airtruth aircraft list`) or a model "
-        "file",
-        table.where());
-  return names_model_file(*name) ? table.path("aircraft")->string() : *name;
-}
 
 void read_axes(const TableReader& table, Intruder& intruder) {
   const TableReader::Keys axes = {"x", "-x", "y", "-y", "z", "-z"};
@@ -93,7 +83,7 @@ Intruder intruder_from(const TableReader& table) {
   Intruder intruder;
   intruder.where = table.where();
   intruder.id = table.file_name("id").value_or("");
-  intruder.aircraft = aircraft_of(table);
+  intruder.aircraft = aircraft_in(table);
   read_axes(table, intruder);
   read_path(table, intruder);
   intruder.yaw_deg = table.number("yaw_deg", kTurn);
@@ -143,6 +133,14 @@ std::vector<Intruder> intruders_from(const TableReader& root) {
   if (result.empty())
     throw Error("has no [[intruder]]; expected at least one", {root.where().file});
   return result;
+}
+
+std::string aircraft_in(const TableReader& table) {
+  const auto name = table.text("aircraft");
+  if (!name)
+    throw Error("has no aircraft; expected a name (see `airtruth aircraft list`) or a model file",
+                table.where());
+  return names_model_file(*name) ? table.path("aircraft")->string() : *name;
 }
 
 }  // namespace airtruth::scene

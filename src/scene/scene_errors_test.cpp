@@ -212,7 +212,7 @@ TEST(SceneErrors, Intruders) {
   EXPECT_EQ(message_of(Parts{.intruder = ""}.text()),
             "s.toml: has no [[intruder]]; expected at least one");
   EXPECT_EQ(message_of(Parts{.intruder = "[[intruder]]\n" + kPath}.text()),
-            "s.toml:6:1: [[intruder]] has no aircraft; expected a name (see `airtruth aircraft "
+            "s.toml:6:1: has no aircraft; expected a name (see `airtruth aircraft "
             "list`) or a model file");
   const std::string one = "[[intruder]]\nid = 'a'\naircraft = 'x/y'\nspeed_mps = 1\n" + kPath;
   EXPECT_EQ(message_of(Parts{.intruder = one + one}.text()),

@@ -25,4 +25,8 @@ Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);
 Composite composite_in(const TableReader& parent);
 
+// The key `aircraft` of a table: a name of the aircraft list as it stands, or the path of a model
+// file, taken from the folder of the file that is read.
+std::string aircraft_in(const TableReader& table);
+
 }  // namespace airtruth::scene

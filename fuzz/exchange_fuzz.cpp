@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first byte chooses a format, the rest is its file: clips or an Error, and clips are written
+// and read back as labels of our own.
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "exchange/exchange.h"
+
+namespace {
+
+using namespace airtruth::exchange;
+
+struct Case {
+  Format format;
+  const char* file;  // in the folder that is read
+};
+constexpr std::array<Case, 11> kCases = {{
+    {Format::kCoco, "annotations/instances_x.json"},
+    {Format::kAot, "ImageSets/groundtruth.json"},
+    {Format::kVoc, "Annotations/a_000001.xml"},
+    {Format::kCvat, "annotations.xml"},
+    {Format::kMot, "gt/gt.txt"},
+    {Format::kYolo, "labels/a_000001.txt"},
+    {Format::kOtb, "groundtruth_rect.txt"},
+    {Format::kGot10k, "groundtruth.txt"},
+    {Format::kVot, "groundtruth.txt"},
+    {Format::kCsv, "a.csv"},
+    {Format::kYolo, "data.yaml"},
+}};
+
+const fs::path& folder() {
+  static const fs::path made = [] {
+    const fs::path shm = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+    const fs::path path = shm / ("airtruth_exchange_fuzz_" + std::to_string(::getpid()));
+    std::atexit([] { fs::remove_all(folder()); });
+    return path;
+  }();
+  return made;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const Case& one = kCases[data[0] % kCases.size()];
+  fs::remove_all(folder());
+  const fs::path file = folder() / one.file;
+  fs::create_directories(file.parent_path());
+  fs::create_directories(folder() / "labels");
+  airtruth::write_file(
+      file, {reinterpret_cast<const char*>(data) + 1, size - 1}, airtruth::Flush::kLater);
+  std::vector<Clip> clips;
+  try {
+    clips = read_clips(one.format, folder(), {{{640, 480}}, "aircraft"}, {});
+  } catch (const airtruth::Error&) {
+    return 0;
+  }
+  for (const Clip& clip : clips) {
+    const fs::path again = folder() / "labels.jsonl";
+    airtruth::write_file(again, labels_jsonl(clip), airtruth::Flush::kLater);
+    if (read_labels(again).frames.size() != clip.frames.size()) std::abort();
+  }
+  return 0;
+}

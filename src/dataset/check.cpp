@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/check.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "aircraft/catalogue.h"
+#include "base/error.h"
+#include "dataset/expand.h"
+
+namespace airtruth::dataset {
+namespace {
+
+void check_aircraft(const Aircraft& aircraft) {
+  if (fs::path(aircraft.aircraft).has_extension()) {
+    if (!fs::exists(aircraft.aircraft))
+      throw Error("model file '" + aircraft.aircraft + "' does not exist", aircraft.where);
+    return;
+  }
+  try {
+    aircraft::find_aircraft(aircraft.aircraft);
+  } catch (const Error& error) {
+    throw Error(error.message(), aircraft.where);
+  }
+}
+
+void check_video(const fs::path& video, const std::string& background, const Where& where) {
+  // A pattern of numbered images is for the reader to look at.
+  if (video.string().find('%') == std::string::npos && !fs::exists(video))
+    throw Error(
+        "the video of background '" + background + "', " + video.string() + ", does not exist",
+        where);
+}
+
+// One rule's names differ by construction; those of two may meet. Hashes, since a million names
+// are to cost eight bytes each.
+void check_names(const Catalogue& catalogue) {
+  if (catalogue.rules.size() < 2) return;
+  const Expansion expansion(catalogue);
+  std::vector<std::size_t> hashes;
+  hashes.reserve(static_cast<std::size_t>(expansion.size()));
+  const std::hash<std::string> hash;
+  for (std::int64_t i = 0; i < expansion.size(); ++i) hashes.push_back(hash(expansion.at(i).name));
+  std::vector<std::size_t> sorted = hashes;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twin == sorted.end()) return;
+  const auto first = std::find(hashes.begin(), hashes.end(), *twin);
+  const auto second = std::find(first + 1, hashes.end(), *twin);
+  const std::string name = expansion.at(first - hashes.begin()).name;
+  if (expansion.at(second - hashes.begin()).name == name)
+    throw Error("two sequences are named '" + name + "'", {catalogue.file.string()});
+}
+
+}  // namespace
+
+void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos) {
+  for (const Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
+  for (const Background& background : catalogue.backgrounds) {
+    const auto* video = std::get_if<fs::path>(&background.source);
+    if (video != nullptr && !videos.contains(background.name))
+      check_video(*video, background.name, background.where);
+  }
+  for (const auto& [name, video] : videos) check_video(video, name, {});
+  check_names(catalogue);
+}
+
+}  // namespace airtruth::dataset
