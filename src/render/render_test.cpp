@@ -266,10 +266,10 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
 // An aircraft that flies past and through the eye: parts before and behind the lens's plane.
 TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
   const Stand stand("733/733-AirBaltic");
-  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {60, 60}),
-                                 lens::fisheye_from_vertical_fov(170, {60, 60})}) {
+  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {40, 40}),
+                                 lens::fisheye_from_vertical_fov(170, {40, 40})}) {
     const View view = view_through(lens);
-    const Box whole{0, 0, 60, 60};
+    const Box whole{0, 0, 40, 40};
     for (const Vector3& place : {Vector3(0.5, 3, 1), Vector3(-4, 8, 4), Vector3(8, -10, -15)}) {
       const Rigid world_from_body{airtruth::world_from_body({170, -7, 3}), place};
       const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};
@@ -283,7 +283,7 @@ TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
         seen += oracle.pixels[i].alpha;
       }
       EXPECT_LT(worst, 1.0 / 16) << lens.name() << " at " << place.transpose();
-      EXPECT_GT(seen, 10) << lens.name() << " at " << place.transpose();
+      EXPECT_GT(seen, 5) << lens.name() << " at " << place.transpose();
     }
   }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report page in a real browser: python3 report_test.py AIRTRUTH
+"""The report page in a real browser: python3 report_page_test.py AIRTRUTH
 
 Makes a small data set with names that want to be markup, opens its page in headless Chromium from a server on loopback,
 and has a script beside it look: everything is drawn, filters and sorting work, links lead to files, nothing is complained of.
@@ -110,7 +110,7 @@ def looked_at(browser, folder, size):
     server.shutdown()
     match = re.search(r'<pre id="result">(.*?)</pre>', dom, re.S)
     if not match or not match.group(1):
-        sys.exit("report_test: the page never came to its end\n" + dom[-2000:])
+        sys.exit("report_page_test: the page never came to its end\n" + dom[-2000:])
     return json.loads(html.unescape(match.group(1)))
 
 
@@ -118,7 +118,7 @@ def main():
     airtruth = os.path.abspath(sys.argv[1])
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if not browser:
-        print("report_test: skipped: no chromium")
+        print("report_page_test: skipped: no chromium")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="airtruth_report_") as root:
         catalogue = os.path.join(root, "c.toml")
@@ -151,13 +151,13 @@ def main():
             expect("nearest first", [" near " in n for n in out["nearest"]], [True] * 4 + [False] * 4)
             expect("farthest first", [" far " in n for n in out["farthest"]], [True] * 4 + [False] * 4)
             if faults:
-                sys.exit("report_test: at %dx%d\n  %s" % (*size, "\n  ".join(faults)))
+                sys.exit("report_page_test: at %dx%d\n  %s" % (*size, "\n  ".join(faults)))
         with open(page, encoding="utf-8") as file:
             text = file.read()
         # Nothing is fetched from anywhere.
         outside = [u for u in re.findall(r'(?:src|href)\s*=\s*["\']?(https?:[^"\' >]+)', text)]
         if outside:
-            sys.exit(f"report_test: the page asks for {outside[:3]}")
+            sys.exit(f"report_page_test: the page asks for {outside[:3]}")
         print("8 sequences looked at wide and narrow: drawn, filtered, sorted, no complaint")
 
 
