@@ -176,6 +176,11 @@ void add_dataset_exchange(CLI::App& group, Context& context) {
   import_command->add_option(
       "--video", in->videos, "CLIP=VIDEO, or VIDEO where there is one clip: where it is not found");
   import_command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
+  import_command
+      ->add_option("--origin",
+                   in->options.read.origin_px,
+                   "Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
+      ->check(CLI::Range(0, 1));
   import_command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
   import_command->callback([in, &context] { run_import(*in, context); });

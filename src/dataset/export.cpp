@@ -43,7 +43,8 @@ class Place {
  public:
   Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
     if (fs::exists(record())) {
-      if (Json::parse(read_file(record()), nullptr, false).value("options", Json()) != options_)
+      const Json found = Json::parse(read_file(record()), nullptr, false);
+      if (!found.is_object() || found.value("options", Json()) != options_)
         throw Error("holds an export made with other options; expected a new folder",
                     {root_.string()});
       complete_ = true;

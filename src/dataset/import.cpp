@@ -8,12 +8,41 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/version.h"
+#include "exchange/text.h"
 #include "video/reader.h"
 
 namespace airtruth::dataset {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Numbered pictures are read in the order of their numbers from the first on; labels go with them
+// only where there is one for each.
+void match_pictures(exchange::Clip& clip, const Warn& warn) {
+  if (clip.media.empty() || fs::is_regular_file(clip.media)) return;
+  const bool is_folder = fs::is_directory(clip.media);
+  const std::string name = clip.media.filename().string();
+  const std::string prefix = is_folder ? "" : name.substr(0, name.find('%'));
+  const fs::path folder = is_folder ? clip.media : clip.media.parent_path();
+  std::size_t pictures = 0;
+  for (const fs::path& file : exchange::entries(folder)) {
+    const std::string stem = file.stem().string();
+    const std::string extension = file.extension().string();
+    const bool is_picture = extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+    const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
+    if (is_picture && (is_folder || stem.substr(0, digits) == prefix)) ++pictures;
+  }
+  if (pictures != clip.frames.size()) {
+    airtruth::warn(warn,
+                   clip.media.string() + ": holds " + std::to_string(pictures) +
+                       " pictures, and there are labels for " + std::to_string(clip.frames.size()) +
+                       " frames of " + clip.name + "; they are imported without the pictures");
+    clip.media.clear();
+    return;
+  }
+  for (std::size_t i = 0; i < clip.frames.size(); ++i)
+    clip.frames[i].frame = static_cast<std::int64_t>(i);
+}
 
 // Sizes, rates and times that the labels do not say and the video does.
 void ask_video(exchange::Clip& clip, const Warn& warn) {
@@ -84,6 +113,7 @@ ImportSummary import_set(const fs::path& source,
     if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
     if (video != options.videos.end()) clip.media = video->second;
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    match_pictures(clip, options.warn);
     ask_video(clip, options.warn);
     clip.name = free_name(clip.name, taken);
   }

@@ -71,7 +71,9 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
   std::vector<std::string> names;
   if (fs::is_directory(folder))
     for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.is_directory() && is_sequence(entry.path()))
+      // Hidden folders are of runs that are not over, or were killed.
+      if (entry.is_directory() && !entry.path().filename().string().starts_with(".") &&
+          is_sequence(entry.path()))
         names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;

@@ -192,8 +192,11 @@ class CocoReader {
       picture.height = side_of(image.number("height"));
       picture.labels.time_s = image.maybe_number("time_s");
       Video& video = video_of(image, picture.file_name);
-      picture.frame = image.has("frame_id") ? image.whole("frame_id")
-                                            : static_cast<std::int64_t>(video.images.size());
+      // By its place in the video, its number, or its place in the list.
+      picture.frame = image.has("frame_id")
+                          ? image.whole("frame_id")
+                          : name_and_number(fs::path(picture.file_name).stem().string())
+                                .second.value_or(std::ssize(video.images));
       if (!pictures_.emplace(id, picture).second)
         image.fail("id is " + std::to_string(id) + ", as an earlier image's");
       video.images.push_back(id);

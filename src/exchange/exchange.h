@@ -67,6 +67,7 @@ struct ReadOptions {
   std::optional<std::pair<int, int>>
       size;                           // of the pictures, where neither labels nor pictures say
   std::string category = "aircraft";  // where the format has none
+  int origin_px = 0;                  // of CSV: what the first pixel is called, 0 or 1
 };
 
 // Every clip of a set. `source`: the folder that a Writer filled, or one of the same form; for

@@ -173,7 +173,7 @@ void expect_same(const Clip& read, const Clip& expected) {
 
 TEST(RoundTrip, EveryFormatKeepsAllThatItCanHold) {
   for (const Format format : kWritten) {
-    for (unsigned seed = 0; seed < 40; ++seed) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
       SCOPED_TRACE(std::string(name(format)) + ", seed " + std::to_string(seed));
       const Folder folder;
       Draw draw(seed);
@@ -309,9 +309,10 @@ TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
   ASSERT_EQ(clips.size(), 1u);
   EXPECT_EQ(clips[0].name, "x");
   ASSERT_EQ(clips[0].frames.size(), 2u);
-  ASSERT_EQ(clips[0].frames[0].labels.size(), 1u);
-  EXPECT_EQ(clips[0].frames[0].labels[0].box_px, (Box{10, 5, 20, 15}));
-  EXPECT_TRUE(clips[0].frames[1].labels.empty());
+  // In the order of the pictures' numbers.
+  EXPECT_TRUE(clips[0].frames[0].labels.empty());
+  ASSERT_EQ(clips[0].frames[1].labels.size(), 1u);
+  EXPECT_EQ(clips[0].frames[1].labels[0].box_px, (Box{10, 5, 20, 15}));
   std::string all;
   for (const std::string& warning : warnings) all += warning + "\n";
   EXPECT_NE(all.find("2 boxes that are empty or outside their image (the first: annotations[1])"),

@@ -89,7 +89,7 @@ Clips read_csv(const fs::path& source, const ReadOptions& options) {
       while (std::ssize(clip.frames) <= *i)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
       LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
-      const Box box{n[1], n[2], n[3], n[4]};
+      const Box box{n[1] - options.origin_px, n[2] - options.origin_px, n[3], n[4]};
       if (!is_in_picture(box, clip.width, clip.height)) continue;  // "0,0,0,0" and "nan": nothing
       Label label;
       label.track = std::ssize(frame.labels) + 1;

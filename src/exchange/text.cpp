@@ -127,6 +127,13 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view extens
   return found;
 }
 
+void sort_frames(Clip& clip) {
+  std::stable_sort(
+      clip.frames.begin(), clip.frames.end(), [](const LabelledFrame& a, const LabelledFrame& b) {
+        return a.frame < b.frame;
+      });
+}
+
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder) {
   for (const fs::path& file : entries(folder)) {
     const std::string extension = file.extension().string();

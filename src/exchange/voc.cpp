@@ -142,6 +142,7 @@ Clips read_voc(const fs::path& source, const ReadOptions&, const Warn& warn) {
   if (clips.empty()) throw Error("holds no Annotations/*.xml", {source.string()});
   Clips result;
   for (auto& [name, clip] : clips) {
+    sort_frames(clip);
     if (clip.media.empty() && fs::is_directory(pictures)) clip.media = pictures;
     result.push_back(std::move(clip));
   }

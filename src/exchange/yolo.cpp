@@ -131,7 +131,10 @@ class YoloReader {
     for (const fs::path& part : entries(labels))
       if (fs::is_directory(part)) folder(part, part.filename());
     Clips clips;
-    for (auto& [key, clip] : clips_) clips.push_back(std::move(clip));
+    for (auto& [key, clip] : clips_) {
+      sort_frames(clip);
+      clips.push_back(std::move(clip));
+    }
     return clips;
   }
 
