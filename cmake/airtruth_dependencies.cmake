@@ -2,7 +2,7 @@
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video features2d)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video features2d tracking)
 find_package(embree 3 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)

@@ -63,20 +63,23 @@ constexpr std::array<About, 11> kAll = {{
      "otb",
      "OTB",
      "box",
-     "class, time, visibility, occlusion, range; of a sequence all before the first and after the "
-     "last frame that shows the object; where it begins in the video"},
+     "class, time, visibility, occlusion, range; of a sequence all before the first frame that "
+     "shows the object whole and after the "
+     "last that shows it; where it begins in the video"},
     {Format::kGot10k,
      "got10k",
      "GOT-10k",
      "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
-     "time stamps, occlusion, range; of a sequence all before the first and after the last frame "
-     "that shows the object; where it begins in the video"},
+     "time stamps, occlusion, range; of a sequence all before the first frame that shows the "
+     "object whole and after the "
+     "last that shows it; where it begins in the video"},
     {Format::kVot,
      "vot",
      "VOT",
      "box, class, occlusion and range by frame",
-     "time stamps, visibility, truncation; of a sequence all before the first and after the last "
-     "frame that shows the object; where it begins in the video"},
+     "time stamps, visibility, truncation; of a sequence all before the first frame that shows the "
+     "object whole and after the "
+     "last that shows it; where it begins in the video"},
     {Format::kEvision, "evision", "E-Vision", "", ""},
     {Format::kCsv, "csv", "frame,x,y,w,h", "", ""},
 }};
@@ -121,7 +124,13 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
       if (frame.labels.size() > 1) frame.labels.resize(1);
     }
     const auto shows = [](const LabelledFrame& frame) { return !frame.labels.empty(); };
-    const auto first = std::find_if(one.frames.begin(), one.frames.end(), shows);
+    // A tracker that is begun on a wing tip at the frame's edge learns the wing tip.
+    const auto shows_whole = [](const LabelledFrame& frame) {
+      return !frame.labels.empty() && !frame.labels.front().truncated.value_or(false);
+    };
+    auto first = std::find_if(one.frames.begin(), one.frames.end(), shows_whole);
+    if (first == one.frames.end())
+      first = std::find_if(one.frames.begin(), one.frames.end(), shows);
     const auto last = std::find_if(one.frames.rbegin(), one.frames.rend(), shows).base();
     one.frames = {first, last};
     clips.push_back(std::move(one));

@@ -35,7 +35,8 @@ Format format_from_name(std::string_view name);
 const char* name(Format format);
 bool can_write(Format format);
 
-// One object a sequence, from the first frame that shows it to the last: OTB, GOT-10k, VOT.
+// One object a sequence, from the first frame that shows it whole (or shows it, where none does or
+// nothing is known) to the last that shows it: OTB, GOT-10k, VOT.
 bool is_single_object(Format format);
 
 // The clips that a format makes of one: itself, or a clip for each of its tracks.
