@@ -63,6 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   for (const Clip& clip : clips) {
+    if (clip.frames.size() > 1000) continue;  // a number in a file makes millions of empty ones
     const fs::path again = folder() / "labels.jsonl";
     airtruth::write_file(again, labels_jsonl(clip), airtruth::Flush::kLater);
     if (read_labels(again).frames.size() != clip.frames.size()) std::abort();

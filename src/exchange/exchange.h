@@ -48,7 +48,7 @@ struct WriteOptions {
   std::string image_extension = ".jpg";
 };
 
-// Writes a set into a folder, clip by clip; memory does not grow with their number.
+// Writes a set into a folder, clip by clip; of those written no more than names are held.
 class Writer {
  public:
   virtual ~Writer() = default;

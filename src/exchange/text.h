@@ -32,8 +32,8 @@ std::map<std::string, std::string> settings_of(const fs::path& file);
 std::optional<double> number_in(const std::map<std::string, std::string>& settings,
                                 const std::string& key);
 
-// A clip longer than this (18 hours at 30 frames/s) is a slip of the pen.
-constexpr std::int64_t kMostFrames = 2'000'000;
+// A clip longer than this (4.6 hours at 30 frames/s) is a slip of the pen.
+constexpr std::int64_t kMostFrames = 500'000;
 
 // The number, where it is whole and within [low, high].
 std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);

@@ -115,7 +115,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   scene.lens.model = "brown_conrady";
   scene.lens.focal_px = {480.25, 1e6};
   scene.lens.principal_point_px = {-0.5, 1e16};
-  scene.lens.distortion = {-0.3, 0.1, 0, 1e-9, 5};
+  scene.lens.distortion = {-0.3, 0.1, -0.0, 1e-9, 5};
   scene.camera.path_file = "/data/own.csv";
   scene.intruders[0].yaw_deg = -179.9999999999;
   scene.intruders[1].path_file = "/data/p.csv";
@@ -131,6 +131,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   EXPECT_EQ(again.intruders[0].yaw_deg, scene.intruders[0].yaw_deg);
   EXPECT_EQ(again.intruders[1].path_file, scene.intruders[1].path_file);
   EXPECT_TRUE(again.intruders[1].waypoints_ned_m.empty());
+  EXPECT_EQ(toml_from_scene(again), toml_from_scene(scene));
 }
 
 // The examples that ship are scenes, and the first names every key that there is.

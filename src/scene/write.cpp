@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 
@@ -28,7 +29,10 @@ class Text {
   std::string take() { return std::move(text_); }
 
  private:
-  static std::string toml(double value) { return fmt::format("{}", value); }
+  static std::string toml(double value) {
+    if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" is a whole number without a sign
+    return fmt::format("{}", value);
+  }
   static std::string toml(int value) { return fmt::format("{}", value); }
   static std::string toml(std::int64_t value) { return fmt::format("{}", value); }
   static std::string toml(const fs::path& path) {
