@@ -2,10 +2,12 @@
 #include "dataset/export.h"
 
 #include <fstream>
+#include <functional>
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -74,6 +76,26 @@ class Made : public testing::Test {
     for (const auto& entry : fs::recursive_directory_iterator(folder))
       if (entry.is_regular_file()) found.insert(fs::relative(entry.path(), folder).string());
     return found;
+  }
+  // A copy of the set in which the first frame's truth of a sequence was changed, and its record
+  // made to fit.
+  fs::path changed(const std::string& sequence,
+                   const std::function<void(nlohmann::ordered_json&)>& change) {
+    const fs::path copy = fresh();
+    fs::copy(set(), copy, fs::copy_options::recursive);
+    const fs::path folder = copy / "sequences" / sequence;
+    std::string truth = read_file(folder / "truth.jsonl");
+    const std::size_t end = truth.find('\n');
+    auto line = nlohmann::ordered_json::parse(truth.substr(0, end));
+    change(line["intruders"][0]);
+    const std::string before = sha256_of(truth);
+    truth = line.dump() + truth.substr(end);
+    write_file(folder / "truth.jsonl", truth);
+    std::string record = read_file(folder / "sequence.json");
+    record.replace(record.find(before), before.size(), sha256_of(truth));
+    write_file(folder / "sequence.json", record);
+    finish(copy);  // the manifest too
+    return copy;
   }
   inline static fs::path root_;
 };
@@ -242,23 +264,23 @@ TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
   const VerifyResult sound = verify(set(), options);
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.recomposed, 32);
-  // A set whose truth was moved by one pixel, and its record made to fit.
-  const fs::path copy = fresh();
-  fs::copy(set(), copy, fs::copy_options::recursive);
-  const fs::path folder = copy / "sequences" / "sky-c172";
-  std::string truth = read_file(folder / "truth.jsonl");
-  const std::string key = "\"visible_box_px\":[";
-  const std::size_t at = truth.find(key) + key.size();
-  ASSERT_LT(at, truth.size());
-  const std::size_t comma = truth.find(',', at);
-  truth.replace(at, comma - at, std::to_string(std::stoi(truth.substr(at, comma - at)) + 1));
-  const std::string before = sha256_of_file(folder / "truth.jsonl");
-  write_file(folder / "truth.jsonl", truth);
-  std::string record = read_file(folder / "sequence.json");
-  record.replace(record.find(before), before.size(), sha256_of(truth));
-  write_file(folder / "sequence.json", record);
+  // A visible box that was moved by one pixel.
+  const fs::path copy = changed("sky-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["visible_box_px"][0] = intruder["visible_box_px"][0].get<int>() + 1;
+  });
   EXPECT_THAT(verify(copy, options).faults,
               testing::Contains(HasSubstr("has another truth when it is computed again")));
+}
+
+TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
+  EXPECT_GT(verify(set(), {}).in_view, 16);
+  const fs::path copy = changed("sky-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["state"] = "outside";
+    intruder.erase("visible_box_px");
+  });
+  const VerifyResult result = verify(copy, {});
+  EXPECT_EQ(result.in_view_without_box, 1);
+  EXPECT_THAT(result.faults, ElementsAre(HasSubstr("in view by its position, and without a box")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "dataset/in_view.h"
 #include "report/pictures.h"
 #include "report/thumbnails.h"
 #include "sequence/finished.h"
@@ -60,12 +61,13 @@ Portrait::Camera camera_of(const annotation::Frame& frame, int width, int height
           std::atan2(h(1, 0), h(0, 0)) * degrees};
 }
 
-void count(const annotation::Truth& truth, Portrait& portrait) {
-  for (const annotation::Frame& frame : truth.frames)
+void count(const sequence::Finished& finished, Portrait& portrait) {
+  std::optional<lens::Lens> lens;
+  if (finished.scene) lens = lens_from(finished.truth.lens);
+  for (const annotation::Frame& frame : finished.truth.frames)
     for (const annotation::Intruder& intruder : frame.intruders) {
       ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
-      const bool visible = intruder.state == annotation::State::kVisible;
-      portrait.visible_without_box += visible && !intruder.visible_box_px ? 1 : 0;
+      portrait.without_box += lens && lacks_box(frame, intruder, *lens) ? 1 : 0;
     }
 }
 
@@ -159,7 +161,7 @@ Portrait portrait_of(const LabelledSet& set, const std::string& name, const std:
     portrait.sun_elevation_deg = scene.light.sun_elevation_deg;
     portrait.motion_model = scene.motion.model;
   }
-  count(finished.truth, portrait);
+  count(finished, portrait);
   add_series(finished, portrait);
   add_pictures(finished, stop, portrait);
   return portrait;

@@ -48,7 +48,7 @@ struct Portrait {
   std::vector<Intruder> intruders;
   std::vector<Camera> camera;
   std::array<std::int64_t, 5> frames_by_state{};  // visible, hidden, outside, behind, ended
-  std::int64_t visible_without_box = 0;           // of all frames and intruders
+  std::int64_t without_box = 0;                   // in view by geometry (dataset/in_view.h)
   std::vector<double> contrasts;                  // of sampled frames
   std::string preview_jpeg;                       // bytes; empty where nothing is ever seen
   std::string loop_jpeg;                          // kLoopFrames squares side by side

@@ -47,7 +47,7 @@ std::vector<double> steps(double from, double to, double step) {
 struct Totals {
   std::int64_t frames = 0;
   std::array<std::int64_t, 5> by_state{};
-  std::int64_t visible_without_box = 0;
+  std::int64_t without_box = 0;
   Histogram range_m{
       {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
   Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
@@ -57,7 +57,7 @@ struct Totals {
   void add(const Portrait& portrait) {
     frames += portrait.facts.frames;
     for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
-    visible_without_box += portrait.visible_without_box;
+    without_box += portrait.without_box;
     for (const Portrait::Intruder& intruder : portrait.intruders)
       for (const Portrait::Point& point : intruder.points) {
         if (!point.width_px) continue;
@@ -213,9 +213,8 @@ Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portra
         "sequence names a file; pictures of them in this set derive from those models";
     card["labels"] =
         "exact: boxes bound the pixels that the compositing changed; geometry is the scene's own. "
-        "Visible without a box: " +
-        std::to_string(totals.visible_without_box) + " of " + std::to_string(totals.frames) +
-        " frames";
+        "In view by geometry and without a box: " +
+        std::to_string(totals.without_box) + " of " + std::to_string(totals.frames) + " frames";
     card["known limits"] =
         "no motion blur, rolling shutter, haze or sensor noise on the intruder; the camera's "
         "motion "
@@ -291,7 +290,7 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
   const Json data = {{"title", title},
                      {"frames", totals.frames},
                      {"states", totals.by_state},
-                     {"visible_without_box", totals.visible_without_box},
+                     {"without_box", totals.without_box},
                      {"missing", labelled.missing()},
                      {"histograms",
                       {{"range_m", totals.range_m.json()},

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "dataset/expand.h"
+#include "dataset/in_view.h"
 #include "sequence/finished.h"
 #include "sequence/recompose.h"
 #include "video/reader.h"
@@ -32,17 +33,6 @@ bool is_at_work(const Folder& folder) {
   } catch (const Error&) {
     return true;
   }
-}
-
-lens::Lens lens_from(const annotation::LensFacts& facts) {
-  const Pixel focal(facts.focal_px[0], facts.focal_px[1]);
-  const Pixel principal(facts.principal_point_px[0], facts.principal_point_px[1]);
-  const lens::ImageSize size{facts.width, facts.height};
-  if (facts.model == "fisheye")
-    return lens::Lens(lens::Fisheye{focal, principal, facts.distortion}, size);
-  if (facts.model == "brown_conrady")
-    return lens::Lens(lens::BrownConrady{focal, principal, facts.distortion}, size);
-  return lens::Lens(lens::Pinhole{focal, principal}, size);
 }
 
 // Sequences of one data set, looked into one by one.
@@ -114,16 +104,8 @@ class Check {
   void view(const annotation::Frame& frame,
             const annotation::Intruder& intruder,
             const lens::Lens& lens) {
-    if (!intruder.position_in_cam_m) return;
-    const auto nominal = lens.pixel_from_cam(*intruder.position_in_cam_m);
-    if (!nominal) return;
-    const Vector3 h = frame.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
-    const Pixel pixel = h.head<2>() / h.z();
-    const bool inside = h.z() > 0 && pixel.x() >= 0 && pixel.y() >= 0 &&
-                        pixel.x() < lens.size().width && pixel.y() < lens.size().height;
-    if (!inside) return;
-    ++result_.in_view;
-    if (intruder.visible_box_px || intruder.state == annotation::State::kHidden) return;
+    result_.in_view += is_in_view(frame, intruder, lens) ? 1 : 0;
+    if (!lacks_box(frame, intruder, lens)) return;
     ++result_.in_view_without_box;
     fault("frame " + std::to_string(frame.frame) + ", " + intruder.id +
           ": in view by its position, and without a box");

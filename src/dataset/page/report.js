@@ -46,7 +46,7 @@
     const missing = data.missing > 0 ? `, ${number(data.missing)} sequences missing` : '';
     byId('summary').textContent =
       `${number(data.sequences.length)} sequences, ${number(data.frames)} frames${missing}; ` +
-      `visible without a box: ${number(data.visible_without_box)}`;
+      `in view by geometry and without a box: ${number(data.without_box)}`;
     for (const [key, value] of Object.entries(data.card)) {
       byId('card').append(element('dt', key), element('dd', String(value)));
     }
