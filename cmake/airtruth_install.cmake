@@ -23,7 +23,8 @@ include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)
 install(TARGETS airtruth_shared EXPORT airtruth LIBRARY)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/airtruth
-  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE PATTERN "table_reader.h" EXCLUDE PATTERN "tables.h" EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE PATTERN "table_reader.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "xml_file.h" EXCLUDE
+  PATTERN "small_catalogue.h" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/examples)
 install(EXPORT airtruth NAMESPACE airtruth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth FILE airtruth-targets.cmake)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/airtruth-config.cmake.in

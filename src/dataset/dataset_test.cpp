@@ -9,40 +9,13 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "dataset/build.h"
+#include "dataset/small_catalogue.h"
 #include "dataset/verify.h"
 
 namespace airtruth::dataset {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr const char* kCatalogue = R"(
-name = "small"
-[[background]]
-name = "sky"
-flight = { seed = 3, frame_count = 8, width = 160, height = 120 }
-lens = { vertical_fov_deg = 75 }
-camera = { position_ned_m = [0, 0, -150] }
-[[background]]
-name = "more"
-flight = { seed = 4, frame_count = 8, width = 160, height = 120 }
-lens = { vertical_fov_deg = 75 }
-camera = { position_ned_m = [0, 0, -150] }
-[[aircraft]]
-name = "b737"
-aircraft = "738/738-Ryanair"
-[[aircraft]]
-name = "c172"
-aircraft = "c172/news"
-[[trajectory]]
-name = "across"
-waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
-speed_mps = 60
-[[product]]
-name = "{background}-{trajectory}-{aircraft}"
-[output]
-video = "mkv"
-)";
 
 std::string error_of(const std::string& text) {
   try {

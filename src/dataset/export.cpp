@@ -2,15 +2,14 @@
 #include "dataset/export.h"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "dataset/in_parallel.h"
 #include "video/reader.h"
 #include "video/still.h"
 
@@ -134,34 +133,12 @@ class Export {
   }
 
   void write_images() {
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const int jobs = options_.jobs > 0 ? options_.jobs : cores;
-    {
-      std::vector<std::jthread> threads;
-      for (int i = 0; i < std::min<std::int64_t>(jobs, std::ssize(set_.names())); ++i)
-        threads.emplace_back([this] { work(); });
-    }
-    if (options_.stop.stop_requested()) throw Interrupted();
-    if (failed_) std::rethrow_exception(failed_);
-  }
-
-  void work() {
-    for (;;) {
-      const std::size_t i = next_.fetch_add(1);
-      if (i >= set_.names().size() || options_.stop.stop_requested() || stopped_) return;
-      try {
-        write_images_of(set_.names()[i]);
-      } catch (const Interrupted&) {
-        return;
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failed_) failed_ = std::current_exception();
-        stopped_ = true;
-      }
-      const std::lock_guard lock(mutex_);
-      ++done_;
-      if (options_.progress) options_.progress(done_, std::ssize(set_.names()));
-    }
+    in_parallel(
+        set_.names().size(),
+        options_.jobs,
+        [this](std::size_t i) { write_images_of(set_.names()[i]); },
+        options_.progress,
+        options_.stop);
   }
 
   void write_images_of(const std::string& name) {
@@ -230,11 +207,7 @@ class Export {
   exchange::WriteOptions write_;
   std::unique_ptr<exchange::Writer> writer_;
   std::map<std::string, std::string> parts_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
-  std::int64_t done_ = 0;
-  std::exception_ptr failed_;
   ExportSummary summary_;
 };
 

@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "dataset/build.h"
 #include "dataset/import.h"
+#include "dataset/small_catalogue.h"
 #include "dataset/verify.h"
 #include "image/colour.h"
 #include "sequence/finished.h"
@@ -25,34 +26,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr const char* kCatalogue = R"(
-name = "small"
-[[background]]
-name = "sky"
-flight = { seed = 3, frame_count = 8, width = 160, height = 120 }
-lens = { vertical_fov_deg = 75 }
-camera = { position_ned_m = [0, 0, -150] }
-[[background]]
-name = "more"
-flight = { seed = 4, frame_count = 8, width = 160, height = 120 }
-lens = { vertical_fov_deg = 75 }
-camera = { position_ned_m = [0, 0, -150] }
-[[aircraft]]
-name = "b737"
-aircraft = "738/738-Ryanair"
-[[aircraft]]
-name = "c172"
-aircraft = "c172/news"
-[[trajectory]]
-name = "across"
-waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
-speed_mps = 60
-[[product]]
-name = "{background}-{aircraft}"
-[output]
-video = "mkv"
-)";
 
 // A small data set, made once for all the tests.
 class Made : public testing::Test {
@@ -233,9 +206,9 @@ TEST_F(Made, EveryNthFrameAndOneClass) {
   const fs::path out = fresh();
   EXPECT_EQ(export_set(set(), out, options).frames, 12);
   EXPECT_THAT(read_file(out / "data.yaml"), HasSubstr("0: \"aircraft\"\n"));
-  const auto truth = LabelledSet(set()).clip("sky-b737");
+  const auto truth = LabelledSet(set()).clip("sky-across-b737");
   ASSERT_FALSE(truth.frames[3].labels.empty());
-  const std::string second = read_file(out / "labels/all/sky-b737_000001.txt");
+  const std::string second = read_file(out / "labels/all/sky-across-b737_000001.txt");
   const Box& box = truth.frames[3].labels[0].box_px;
   EXPECT_THAT(
       second,
@@ -248,7 +221,7 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   options.format = exchange::Format::kCsv;
   const fs::path csv = root_ / "boxes.csv";
   write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n5,11.5,20,30,40\n");
-  options.videos[""] = LabelledSet(set()).clip("sky-b737").media;
+  options.videos[""] = LabelledSet(set()).clip("sky-across-b737").media;
   import_set(csv, out, options);
   const auto finished = sequence::open_finished(out / "sequences" / "boxes");
   ASSERT_EQ(finished.truth.frames.size(), 6u);
@@ -265,7 +238,7 @@ TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.recomposed, 32);
   // A visible box that was moved by one pixel.
-  const fs::path copy = changed("sky-c172", [](nlohmann::ordered_json& intruder) {
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["visible_box_px"][0] = intruder["visible_box_px"][0].get<int>() + 1;
   });
   EXPECT_THAT(verify(copy, options).faults,
@@ -274,7 +247,7 @@ TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
 
 TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
   EXPECT_GT(verify(set(), {}).in_view, 16);
-  const fs::path copy = changed("sky-c172", [](nlohmann::ordered_json& intruder) {
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["state"] = "outside";
     intruder.erase("visible_box_px");
   });

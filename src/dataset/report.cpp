@@ -2,10 +2,7 @@
 #include "dataset/report.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +12,7 @@
 #include "base/files.h"
 #include "base/version.h"
 #include "dataset/folder.h"
+#include "dataset/in_parallel.h"
 #include "dataset/page_assets.h"
 #include "dataset/portrait.h"
 
@@ -225,57 +223,21 @@ Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portra
   return card;
 }
 
-class Gathering {
- public:
-  Gathering(const LabelledSet& set, const ReportOptions& options) : set_(set), options_(options) {}
-
-  std::vector<Portrait> run() {
-    portraits_.resize(set_.names().size());
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    {
-      std::vector<std::jthread> threads;
-      for (int i = 0; i < (options_.jobs > 0 ? options_.jobs : cores); ++i)
-        threads.emplace_back([this] { work(); });
-    }
-    if (failed_) std::rethrow_exception(failed_);
-    return std::move(portraits_);
-  }
-
- private:
-  void work() {
-    for (;;) {
-      const std::size_t i = next_.fetch_add(1);
-      if (i >= portraits_.size() || stopped_) return;
-      try {
-        portraits_[i] = portrait_of(set_, set_.names()[i], options_.stop);
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failed_) failed_ = std::current_exception();
-        stopped_ = true;
-        return;
-      }
-      const std::lock_guard lock(mutex_);
-      if (options_.progress) options_.progress(++done_, std::ssize(portraits_));
-    }
-  }
-
-  const LabelledSet& set_;
-  const ReportOptions& options_;
-  std::vector<Portrait> portraits_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stopped_ = false;
-  std::mutex mutex_;
-  std::int64_t done_ = 0;
-  std::exception_ptr failed_;
-};
-
 }  // namespace
 
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
   if (fs::exists(out) && !options.overwrite)
     throw Error("exists already; give --overwrite to replace it", {out.string()});
   const LabelledSet labelled(set);
-  const std::vector<Portrait> portraits = Gathering(labelled, options).run();
+  std::vector<Portrait> portraits(labelled.names().size());
+  in_parallel(
+      portraits.size(),
+      options.jobs,
+      [&](std::size_t i) {
+        portraits[i] = portrait_of(labelled, labelled.names()[i], options.stop);
+      },
+      options.progress,
+      options.stop);
   Totals totals;
   Json sequences = Json::array();
   for (const Portrait& portrait : portraits) {

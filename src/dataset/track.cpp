@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/track.h"
 
-#include <atomic>
 #include <chrono>
 #include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "dataset/expand.h"
+#include "dataset/in_parallel.h"
 #include "dataset/labelled_set.h"
 #include "exchange/exchange.h"
 #include "tracking/tracker.h"
@@ -33,38 +32,20 @@ class Tracking {
   TrackSummary run() {
     tracking::make_tracker(options_.tracker, options_.seed);  // Error for what is no tracker
     fs::create_directories(folder_);
-    {
-      std::vector<std::jthread> threads;
-      for (int i = 0; i < std::min<std::int64_t>(options_.jobs, std::ssize(names_)); ++i)
-        threads.emplace_back([this] { work(); });
-    }
-    if (failed_) std::rethrow_exception(failed_);
-    if (options_.stop.stop_requested()) throw Interrupted();
+    in_parallel(
+        names_.size(),
+        options_.jobs,
+        [this](std::size_t i) {
+          const exchange::Clip clip = set_.clip(names_[i]);
+          for (const exchange::Clip& one : exchange::arranged(exchange::Format::kOtb, clip))
+            follow(one);
+        },
+        options_.progress,
+        options_.stop);
     return summary_;
   }
 
  private:
-  void work() {
-    for (;;) {
-      const std::size_t i = next_.fetch_add(1);
-      if (i >= names_.size() || stopped_ || options_.stop.stop_requested()) return;
-      try {
-        const exchange::Clip clip = set_.clip(names_[i]);
-        for (const exchange::Clip& one : exchange::arranged(exchange::Format::kOtb, clip))
-          follow(one);
-      } catch (const Interrupted&) {
-        return;
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failed_) failed_ = std::current_exception();
-        stopped_ = true;
-        return;
-      }
-      const std::lock_guard lock(mutex_);
-      if (options_.progress) options_.progress(++done_, std::ssize(names_));
-    }
-  }
-
   void follow(const exchange::Clip& clip) {
     const fs::path boxes = folder_ / (clip.name + ".txt");
     if (fs::exists(boxes)) {
@@ -111,11 +92,7 @@ class Tracking {
   fs::path folder_;
   const TrackOptions& options_;
   std::vector<std::string> names_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
-  std::int64_t done_ = 0;
-  std::exception_ptr failed_;
   TrackSummary summary_;
 };
 

@@ -82,6 +82,20 @@ struct Offsets {
   }
 };
 
+// What is averaged over sequences, and what over all their frames together.
+constexpr double Score::*kOfSequences[] = {&Score::x_mean_px,
+                                           &Score::x_rmse_px,
+                                           &Score::x_most_px,
+                                           &Score::y_mean_px,
+                                           &Score::y_rmse_px,
+                                           &Score::y_most_px,
+                                           &Score::centre_mean_px,
+                                           &Score::auc,
+                                           &Score::precision_20px,
+                                           &Score::normalised_auc};
+constexpr double Score::*kOfFrames[] = {
+    &Score::average_overlap, &Score::success_50, &Score::success_75};
+
 }  // namespace
 
 double overlap(const Box& a, const Box& b) {
@@ -151,19 +165,8 @@ Score mean_of(std::span<const Score> scores) {
     // The first frame, which GOT-10k leaves out, always shows the target.
     const double after_first = static_cast<double>(s.counted - 1);
     frames += after_first;
-    for (const auto member : {&Score::x_mean_px,
-                              &Score::x_rmse_px,
-                              &Score::x_most_px,
-                              &Score::y_mean_px,
-                              &Score::y_rmse_px,
-                              &Score::y_most_px,
-                              &Score::centre_mean_px,
-                              &Score::auc,
-                              &Score::precision_20px,
-                              &Score::normalised_auc})
-      mean.*member += s.*member;
-    for (const auto member : {&Score::average_overlap, &Score::success_50, &Score::success_75})
-      mean.*member += s.*member * after_first;
+    for (const auto member : kOfSequences) mean.*member += s.*member;
+    for (const auto member : kOfFrames) mean.*member += s.*member * after_first;
     for (std::size_t k = 0; k < mean.success.size(); ++k) mean.success[k] += s.success[k];
     for (std::size_t k = 0; k < mean.precision.size(); ++k) {
       mean.precision[k] += s.precision[k];
@@ -173,20 +176,9 @@ Score mean_of(std::span<const Score> scores) {
     rates += s.frames_per_second > 0 ? 1 : 0;
   }
   if (n == 0) return mean;
-  for (const auto member : {&Score::x_mean_px,
-                            &Score::x_rmse_px,
-                            &Score::x_most_px,
-                            &Score::y_mean_px,
-                            &Score::y_rmse_px,
-                            &Score::y_most_px,
-                            &Score::centre_mean_px,
-                            &Score::auc,
-                            &Score::precision_20px,
-                            &Score::normalised_auc})
-    mean.*member /= n;
+  for (const auto member : kOfSequences) mean.*member /= n;
   if (frames > 0)
-    for (const auto member : {&Score::average_overlap, &Score::success_50, &Score::success_75})
-      mean.*member /= frames;
+    for (const auto member : kOfFrames) mean.*member /= frames;
   divided(mean.success, n);
   divided(mean.precision, n);
   divided(mean.normalised, n);
