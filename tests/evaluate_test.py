@@ -88,6 +88,130 @@ def overall(sequences):
     return result
 
 
+# VOT, as its toolkit does it: boxes as sets of whole pixels.
+def pixel_overlap(answer, truth):
+    if not answer or not truth:
+        return 0.0
+    a, b = ([round(v) for v in box] for box in (answer, truth))
+    low = [min(a[k], b[k]) for k in (0, 1)]
+    high = [max(a[k] + a[k + 2] - 1, b[k] + b[k + 2] - 1) for k in (0, 1)]
+    if low[0] >= high[0] or low[1] >= high[1]:
+        return 1.0
+    low, high = [max(0, v) for v in low], [min(size - 1, v) for size, v in zip((WIDTH, HEIGHT), high)]
+    if low[0] >= high[0] or low[1] >= high[1]:
+        return 0.0
+    pixels = lambda box: {(x, y) for x in range(max(low[0], box[0]), min(high[0], box[0] + box[2] - 1) + 1)
+                          for y in range(max(low[1], box[1]), min(high[1], box[1] + box[3] - 1) + 1)}
+    a, b = pixels(a), pixels(b)
+    return len(a & b) / len(a | b) if a | b else 0.0
+
+
+def restart_reference(sequences, low, high):
+    """sequences: lists of (truth, runs); a run holds 0, 1, 2 or a box (or None) for each frame."""
+    accuracy = failures = weight = 0.0
+    fragments = []
+    for truth, runs in sequences:
+        mean_accuracy = mean_failures = 0.0
+        for run in runs:
+            overlaps = [0.0 if isinstance(e, int) else pixel_overlap(e, t) for e, t in zip(run, truth)]
+            starts = [i for i, e in enumerate(run) if e == 1]
+            fails = [i for i, e in enumerate(run) if e == 2]
+            skipped = {j for i in starts for j in range(i, i + 10)} | set(fails) | {i for i, e in enumerate(run) if e == 0}
+            kept = [overlaps[i] for i in range(len(run)) if i not in skipped and truth[i]]
+            mean_accuracy += (mean(kept) if kept else 0.0) / len(runs)
+            mean_failures += len(fails) / len(runs)
+            for k, start in enumerate(starts):
+                ended = k < len(fails)
+                fragments.append((overlaps[start:fails[k]] if ended else overlaps[start:], ended))
+        accuracy += mean_accuracy * len(truth)
+        failures += mean_failures * len(truth)
+        weight += len(truth)
+    longest = max(len(o) for o, _ in fragments)
+    curve = []
+    for j in range(longest):
+        active = [(o + [0.0] * longest if ended else o) for o, ended in fragments if ended or j < len(o)]
+        curve.append(mean([mean(o[1:j + 1]) if j else o[0] for o in active]))
+    part = curve[low:high + 1]
+    length = weight / len(sequences)
+    return {"accuracy": accuracy / weight, "failures": failures / weight,
+            "reliability": math.exp(-30 * failures / weight / length), "eao_curve": curve, **({"eao": mean(part)} if part else {})}
+
+
+def multistart_reference(sequences, low, high):
+    """sequences: lists of (truth, {(anchor, backward): run})."""
+    total_overlap = before = robustness = weight = 0.0
+    sums, active = [0.0] * (high + 1), [0] * (high + 1)
+    for truth, runs in sequences:
+        progress_sum = frames = 0
+        for (anchor, backward), run in runs.items():
+            shown = truth[anchor::-1] if backward else truth[anchor:]
+            overlaps = [0.0 if isinstance(e, int) else pixel_overlap(e, t) for e, t in zip(run, shown)]
+            grace, progress = 10, len(run)
+            for j, value in enumerate(overlaps):
+                if value <= 0.1 and shown[j]:
+                    grace -= 1
+                    if grace == 0:
+                        progress = j + 1 - 10
+                        break
+                else:
+                    grace = 10
+            failed = progress < len(run)
+            kept = overlaps[:progress] + [0.0] * (len(run) - progress)
+            progress_sum += progress
+            frames += len(run)
+            total_overlap += sum(overlaps[:progress])
+            for j in range(1, high + 1):
+                if j < len(kept):
+                    sums[j] += mean(kept[1:j + 1])
+                    active[j] += 1
+                elif failed:
+                    sums[j] += sum(kept[1:]) / max(1, j - 1)
+                    active[j] += 1
+        before += progress_sum
+        robustness += progress_sum / frames * len(truth)
+        weight += len(truth)
+    last = max((j for j in range(high + 1) if active[j]), default=-1)
+    curve = [sums[j] / active[j] if active[j] else 0.0 for j in range(last + 1)]
+    part = curve[low:high + 1]
+    return {"accuracy": total_overlap / before if before else 0.0, "robustness": robustness / weight, "eao_curve": curve,
+            **({"eao": mean(part)} if part else {})}
+
+
+def vot_runs(rng, truth, answers):
+    """Random runs of both protocols, with all marks in them."""
+    restart, mark = [], 1
+    for i, answer in enumerate(answers):
+        if mark == 1 and not truth[i]:
+            restart.append(0)
+        elif mark == 1:
+            restart.append(1)
+            mark = None
+        elif rng.random() < 0.12:
+            restart.append(2)
+            restart += [0] * min(4, len(answers) - len(restart))
+            mark = 1
+        elif len(restart) <= i:
+            restart.append(answer)
+    restart = restart[:len(truth)]
+    begun, clean = False, []
+    for e in restart:  # answers that follow no start are none
+        begun = True if e == 1 else False if isinstance(e, int) else begun
+        clean.append(e if begun or isinstance(e, int) else 0)
+    anchors = {}
+    for anchor in sorted({0, len(truth) // 3, len(truth) - 1, 2 * len(truth) // 3}):
+        backward = anchor >= (len(truth) + 1) // 2
+        shown = answers[anchor::-1] if backward else answers[anchor:]
+        anchors[anchor, backward] = [1] + list(shown[1:])
+    return clean, anchors
+
+
+def sign_test(a, b):
+    """Fisher's, over all changes of sign."""
+    d = [x - y for x, y in zip(a, b)]
+    sums = [sum(v if bits >> i & 1 else -v for i, v in enumerate(d)) for bits in range(2 ** len(d))]
+    return mean([abs(s) >= abs(sum(d)) - 1e-12 for s in sums])
+
+
 def differences(got, wanted, where):
     for key, value in wanted.items():
         for k, (a, b) in enumerate(zip(got[key], value) if isinstance(value, list) else [(got[key], value)]):
@@ -117,7 +241,7 @@ def drawn(rng):
 
 
 def lines(boxes, empty):
-    return "".join(",".join(map(repr, b)) + "\n" if b else empty for b in boxes)
+    return "".join(f"{b}\n" if isinstance(b, int) else ",".join(map(repr, b)) + "\n" if b else empty for b in boxes)
 
 
 def write(folder, name, text):
@@ -128,31 +252,55 @@ def write(folder, name, text):
 
 def main():
     airtruth = os.path.abspath(sys.argv[1])
-    run = lambda *command: subprocess.run([airtruth, *command], capture_output=True, text=True)
+    run_airtruth = lambda *command: subprocess.run([airtruth, *command], capture_output=True, text=True)
     with tempfile.TemporaryDirectory(prefix="airtruth_evaluate_") as root:
         checked = 0
         for seed in range(12):
             rng = random.Random(seed)
             place = os.path.join(root, str(seed))
             sequences = {f"s{k}": drawn(rng) for k in range(4)}
+            mine = place + "/results/mine"
+            restarts, multistarts, others = {}, {}, {}
             for name, (truth, answers, seconds) in sequences.items():
                 rows = "".join(f"{i},{','.join(map(repr, b))}\n" for i, b in enumerate(truth) if b)
                 write(place + "/csv", name + ".csv", "frame,x,y,w,h\n" + rows)
-                write(place + "/results/mine", name + ".txt", lines(answers, "nan,nan,nan,nan\n"))
-                write(place + "/results/mine", name + "_time.txt", "".join(f"{s!r}\n" for s in seconds))
+                write(mine, name + ".txt", lines(answers, "nan,nan,nan,nan\n"))
+                write(mine, name + "_time.txt", "".join(f"{s!r}\n" for s in seconds))
+                others[name] = [tuple(v + rng.gauss(0, 9) for v in b[:2]) + b[2:] if b else None for b in answers]
+                # The other tracker's are laid out as GOT-10k's toolkit does it, and begin at 1.
+                write(f"{place}/results/other/{name}", name + "_001.txt", lines(others[name], "0,0,0,0\n"))
+                runs = [vot_runs(rng, truth, answers) for _ in range(2)]
+                restarts[name] = (truth, [run for run, _ in runs])
+                multistarts[name] = (truth, runs[0][1])
+                for k, (run, _) in enumerate(runs):
+                    write(f"{mine}/baseline/{name}", f"{name}_{k + 1:03d}.txt", lines(run, "nan,nan,nan,nan\n"))
+                for (anchor, _), run in runs[0][1].items():
+                    write(f"{mine}/multistart/{name}", f"{name}_{anchor:08d}.txt", lines(run, "nan,nan,nan,nan\n"))
             for command in (["dataset", "import", place + "/csv", "-f", "csv", "--size", f"{WIDTH}x{HEIGHT}", "-o", place + "/set"],
-                            ["evaluate", place + "/set", place + "/results/mine", "-o", place + "/evaluation"]):
-                done = run(*command)
+                            ["evaluate", place + "/set", mine, place + "/results/other", "--eao-range", "8", "25", "-o", place + "/evaluation"]):
+                done = run_airtruth(*command)
                 if done.returncode != 0:
                     sys.exit(f"evaluate_test: {' '.join(command)}: {done.stderr}")
             with open(place + "/evaluation/evaluation.json", encoding="utf-8") as file:
-                found = json.load(file)["trackers"][0]
+                evaluation = json.load(file)
+            found = next(t for t in evaluation["trackers"] if t["name"] == "mine")
             wanted = {name: reference(*sequence) for name, sequence in sequences.items()}
+            ordered = sorted(wanted)
             off = [d for s in found["sequences"] for d in differences(s, wanted[s["name"]], s["name"])]
-            off += differences(found["overall"], overall([wanted[n] for n in sorted(wanted)]), "overall")
+            off += differences(found["overall"], overall([wanted[n] for n in ordered]), "overall")
+            off += differences(found["restart"], restart_reference([restarts[n] for n in ordered], 8, 25), "restart")
+            off += differences(found["multistart"], multistart_reference([multistarts[n] for n in ordered], 8, 25), "multistart")
+            for s in found["sequences"]:
+                off += differences(s["restart"], restart_reference([restarts[s["name"]]], 8, 25), "restart " + s["name"])
+                off += differences(s["multistart"], multistart_reference([multistarts[s["name"]]], 8, 25), "multistart " + s["name"])
+            other = {name: reference(sequences[name][0], others[name], [1] * len(others[name])) for name in ordered}
+            pair = evaluation["comparisons"][0]
+            sign = 1 if pair["a"] == "mine" else -1
+            aucs = [wanted[n]["auc"] for n in ordered], [other[n]["auc"] for n in ordered]
+            off += differences(pair, {"auc_difference": sign * mean([x - y for x, y in zip(*aucs)]), "p_value": sign_test(*aucs)}, "pair")
             if len(found["sequences"]) != 4 or off:
                 sys.exit("evaluate_test: seed %d\n  %s" % (seed, "\n  ".join(off[:10])))
-            checked += 5
+            checked += 8
         place = os.path.join(root, "0")
         truth = drawn(random.Random(0))[0]
         for name, text, expected in (
@@ -166,7 +314,7 @@ def main():
             for old in os.listdir(bad):
                 os.remove(os.path.join(bad, old))
             write(bad, name, text)
-            done = run("evaluate", place + "/set", bad, "-o", root + "/never")
+            done = run_airtruth("evaluate", place + "/set", bad, "-o", root + "/never")
             if done.returncode != 2 or expected not in done.stderr or os.path.exists(root + "/never"):
                 sys.exit(f"evaluate_test: {name}: {done.returncode}, {done.stderr!r}; expected {expected!r}")
         print(f"{checked} scores agree to 1e-9; 5 kinds of bad results are refused")

@@ -94,12 +94,12 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
 """
 
 
-def looked_at(browser, folder, size):
-    """What LOOK found in folder/report.html, in a frame of `size`."""
+def looked_at(browser, folder, size, look=LOOK):
+    """What the script `look` found in the page that it fetches from `folder`, in a frame of `size`."""
     width, height = size
     with open(os.path.join(folder, "look.html"), "w", encoding="utf-8") as page:
         page.write(f'<!DOCTYPE html><meta charset="utf-8"><pre id="result"></pre>'
-                   f'<iframe id="frame" width="{width}" height="{height}"></iframe><script>{LOOK}</script>')
+                   f'<iframe id="frame" width="{width}" height="{height}"></iframe><script>{look}</script>')
     quiet = type("Quiet", (http.server.SimpleHTTPRequestHandler,), {"log_message": lambda *_: None})
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(quiet, directory=folder))
     threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -1,91 +1,97 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dataset/track.h"
-
-#include <algorithm>
+#include <charconv>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "cli/commands.h"
-#include "dataset/evaluate.h"
+#include "experiment/run.h"
 #include "tracking/tracker.h"
 
 namespace airtruth::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Track {
-  std::string set;
+  std::string source;
   std::string out;
   std::vector<std::string> trackers;
-  dataset::TrackOptions options;
+  std::string protocol = "ope";
+  std::string init;
+  std::int64_t first_frame = 0;
+  experiment::RunOptions options;
 };
+
+// "x,y,w,h".
+Box box_of(const std::string& text) {
+  std::vector<double> n;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  while (at < end) {
+    double value = 0;
+    const auto [stop, fault] = std::from_chars(at, end, value);
+    if (fault != std::errc() || (stop != end && *stop != ',')) break;
+    n.push_back(value);
+    at = stop == end ? end : stop + 1;
+  }
+  const bool is_box = at == end && n.size() == 4 && !text.ends_with(',');
+  if (!is_box || !(n[2] > 0) || !(n[3] > 0) || !(n[2] < 1e6) || !(n[3] < 1e6) ||
+      !(std::abs(n[0]) < 1e6) || !(std::abs(n[1]) < 1e6))
+    throw Error("--init is '" + text +
+                "'; expected x,y,width,height in pixels, with a width and height above 0");
+  return {n[0], n[1], n[2], n[3]};
+}
+
+void tell(const experiment::RunSummary& summary, const char* unit, Console& console) {
+  const double rate =
+      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
+  console.result(
+      fmt::format("{}: {} {} tracked{}{}{}",
+                  summary.folder.string(),
+                  summary.made,
+                  unit,
+                  rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "",
+                  summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "",
+                  summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : ""));
+}
+
+void refuse_mixed(const Track& arguments, bool is_video) {
+  const fs::path source = arguments.source;
+  if (!fs::exists(source) && source.string().find('%') == std::string::npos)
+    throw Error("does not exist", {source.string()});
+  if (is_video && arguments.options.protocol != experiment::Protocol::kOnePass)
+    throw Error("--protocol " + arguments.protocol +
+                " begins a tracker on truth; a video with --init has none");
+  if (!is_video && !fs::is_directory(source))
+    throw Error("is a video; give --init x,y,width,height to say what to follow",
+                {source.string()});
+  if (!is_video && arguments.first_frame != 0)
+    throw Error("--first-frame goes with --init; a data set's truth says where runs begin");
+}
 
 void run_track(Track arguments, Context& context) {
   Console& console = context.console();
-  dataset::TrackOptions& options = arguments.options;
+  experiment::RunOptions& options = arguments.options;
   options.warn = console.warn();
   options.stop = context.stop;
+  options.protocol = experiment::protocol_from_name(arguments.protocol);
+  const bool is_video = !arguments.init.empty();
+  refuse_mixed(arguments, is_video);
+  const Box init = is_video ? box_of(arguments.init) : Box{};
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
     options.progress = [&](std::int64_t done, std::int64_t total) {
-      console.progress("tracking with " + tracker, done, total, "sequences");
+      console.progress("tracking with " + tracker, done, total, is_video ? "frames" : "sequences");
     };
-    const dataset::TrackSummary summary = dataset::track(arguments.set, arguments.out, options);
-    const double rate =
-        summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
-    console.result(fmt::format("{}: {} sequences tracked{}, {} were there",
-                               (dataset::fs::path(arguments.out) / tracker).string(),
-                               summary.made,
-                               rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "",
-                               summary.kept));
-  }
-}
-
-struct Evaluate {
-  std::string set;
-  std::vector<std::string> results;
-  std::string out;
-  int origin_px = 0;
-};
-
-void run_evaluate(const Evaluate& arguments, Context& context) {
-  Console& console = context.console();
-  const std::vector<dataset::fs::path> results(arguments.results.begin(), arguments.results.end());
-  std::vector<dataset::ScoredTracker> trackers =
-      dataset::evaluate(arguments.set, results, arguments.origin_px, console.warn());
-  std::stable_sort(trackers.begin(), trackers.end(), [](const auto& a, const auto& b) {
-    return a.overall.auc > b.overall.auc;
-  });
-  dataset::write_evaluation(trackers, arguments.out);
-  console.result(fmt::format("{:<20} {:>9} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9} {:>8} {:>8} {:>9}",
-                             "tracker",
-                             "sequences",
-                             "AUC",
-                             "P@20",
-                             "NP",
-                             "AO",
-                             "SR50",
-                             "centre px",
-                             "x px",
-                             "y px",
-                             "frames/s"));
-  for (const dataset::ScoredTracker& tracker : trackers) {
-    const evaluation::Score& s = tracker.overall;
-    console.result(
-        fmt::format("{:<20} {:>9} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.2f} {:>8.2f} "
-                    "{:>8.2f} {:>9.1f}",
-                    tracker.name,
-                    tracker.sequences.size(),
-                    s.auc,
-                    s.precision_20px,
-                    s.normalised_auc,
-                    s.average_overlap,
-                    s.success_50,
-                    s.centre_mean_px,
-                    s.x_mean_px,
-                    s.y_mean_px,
-                    s.frames_per_second));
+    if (is_video)
+      tell(experiment::run_on_video(
+               arguments.source, init, arguments.first_frame, arguments.out, options),
+           "video",
+           console);
+    else
+      tell(experiment::run(arguments.source, arguments.out, options), "runs", console);
   }
 }
 
@@ -93,41 +99,59 @@ void run_evaluate(const Evaluate& arguments, Context& context) {
 
 void add_track(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Track>();
-  auto* command = app.add_subcommand("track", "Run trackers over a data set");
-  command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
+  auto* command = app.add_subcommand("track", "Run trackers over a data set or a video");
+  experiment::RunOptions& options = arguments->options;
+  command
+      ->add_option("DIR|VIDEO",
+                   arguments->source,
+                   "A data set, made or imported; or a video or folder of images, with --init")
+      ->required();
   std::string names;
-  for (const std::string& name : tracking::tracker_names())
-    names += (names.empty() ? "" : ", ") + name;
-  command->add_option("--tracker,-t", arguments->trackers, "One or more of " + names)->required();
+  for (const std::string& name : tracking::tracker_names()) names += name + ", ";
+  command
+      ->add_option("--tracker,-t",
+                   arguments->trackers,
+                   "One or more of " + names +
+                       "trax:COMMAND for a program that speaks TraX (NAME=trax:COMMAND names its "
+                       "results), trax-socket:COMMAND for one that connects to TRAX_SOCKET")
+      ->required();
   command
       ->add_option("--out,-o",
                    arguments->out,
                    "Results, a folder for each tracker; a run that was stopped goes on in it")
       ->required();
-  command->add_option("--only", arguments->options.only, "Sequences whose name fits (* and ?)");
-  command->add_option("--seed", arguments->options.seed, "Of the trackers' chance (default: 1)");
+  command->add_option("--protocol",
+                      arguments->protocol,
+                      "ope: begun once (default); restart: begun anew after each failure; "
+                      "multistart: begun at many frames, forward and backward");
+  command->add_option(
+      "--init", arguments->init, "x,y,width,height of what to follow in a video, pixels from 0");
+  command->add_option("--first-frame", arguments->first_frame, "Frame of --init (default: 0)")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
+  command->add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  command->add_option("--seed", options.seed, "Of the trackers' chance (default: 1)");
+  command->add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
+      ->check(CLI::Range(1, 999));
+  command
+      ->add_option("--anchor-step",
+                   options.anchor_step,
+                   "Frames between the starts of --protocol multistart (default: 50)")
+      ->check(CLI::Range(1, 1'000'000));
+  command
+      ->add_option("--timeout",
+                   options.answer_s,
+                   "Longest that a TraX tracker may take for an answer, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
+  command
+      ->add_option(
+          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
   command
       ->add_option("--jobs,-j",
-                   arguments->options.jobs,
+                   options.jobs,
                    "Sequences at a time (default: 1, so that times are a tracker's own)")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &context] { run_track(*arguments, context); });
-}
-
-void add_evaluate(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Evaluate>();
-  auto* command = app.add_subcommand("evaluate", "Score trackers' results against a data set");
-  command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
-  command->add_option("RESULTS", arguments->results, "Folders of results, one for each tracker")
-      ->required();
-  command->add_option("--out,-o", arguments->out, "Folder for evaluation.json and the tables")
-      ->required();
-  command
-      ->add_option("--origin",
-                   arguments->origin_px,
-                   "What the results call the first pixel: 0 (default) or 1")
-      ->check(CLI::Range(0, 1));
-  command->callback([arguments, &context] { run_evaluate(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -19,6 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kLabels = "labels.jsonl";
 constexpr double kEarthRadiusM = 6'371'000;
 
 // The horizon is seen below the level by its dip, sqrt(2 h / R) of the height.
@@ -112,9 +113,12 @@ LabelledSet::LabelledSet(const fs::path& root) : root_(root) {
 
 fs::path LabelledSet::folder(const std::string& name) const { return root_ / name; }
 
+bool LabelledSet::is_imported(const std::string& name) const {
+  return fs::exists(folder(name) / kLabels);
+}
+
 exchange::Clip LabelledSet::clip(const std::string& name) const {
-  const fs::path labels = folder(name) / "labels.jsonl";
-  if (fs::exists(labels)) return exchange::read_labels(labels);
+  if (is_imported(name)) return exchange::read_labels(folder(name) / kLabels);
   return clip_of(sequence::open_finished(folder(name)));
 }
 

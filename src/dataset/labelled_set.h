@@ -31,6 +31,8 @@ class LabelledSet {
   // With `media` as the path of its video.
   exchange::Clip clip(const std::string& name) const;
   fs::path folder(const std::string& name) const;
+  // It was labelled elsewhere: of its camera nothing is known.
+  bool is_imported(const std::string& name) const;
   // Some of the sequences that the catalogue asks for are not there.
   std::int64_t missing() const { return missing_; }
 

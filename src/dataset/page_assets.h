@@ -3,13 +3,16 @@
 
 #include <string_view>
 
-// The report page's parts, put into the program when it is built: src/dataset/page/* and Debian's
+// The parts of our pages, put into the program when it is built: src/dataset/page/* and Debian's
 // Chart.js (package libjs-chart.js, MIT licence).
 namespace airtruth::dataset {
 
 std::string_view page_css();
-std::string_view page_body();
+std::string_view common_js();
+std::string_view page_body();  // of a data set's report
 std::string_view page_js();
+std::string_view evaluation_body();  // of an evaluation's
+std::string_view evaluation_js();
 std::string_view chart_js();
 
 }  // namespace airtruth::dataset

@@ -13,6 +13,7 @@
 #include "base/version.h"
 #include "dataset/folder.h"
 #include "dataset/in_parallel.h"
+#include "dataset/page.h"
 #include "dataset/page_assets.h"
 #include "dataset/portrait.h"
 
@@ -161,19 +162,6 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
           {"files", files}};
 }
 
-// Fit for a <script> element: no text of the user's can end it or begin a comment.
-std::string in_script(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 // The data card: what the set is, how it was made, and what it does not say.
 Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portrait>& portraits) {
   Json card = {{"made by", std::string("airtruth ") + kVersion}};
@@ -261,29 +249,18 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
                        {"contrast", totals.contrast.json()}}},
                      {"card", card},
                      {"sequences", sequences}};
-  std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>airtruth data set</title>\n<style>\n";
-  page += page_css();
-  page += "</style>\n</head>\n<body>\n";
-  page += page_body();
-  page += "<script type=\"application/json\" id=\"data\">" + in_script(data) + "</script>\n";
+  std::vector<PageBlob> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
     if (portraits[i].preview_jpeg.empty()) continue;
-    page += fmt::format("<script type=\"text/plain\" id=\"preview-{}\">{}</script>\n",
-                        i,
-                        base64_of(portraits[i].preview_jpeg));
-    page += fmt::format("<script type=\"text/plain\" id=\"loop-{}\">{}</script>\n",
-                        i,
-                        base64_of(portraits[i].loop_jpeg));
+    pictures.push_back({fmt::format("preview-{}", i), base64_of(portraits[i].preview_jpeg)});
+    pictures.push_back({fmt::format("loop-{}", i), base64_of(portraits[i].loop_jpeg)});
   }
-  page += "<script>\n";
-  page += chart_js();
-  page += "\n</script>\n<script>\n";
-  page += page_js();
-  page += "</script>\n</body>\n</html>\n";
-  write_file(out, page);
+  write_file(out,
+             page_of("airtruth data set",
+                     page_body(),
+                     data.dump(-1, ' ', false, Json::error_handler_t::replace),
+                     pictures,
+                     page_js()));
 }
 
 }  // namespace airtruth::dataset

@@ -106,6 +106,16 @@ double overlap(const Box& a, const Box& b) {
   return shared / (a.area() + b.area() - shared);
 }
 
+Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
+
+std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box& b) {
+  const auto from = lens.ray_from_pixel(centre_of(a));
+  const auto to = lens.ray_from_pixel(centre_of(b));
+  if (!from || !to) return std::nullopt;
+  // Of small angles, too: the cosine alone has no digits left there.
+  return 1000 * std::atan2(from->cross(*to).norm(), from->dot(*to));
+}
+
 Score score(std::span<const FramePair> frames, int width, int height) {
   Score score;
   score.frames = std::ssize(frames);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "lens/lens.h"
 
 // How well a tracker's boxes agree with the truth. Boxes are continuous; overlap is the area of the
 // intersection over that of the union; centres are x + width / 2, y + height / 2 (the public
@@ -22,6 +23,11 @@ struct FramePair {
 };
 
 double overlap(const Box& a, const Box& b);
+Pixel centre_of(const Box& box);
+
+// Angle between the rays through the centres of two boxes, milliradians; empty where the lens sees
+// nothing at one of them.
+std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box& b);
 
 // Thresholds of the curves: overlaps 0, 0.05 .. 1; distances 0 .. 50 px; normalised distances 0,
 // 0.01 .. 0.5.

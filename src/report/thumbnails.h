@@ -12,9 +12,12 @@ namespace airtruth::report {
 // The whole picture, at most `width` pixels wide.
 image::Rgb8 small_copy(const image::Rgb8& picture, int width);
 
-// A square around a box, `side` pixels large, with some of its surroundings. Black where the square
-// sticks out of the picture.
+// A square around a box, `side` pixels large, with some of its surroundings. Black where a square
+// sticks out of the picture, here and below.
 image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side);
+
+// The square of `px` from (x, y) on, `side` pixels large.
+image::Rgb8 square(const image::Picture& picture, double x, double y, double px, int side);
 
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);

@@ -2,6 +2,7 @@
 #include "tracking/classifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace airtruth::tracking {
@@ -14,14 +15,41 @@ constexpr float kMostRatio = 11.5f;
 
 float sigmoid(float z) { return 1 / (1 + std::exp(-z)); }
 
-// ln N(f; object) - ln N(f; surroundings), equal priors.
-template <typename Gaussian>
-float log_ratio(float f, const Gaussian& object, const Gaussian& around) {
-  const float a = f - object.mean;
-  const float b = f - around.mean;
-  const float h = -a * a / (2 * object.variance) + b * b / (2 * around.variance) -
-                  0.5f * std::log(object.variance / around.variance);
-  return std::clamp(h, -kMostRatio, kMostRatio);
+// ln N(f; object) - ln N(f; surroundings), equal priors, as a quadratic of f.
+class Ratio {
+ public:
+  template <typename Gaussian>
+  Ratio(const Gaussian& object, const Gaussian& around)
+      : mean_object_(object.mean),
+        mean_around_(around.mean),
+        object_(-1 / (2 * object.variance)),
+        around_(1 / (2 * around.variance)),
+        constant_(-0.5f * std::log(object.variance / around.variance)) {}
+  float operator()(float f) const {
+    const float a = f - mean_object_;
+    const float b = f - mean_around_;
+    return std::clamp(a * a * object_ + b * b * around_ + constant_, -kMostRatio, kMostRatio);
+  }
+
+ private:
+  float mean_object_, mean_around_, object_, around_, constant_;
+};
+
+// In eight sums side by side: one would be added up in order, a number at a time.
+float dot(std::span<const float> a, std::span<const float> b) {
+  constexpr std::size_t kSums = 8;
+  std::array<float, kSums> sums{};
+  std::size_t i = 0;
+  for (; i + kSums <= a.size(); i += kSums)
+    for (std::size_t k = 0; k < kSums; ++k) sums[k] += a[i + k] * b[i + k];
+  float sum = 0;
+  for (; i < a.size(); ++i) sum += a[i] * b[i];
+  for (const float s : sums) sum += s;
+  return sum;
+}
+
+void add(std::span<const float> values, std::vector<float>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += values[i];
 }
 
 int below(Random& random, int count) {
@@ -47,48 +75,85 @@ Classifier::Classifier(const Am3Options& options, int level, int width, int heig
   }
 }
 
-float Classifier::feature(const Weak& weak, const Pyramid& pyramid, const Place& place) const {
-  float value = 0;
-  for (const Rectangle& r : weak.rectangles)
-    value += r.weight * pyramid.sum(level_, place.x + r.x, place.y + r.y, r.width, r.height);
-  return value * unit_;
+std::vector<std::ptrdiff_t> Classifier::bases_of(const Pyramid& pyramid,
+                                                 std::span<const Place> places) const {
+  std::vector<std::ptrdiff_t> bases;
+  bases.reserve(places.size());
+  for (const Place& place : places) bases.push_back(place.y * pyramid.stride(level_) + place.x);
+  return bases;
 }
 
-float Classifier::score(const Pyramid& pyramid, const Place& place) const {
-  float sum = 0;
-  for (const std::size_t k : selected_) {
-    const Weak& weak = pool_[k];
-    sum += log_ratio(feature(weak, pyramid, place), weak.object, weak.surroundings);
+// Adds a weak classifier's feature of each window to what is in `values`.
+void Classifier::add_feature(const Weak& weak,
+                             const Pyramid& pyramid,
+                             std::span<const std::ptrdiff_t> bases,
+                             std::span<float> values) const {
+  const std::uint32_t* sums = pyramid.sums(level_);
+  const std::ptrdiff_t stride = pyramid.stride(level_);
+  for (const Rectangle& r : weak.rectangles) {
+    const std::uint32_t* above = sums + r.y * stride + r.x;
+    const std::uint32_t* below = above + r.height * stride;
+    const float weight = r.weight * unit_;
+    for (std::size_t i = 0; i < bases.size(); ++i) {
+      const std::ptrdiff_t at = bases[i];
+      // Wraps round as the sums do, and ends right.
+      const std::uint32_t sum = below[at + r.width] - below[at] - above[at + r.width] + above[at];
+      values[i] += weight * static_cast<float>(sum);
+    }
   }
-  return sum;
+}
+
+std::vector<float> Classifier::scores(const Pyramid& pyramid, std::span<const Place> places) const {
+  const std::vector<std::ptrdiff_t> bases = bases_of(pyramid, places);
+  std::vector<float> scores(places.size(), 0);
+  std::vector<float> values(places.size());
+  for (const std::size_t k : selected_) {
+    std::fill(values.begin(), values.end(), 0.0f);
+    add_feature(pool_[k], pyramid, bases, values);
+    const Ratio ratio(pool_[k].object, pool_[k].surroundings);
+    for (std::size_t i = 0; i < values.size(); ++i) scores[i] += ratio(values[i]);
+  }
+  return scores;
 }
 
 Classifier::Matrix Classifier::features(const Pyramid& pyramid,
                                         std::span<const Place> places) const {
-  Matrix values(pool_.size(), std::vector<float>(places.size()));
+  const std::vector<std::ptrdiff_t> bases = bases_of(pyramid, places);
+  Matrix matrix(pool_.size(), places.size());
   for (std::size_t k = 0; k < pool_.size(); ++k)
-    for (std::size_t i = 0; i < places.size(); ++i)
-      values[k][i] = feature(pool_[k], pyramid, places[i]);
-  return values;
+    add_feature(pool_[k], pyramid, bases, matrix.row(k));
+  return matrix;
 }
 
 // Zhang and Song 2013, eq. 7: the variance before the mean, for it needs the old one.
-void Classifier::move(Gaussian& gaussian, const std::vector<float>& values) const {
-  double sum = 0;
-  double squares = 0;
-  for (const float v : values) {
-    sum += v;
-    squares += double{v} * v;
+void Classifier::move(std::size_t weak, const Matrix& object, const Matrix& around) {
+  const auto moved = [&](Gaussian& gaussian, const Matrix& values) {
+    double sum = 0;
+    double squares = 0;
+    for (const float v : values.row(weak)) {
+      sum += v;
+      squares += double{v} * v;
+    }
+    const double n = static_cast<double>(values.samples());
+    const double mean = sum / n;
+    const double variance = std::max(0.0, squares / n - mean * mean);
+    const double keep = is_first_ ? 0 : options_.memory;
+    const double off = gaussian.mean - mean;
+    gaussian.variance =
+        std::max(kLeastVariance,
+                 static_cast<float>(keep * gaussian.variance + (1 - keep) * variance +
+                                    keep * (1 - keep) * off * off));
+    gaussian.mean = static_cast<float>(keep * gaussian.mean + (1 - keep) * mean);
+  };
+  moved(pool_[weak].object, object);
+  moved(pool_[weak].surroundings, around);
+}
+
+void Classifier::to_ratios(Matrix& values) const {
+  for (std::size_t k = 0; k < pool_.size(); ++k) {
+    const Ratio ratio(pool_[k].object, pool_[k].surroundings);
+    for (float& value : values.row(k)) value = ratio(value);
   }
-  const double n = static_cast<double>(values.size());
-  const double mean = sum / n;
-  const double variance = std::max(0.0, squares / n - mean * mean);
-  const double keep = is_first_ ? 0 : options_.memory;
-  const double off = gaussian.mean - mean;
-  gaussian.variance = std::max(kLeastVariance,
-                               static_cast<float>(keep * gaussian.variance + (1 - keep) * variance +
-                                                  keep * (1 - keep) * off * off));
-  gaussian.mean = static_cast<float>(keep * gaussian.mean + (1 - keep) * mean);
 }
 
 void Classifier::learn(const Pyramid& pyramid,
@@ -98,12 +163,9 @@ void Classifier::learn(const Pyramid& pyramid,
   if (positives.empty() || negatives.empty()) return;
   Matrix object = features(pyramid, positives);
   Matrix around = features(pyramid, negatives);
-  for (std::size_t k = 0; k < pool_.size(); ++k) {
-    move(pool_[k].object, object[k]);
-    move(pool_[k].surroundings, around[k]);
-    for (float& f : object[k]) f = log_ratio(f, pool_[k].object, pool_[k].surroundings);
-    for (float& f : around[k]) f = log_ratio(f, pool_[k].object, pool_[k].surroundings);
-  }
+  for (std::size_t k = 0; k < pool_.size(); ++k) move(k, object, around);
+  to_ratios(object);
+  to_ratios(around);
   is_first_ = false;
   selected_.clear();
   if (!options_.weighted) return select_noisy_or(object, around);
@@ -116,15 +178,15 @@ void Classifier::learn(const Pyramid& pyramid,
 void Classifier::select_weighted(const Matrix& object,
                                  std::span<const float> weights,
                                  const Matrix& around) {
-  std::vector<float> strong_object(object.front().size(), 0);
-  std::vector<float> strong_around(around.front().size(), 0);
-  std::vector<float> slope_object(strong_object.size());
-  std::vector<float> slope_around(strong_around.size());
+  std::vector<float> strong_object(object.samples(), 0);
+  std::vector<float> strong_around(around.samples(), 0);
+  std::vector<float> slope_object(object.samples());
+  std::vector<float> slope_around(around.samples());
   std::vector<bool> taken(pool_.size(), false);
-  for (int round = 0; round < std::min<int>(options_.selected, static_cast<int>(pool_.size()));
-       ++round) {
-    float bag = 0;
-    float outside = 0;
+  const int rounds = std::min(options_.selected, static_cast<int>(pool_.size()));
+  for (int round = 0; round < rounds; ++round) {
+    float bag = 1e-12f;
+    float outside = 1e-12f;
     for (std::size_t j = 0; j < strong_object.size(); ++j) {
       const float s = sigmoid(strong_object[j]);
       slope_object[j] = weights[j] * s * (1 - s);
@@ -135,19 +197,12 @@ void Classifier::select_weighted(const Matrix& object,
       slope_around[j] = t * (1 - t);
       outside += 1 - t;
     }
-    bag = std::max(bag, 1e-12f);
-    outside = std::max(outside, 1e-12f);
     std::size_t best = 0;
     float best_gain = -INFINITY;
     for (std::size_t k = 0; k < pool_.size(); ++k) {
       if (taken[k]) continue;
-      float gain_object = 0;
-      float gain_around = 0;
-      for (std::size_t j = 0; j < slope_object.size(); ++j)
-        gain_object += slope_object[j] * object[k][j];
-      for (std::size_t j = 0; j < slope_around.size(); ++j)
-        gain_around += slope_around[j] * around[k][j];
-      const float gain = gain_object / bag - gain_around / outside;
+      const float gain =
+          dot(object.row(k), slope_object) / bag - dot(around.row(k), slope_around) / outside;
       if (gain > best_gain) {
         best_gain = gain;
         best = k;
@@ -155,29 +210,31 @@ void Classifier::select_weighted(const Matrix& object,
     }
     taken[best] = true;
     selected_.push_back(best);
-    for (std::size_t j = 0; j < strong_object.size(); ++j) strong_object[j] += object[best][j];
-    for (std::size_t j = 0; j < strong_around.size(); ++j) strong_around[j] += around[best][j];
+    add(object.row(best), strong_object);
+    add(around.row(best), strong_around);
   }
 }
 
 // Babenko et al. 2011, algorithm 2: one positive bag by noisy-OR, each negative a bag of its own.
 void Classifier::select_noisy_or(const Matrix& object, const Matrix& around) {
-  std::vector<float> strong_object(object.front().size(), 0);
-  std::vector<float> strong_around(around.front().size(), 0);
+  std::vector<float> strong_object(object.samples(), 0);
+  std::vector<float> strong_around(around.samples(), 0);
   std::vector<bool> taken(pool_.size(), false);
-  for (int round = 0; round < std::min<int>(options_.selected, static_cast<int>(pool_.size()));
-       ++round) {
+  const int rounds = std::min(options_.selected, static_cast<int>(pool_.size()));
+  for (int round = 0; round < rounds; ++round) {
     std::size_t best = 0;
     double least = INFINITY;
     for (std::size_t k = 0; k < pool_.size(); ++k) {
       if (taken[k]) continue;
+      const std::span<const float> inside = object.row(k);
+      const std::span<const float> beside = around.row(k);
       double none = 1;
       for (std::size_t j = 0; j < strong_object.size(); ++j)
-        none *= 1 - sigmoid(strong_object[j] + object[k][j]);
+        none *= 1 - sigmoid(strong_object[j] + inside[j]);
       double cost = -std::log(1 - none + 1e-5) / static_cast<double>(strong_object.size());
       double outside = 0;
       for (std::size_t j = 0; j < strong_around.size(); ++j)
-        outside -= std::log(1 - sigmoid(strong_around[j] + around[k][j]) + 1e-5f);
+        outside -= std::log(1 - sigmoid(strong_around[j] + beside[j]) + 1e-5f);
       cost += outside / static_cast<double>(strong_around.size());
       if (cost < least) {
         least = cost;
@@ -186,8 +243,8 @@ void Classifier::select_noisy_or(const Matrix& object, const Matrix& around) {
     }
     taken[best] = true;
     selected_.push_back(best);
-    for (std::size_t j = 0; j < strong_object.size(); ++j) strong_object[j] += object[best][j];
-    for (std::size_t j = 0; j < strong_around.size(); ++j) strong_around[j] += around[best][j];
+    add(object.row(best), strong_object);
+    add(around.row(best), strong_around);
   }
 }
 

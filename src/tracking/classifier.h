@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,9 @@ class Classifier {
  public:
   Classifier(const Am3Options& options, int level, int width, int height, Random random);
 
-  // Sum of the selected weak classifiers: positive where it is the object. Windows must lie in the
-  // pyramid's part.
-  float score(const Pyramid& pyramid, const Place& place) const;
+  // Sum of the selected weak classifiers at each place: positive where it is the object. Windows
+  // must lie in the pyramid's part.
+  std::vector<float> scores(const Pyramid& pyramid, std::span<const Place> places) const;
 
   // `distance_px[i]`: of positives[i] from the object, in full pixels.
   void learn(const Pyramid& pyramid,
@@ -47,11 +48,29 @@ class Classifier {
     std::vector<Rectangle> rectangles;
     Gaussian object, surroundings;
   };
-  using Matrix = std::vector<std::vector<float>>;  // [weak][sample]
+  // A number for each weak classifier of the pool and each sample.
+  class Matrix {
+   public:
+    Matrix(std::size_t pool, std::size_t samples) : samples_(samples), values_(pool * samples) {}
+    std::size_t samples() const { return samples_; }
+    std::span<float> row(std::size_t weak) { return {&values_[weak * samples_], samples_}; }
+    std::span<const float> row(std::size_t weak) const {
+      return {&values_[weak * samples_], samples_};
+    }
 
-  float feature(const Weak& weak, const Pyramid& pyramid, const Place& place) const;
+   private:
+    std::size_t samples_;
+    std::vector<float> values_;
+  };
+
+  void add_feature(const Weak& weak,
+                   const Pyramid& pyramid,
+                   std::span<const std::ptrdiff_t> bases,
+                   std::span<float> values) const;
+  std::vector<std::ptrdiff_t> bases_of(const Pyramid& pyramid, std::span<const Place> places) const;
   Matrix features(const Pyramid& pyramid, std::span<const Place> places) const;
-  void move(Gaussian& gaussian, const std::vector<float>& values) const;
+  void move(std::size_t weak, const Matrix& object, const Matrix& around);
+  void to_ratios(Matrix& values) const;
   void select_weighted(const Matrix& object, std::span<const float> weights, const Matrix& around);
   void select_noisy_or(const Matrix& object, const Matrix& around);
 

@@ -47,17 +47,20 @@ Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
   return answer;
 }
 
-// cv::Tracker takes whole pixels.
+// cv::Tracker takes whole pixels. Made anew for each start: a second init() of the same KCF writes
+// past its buffers.
 class Modern : public Tracker {
  public:
-  Modern(cv::Ptr<cv::Tracker> tracker, std::uint64_t seed)
-      : tracker_(std::move(tracker)), seed_(seed) {}
+  Modern(std::function<cv::Ptr<cv::Tracker>()> make, std::uint64_t seed)
+      : make_(std::move(make)), seed_(seed) {}
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
   void init(const Box& box) override {
     refuse_unsound(box, frame_);
     cv::theRNG().state = seed_;
     last_ = box;
+    broken_ = false;
+    tracker_ = make_();
     const PixelBox whole{static_cast<int>(std::lround(box.x)),
                          static_cast<int>(std::lround(box.y)),
                          std::max(1, static_cast<int>(std::lround(box.width))),
@@ -83,6 +86,7 @@ class Modern : public Tracker {
   }
 
  private:
+  std::function<cv::Ptr<cv::Tracker>()> make_;
   cv::Ptr<cv::Tracker> tracker_;
   std::uint64_t seed_;
   cv::Mat frame_;
@@ -92,14 +96,15 @@ class Modern : public Tracker {
 
 class Legacy : public Tracker {
  public:
-  Legacy(cv::Ptr<cv::legacy::Tracker> tracker, std::uint64_t seed)
-      : tracker_(std::move(tracker)), seed_(seed) {}
+  Legacy(std::function<cv::Ptr<cv::legacy::Tracker>()> make, std::uint64_t seed)
+      : make_(std::move(make)), seed_(seed) {}
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
   void init(const Box& box) override {
     refuse_unsound(box, frame_);
     cv::theRNG().state = seed_;
     last_ = box;
+    tracker_ = make_();
     try {
       broken_ = !tracker_->init(frame_, cv::Rect2d(box.x, box.y, box.width, box.height));
     } catch (const cv::Exception&) {
@@ -121,6 +126,7 @@ class Legacy : public Tracker {
   }
 
  private:
+  std::function<cv::Ptr<cv::legacy::Tracker>()> make_;
   cv::Ptr<cv::legacy::Tracker> tracker_;
   std::uint64_t seed_;
   cv::Mat frame_;
@@ -134,16 +140,15 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   // A state of 0 would stay 0.
   const std::uint64_t state = seed * 2 + 1;
   namespace legacy = cv::legacy;
-  if (name == "opencv-mil") return std::make_unique<Modern>(cv::TrackerMIL::create(), state);
-  if (name == "opencv-kcf") return std::make_unique<Modern>(cv::TrackerKCF::create(), state);
-  if (name == "opencv-csrt") return std::make_unique<Modern>(cv::TrackerCSRT::create(), state);
-  if (name == "opencv-boosting")
-    return std::make_unique<Legacy>(legacy::TrackerBoosting::create(), state);
-  if (name == "opencv-medianflow")
-    return std::make_unique<Legacy>(legacy::TrackerMedianFlow::create(), state);
-  if (name == "opencv-tld") return std::make_unique<Legacy>(legacy::TrackerTLD::create(), state);
-  if (name == "opencv-mosse")
-    return std::make_unique<Legacy>(legacy::TrackerMOSSE::create(), state);
+  const auto modern = [&](auto make) { return std::make_unique<Modern>(make, state); };
+  const auto old = [&](auto make) { return std::make_unique<Legacy>(make, state); };
+  if (name == "opencv-mil") return modern([] { return cv::TrackerMIL::create(); });
+  if (name == "opencv-kcf") return modern([] { return cv::TrackerKCF::create(); });
+  if (name == "opencv-csrt") return modern([] { return cv::TrackerCSRT::create(); });
+  if (name == "opencv-boosting") return old([] { return legacy::TrackerBoosting::create(); });
+  if (name == "opencv-medianflow") return old([] { return legacy::TrackerMedianFlow::create(); });
+  if (name == "opencv-tld") return old([] { return legacy::TrackerTLD::create(); });
+  if (name == "opencv-mosse") return old([] { return legacy::TrackerMOSSE::create(); });
   return nullptr;
 }
 

@@ -2,16 +2,19 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "base/error.h"
 #include "base/suggest.h"
 #include "tracking/am3.h"
 #include "tracking/opencv_trackers.h"
+#include "tracking/trax_tracker.h"
 
 namespace airtruth::tracking {
 
 std::vector<std::string> tracker_names() {
   return {"am3",
+          "am3s",
           "wmil",
           "mil",
           "opencv-mil",
@@ -23,21 +26,38 @@ std::vector<std::string> tracker_names() {
           "opencv-mosse"};
 }
 
-std::unique_ptr<Tracker> make_tracker(std::string_view name, std::uint64_t seed) {
-  if (name == "am3") {
-    Am3Options options;
-    options.seed = seed;
-    return make_am3(options);
-  }
+std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options) {
+  const std::uint64_t seed = options.seed;
+  if (name == "am3") return make_am3(am3_options(seed));
+  if (name == "am3s") return make_am3(am3s_options(seed));
   if (name == "wmil") return make_am3(wmil_options(seed));
   if (name == "mil") return make_am3(mil_options(seed));
   if (auto tracker = make_opencv_tracker(name, seed)) return tracker;
+  if (auto tracker = make_trax_tracker(name, options)) return tracker;
   const std::vector<std::string> names = tracker_names();
   const auto nearest = nearest_spelling(name, names);
   std::string all;
-  for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
+  for (const std::string& n : names) all += n + ", ";
   throw Error("unknown tracker '" + std::string(name) + "'" +
-              (nearest ? "; did you mean '" + *nearest + "'?" : "; expected one of " + all));
+              (nearest ? "; did you mean '" + *nearest + "'?"
+                       : "; expected one of " + all + "or trax:COMMAND"));
+}
+
+TrackerName named(std::string_view tracker, const TrackerOptions& options) {
+  const std::size_t equals = tracker.find('=');
+  if (equals != std::string_view::npos && is_trax(tracker.substr(equals + 1))) {
+    const std::string_view name = tracker.substr(0, equals);
+    const bool fits = !name.empty() && name.front() != '.' && name.size() <= 80 &&
+                      std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                        return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+                      });
+    if (!fits)
+      throw Error("'" + std::string(name) +
+                  "' is no name for a tracker's results; expected letters, digits, '-', '_', '.'");
+    return {std::string(name), std::string(tracker.substr(equals + 1))};
+  }
+  return {is_trax(tracker) ? trax_name(tracker, options) : std::string(tracker),
+          std::string(tracker)};
 }
 
 }  // namespace airtruth::tracking

@@ -8,6 +8,7 @@
 #include "tracking/am3.h"
 #include "tracking/pyramid.h"
 #include "tracking/tracker.h"
+#include "tracking/view.h"
 
 namespace airtruth::tracking {
 namespace {
@@ -43,7 +44,7 @@ Box where(int frame, int width, int height) {
 
 // Mean distance of the centres over 60 frames.
 double mean_error(const std::string& name, std::uint64_t seed, int width = 36, int height = 20) {
-  const auto tracker = make_tracker(name, seed);
+  const auto tracker = make_tracker(name, {.seed = seed});
   Box box = where(0, width, height);
   image::Picture picture = scene(box.x, box.y, width, height, 1);
   tracker->load(picture);
@@ -76,8 +77,89 @@ TEST(Am3, OneSeedIsOneResultAndAnotherIsAnother) {
   EXPECT_NE(mean_error("am3", 7), mean_error("am3", 8));
 }
 
+// A patterned disc that grows and shrinks by half a percent a frame and more.
+image::Picture disc(double x, double y, double radius, std::uint64_t noise) {
+  image::Picture picture = scene(280, 200, 8, 8, noise);
+  for (int row = 0; row < kHeight; ++row)
+    for (int column = 0; column < kWidth; ++column) {
+      const double u = (column + 0.5 - x) / radius;
+      const double v = (row + 0.5 - y) / radius;
+      if (u * u + v * v >= 1) continue;
+      const double pattern = 40 * std::sin(7 * u) * std::cos(9 * v) + 25 * std::sin(13 * u * v);
+      picture.planes[0].row(row)[column] = static_cast<std::uint8_t>(80 + pattern);
+    }
+  return picture;
+}
+
+TEST(Am3s, FollowsTheSizeOfAnObjectUpAndDown) {
+  const auto tracker = make_tracker("am3s", {});
+  const auto radius_at = [](int frame) { return 14 * std::exp(0.9 * std::sin(frame / 28.0)); };
+  const auto x_at = [](int frame) { return 100 + frame * 0.8; };
+  image::Picture picture = disc(x_at(0), 110, radius_at(0), 1);
+  tracker->load(picture);
+  tracker->init({x_at(0) - 14, 110 - 14, 28, 28});
+  double worst = 1;
+  double shared = 0;
+  for (int frame = 1; frame <= 120; ++frame) {
+    const double radius = radius_at(frame);
+    picture = disc(x_at(frame), 110, radius, static_cast<std::uint64_t>(frame) + 1);
+    tracker->load(picture);
+    const Box found = tracker->update().box_px;
+    const double ratio = found.width / (2 * radius);
+    worst = std::max(worst, std::max(ratio, 1 / ratio));
+    const double width =
+        std::min(found.right(), x_at(frame) + radius) - std::max(found.x, x_at(frame) - radius);
+    const double height = std::min(found.bottom(), 110 + radius) - std::max(found.y, 110 - radius);
+    const double both = std::max(0.0, width) * std::max(0.0, height);
+    shared += both / (found.area() + 4 * radius * radius - both) / 120;
+  }
+  // Its radius goes from 14 to 34 and to 6 px.
+  EXPECT_LT(worst, 1.35);
+  EXPECT_GT(shared, 0.7);
+}
+
+TEST(View, ResamplesBetweenCentresOfPixels) {
+  image::Picture picture = image::make_picture(200, 100, {});
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 200; ++x)
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(x + y / 2);
+  const image::Plane same = resampled(picture.luma(), 30, 20, 1, 50, 40);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 50; ++x) EXPECT_EQ(same.row(y)[x], picture.luma().row(20 + y)[30 + x]);
+  for (const double scale : {0.5, 1.7, 2.0, 3.3, 4.0}) {
+    const image::Plane plane = resampled(picture.luma(), 12.5, 8.25, scale, 30, 15);
+    for (int y = 0; y < 15; ++y)
+      for (int x = 0; x < 30; ++x) {
+        const double wanted =
+            (12.5 + (x + 0.5) * scale - 0.5) + (8.25 + (y + 0.5) * scale - 0.5) / 2;
+        EXPECT_NEAR(plane.row(y)[x], wanted, 1.01) << scale << " " << x << " " << y;
+      }
+  }
+  // Beyond the picture its border goes on.
+  const image::Plane beyond = resampled(picture.luma(), -40, -30, 2, 10, 10);
+  EXPECT_NEAR(beyond.row(0)[0], 0, 1);
+  const image::Plane after = resampled(picture.luma(), 240, 130, 2, 4, 4);
+  EXPECT_NEAR(after.row(3)[3], 199 + 49, 1);
+}
+
+TEST(Trackers, CanBeBegunAgain) {
+  for (const std::string& name : tracker_names()) {
+    const auto tracker = make_tracker(name, {});
+    for (const int size : {40, 16, 60}) {
+      const image::Picture picture = scene(60, 60, size, size / 2, 1);
+      tracker->load(picture);
+      tracker->init({60, 60, double(size), size / 2.0});
+      const Box found = tracker->update().box_px;
+      if (name == "opencv-tld" || name == "opencv-mosse" || name == "opencv-boosting")
+        continue;  // they must answer
+      EXPECT_NEAR(found.x + found.width / 2, 60 + size / 2.0, 6) << name << size;
+      EXPECT_NEAR(found.y + found.height / 2, 60 + size / 4.0, 6) << name << size;
+    }
+  }
+}
+
 TEST(Am3, StaysWithinThePictureAtItsBorder) {
-  const auto tracker = make_tracker("am3", 1);
+  const auto tracker = make_tracker("am3", {});
   const image::Picture picture = scene(2, 3, 30, 18, 1);
   tracker->load(picture);
   tracker->init({-4, -3, 36, 24});
@@ -104,14 +186,14 @@ TEST(Trackers, OfOpenCvFollow) {
 
 TEST(Trackers, RefuseABoxWithoutArea) {
   for (const std::string& name : tracker_names()) {
-    const auto tracker = make_tracker(name, 1);
+    const auto tracker = make_tracker(name, {});
     const image::Picture picture = scene(60, 60, 30, 18, 1);
     tracker->load(picture);
     EXPECT_THROW(tracker->init({10, 10, 0, 5}), Error) << name;
     EXPECT_THROW(tracker->init({10, 10, NAN, 5}), Error) << name;
     EXPECT_THROW(tracker->init({1000, 10, 5, 5}), Error) << name;
   }
-  EXPECT_THROW(make_tracker("am4", 1), Error);
+  EXPECT_THROW(make_tracker("am4", {}), Error);
 }
 
 TEST(Pyramid, SumsAreThoseOfThePixels) {

@@ -2,26 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const byId = (id) => document.getElementById(id);
-  const colours = ['#0b6bcb', '#d4652f', '#2da44e', '#8250df', '#bf8700'];
-  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
-  Chart.defaults.color = dark ? '#9aa7b4' : '#5c6b7a';
-  Chart.defaults.borderColor = dark ? '#30363d' : '#e3e8ed';
-  Chart.defaults.animation = false;
-  Chart.defaults.maintainAspectRatio = false;
-  Chart.defaults.font.size = 11;
-
-  const element = (tag, text, name) => {
-    const made = document.createElement(tag);
-    if (text !== undefined) made.textContent = text;
-    if (name) made.className = name;
-    return made;
-  };
-  const known = (values) => values.filter((v) => v !== null);
-  const least = (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null);
-  const most = (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null);
-  const number = (value, digits = 0) =>
-    value === null ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
+  const { byId, colours, element, least, most, number, line, axis, legend } = airtruth;
 
   // What a sequence is sorted and filtered by: over the frames that show an intruder.
   data.sequences.forEach((sequence, index) => {
@@ -70,11 +51,6 @@
       options: { indexAxis: 'y', plugins: { legend: { display: false } }, scales: { x: { ticks: { precision: 0, maxTicksLimit: 5 } } } },
     });
   };
-
-  const line = (label, points, colour, more = {}) =>
-    ({ label, data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more });
-  const axis = (text, more = {}) => ({ type: 'linear', title: { display: true, text }, ...more });
-  const legend = { position: 'top', labels: { boxWidth: 12, filter: (item) => !item.text.startsWith('_') } };
 
   // From above, north up, one scale for both axes, with the camera's view at the first frame.
   const planView = (canvas, sequence) => {

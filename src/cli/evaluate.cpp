@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/commands.h"
+#include "experiment/assess.h"
+#include "experiment/figures.h"
+#include "experiment/page.h"
+
+namespace airtruth::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Evaluate {
+  std::string set;
+  std::vector<std::string> results;
+  std::string out;
+  std::vector<int> eao_range;
+  std::string against;
+  bool no_page = false;
+  std::string figures;
+  experiment::AssessOptions options;
+};
+
+std::string number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+
+void print_one_pass(const experiment::Assessment& assessment, Console& console) {
+  console.result(
+      fmt::format("{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>8}",
+                  "tracker",
+                  "sequences",
+                  "AUC",
+                  "95 %",
+                  "P@20",
+                  "NP",
+                  "AO",
+                  "SR50",
+                  "centre px",
+                  "mrad",
+                  "lost",
+                  "frames/s"));
+  for (const experiment::ScoredTracker& tracker : assessment.trackers) {
+    if (!tracker.overall) continue;
+    const evaluation::Score& s = *tracker.overall;
+    const auto interval = tracker.intervals.at("auc");
+    console.result(fmt::format(
+        "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
+        "{:>8.1f}",
+        tracker.name,
+        std::count_if(tracker.sequences.begin(),
+                      tracker.sequences.end(),
+                      [](const auto& sequence) { return sequence.score.has_value(); }),
+        s.auc,
+        interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
+        s.precision_20px,
+        s.normalised_auc,
+        s.average_overlap,
+        s.success_50,
+        s.centre_mean_px,
+        number(tracker.angle_mrad, 1),
+        tracker.lost,
+        s.frames_per_second));
+  }
+}
+
+void print_vot(const experiment::Assessment& assessment, Console& console) {
+  const auto [low, high] = assessment.eao_range;
+  for (const experiment::ScoredTracker& tracker : assessment.trackers) {
+    if (tracker.restart)
+      console.result(
+          fmt::format("{:<20} restart: accuracy {:.3f}, {:.2f} failures a run, reliability {:.3f}, "
+                      "EAO[{}, {}] {}",
+                      tracker.name,
+                      tracker.restart->accuracy,
+                      tracker.restart->failures,
+                      tracker.restart->reliability,
+                      low,
+                      high,
+                      number(tracker.restart->eao, 3)));
+    if (tracker.multistart)
+      console.result(
+          fmt::format("{:<20} multistart: accuracy {:.3f}, robustness {:.3f}, EAO[{}, {}] {}",
+                      tracker.name,
+                      tracker.multistart->accuracy,
+                      tracker.multistart->robustness,
+                      low,
+                      high,
+                      number(tracker.multistart->eao, 3)));
+  }
+}
+
+void print_comparison(const experiment::Assessment& assessment, Console& console) {
+  if (assessment.comparisons.empty()) return;
+  const experiment::Comparison& best = assessment.comparisons.front();
+  const auto& interval = best.auc.interval;
+  console.result(fmt::format(
+      "{} against {}: AUC {:+.3f}{}, better in {} of {} sequences, p = {:.3f}",
+      best.a,
+      best.b,
+      best.auc.difference,
+      interval ? fmt::format(" ({:+.3f} to {:+.3f})", interval->low, interval->high) : "",
+      best.auc.wins,
+      best.sequences,
+      best.auc.p_value));
+}
+
+void print_agreement(const experiment::Agreement& agreement,
+                     const std::string& other,
+                     Console& console) {
+  console.result(fmt::format("{}: {} trackers in common, Kendall's tau of their AUC {}",
+                             other,
+                             agreement.trackers.size(),
+                             number(agreement.tau, 3)));
+}
+
+void run_evaluate(Evaluate arguments, Context& context) {
+  Console& console = context.console();
+  experiment::AssessOptions& options = arguments.options;
+  if (!arguments.eao_range.empty()) {
+    if (arguments.eao_range[1] < arguments.eao_range[0])
+      throw Error(fmt::format(
+          "--eao-range {} {} goes backward", arguments.eao_range[0], arguments.eao_range[1]));
+    options.eao_range = {arguments.eao_range[0], arguments.eao_range[1]};
+  }
+  if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
+  options.with_film = !arguments.no_page;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    console.progress("reading the videos", done, total, "sequences");
+  };
+  const std::vector<fs::path> results(arguments.results.begin(), arguments.results.end());
+  const experiment::Assessment assessment = experiment::assess(arguments.set, results, options);
+  std::optional<experiment::Agreement> agreement;
+  if (!arguments.against.empty()) agreement = experiment::agreement(assessment, arguments.against);
+  experiment::write_tables(assessment, arguments.out);
+  if (options.with_film) experiment::write_page(assessment, arguments.out);
+  if (!arguments.figures.empty())
+    experiment::write_figures(assessment, arguments.out, arguments.figures);
+  console.end_progress();
+  print_one_pass(assessment, console);
+  print_vot(assessment, console);
+  print_comparison(assessment, console);
+  if (agreement) print_agreement(*agreement, arguments.against, console);
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Evaluate>();
+  auto* command = app.add_subcommand("evaluate", "Score trackers' results against a data set");
+  command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
+  command->add_option("RESULTS", arguments->results, "Folders of results, one for each tracker")
+      ->required();
+  command
+      ->add_option(
+          "--out,-o", arguments->out, "Folder for evaluation.json, the tables and report.html")
+      ->required();
+  command
+      ->add_option("--origin",
+                   arguments->options.origin_px,
+                   "What the results call the first pixel: 0 (default) or 1")
+      ->check(CLI::Range(0, 1));
+  command
+      ->add_option("--eao-range",
+                   arguments->eao_range,
+                   "Lengths over which VOT's expected average overlap is taken, frames (default: "
+                   "by the data set's own lengths)")
+      ->expected(2)
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--against",
+                      arguments->against,
+                      "Another evaluation.json: how far do the two rankings agree?");
+  command->add_option(
+      "--figures", arguments->figures, "Also the plots as files for a paper: png, pdf or svg");
+  command->add_flag("--no-page",
+                    arguments->no_page,
+                    "No report.html, and no results by contrast: videos are not read");
+  command->add_option("--jobs,-j", arguments->options.jobs, "Videos read at a time")
+      ->check(CLI::Range(1, 1024));
+  command->callback([arguments, &context] { run_evaluate(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

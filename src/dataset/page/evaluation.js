@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+(() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const { byId, colours, element, most, number, line, axis, legend } = airtruth;
+  const trackers = data.trackers;
+  const TRUTH = '#00b34a';
+  trackers.forEach((tracker, k) => { tracker.colour = colours[k % colours.length]; });
+  const scored = trackers.filter((tracker) => tracker.overall);
+
+  const dotted = (name, colour) => {
+    const cell = element('td');
+    const dot = element('span', '', 'dot');
+    dot.style.background = colour;
+    cell.append(dot, document.createTextNode(name));
+    return cell;
+  };
+
+  // A bar over the interval and a mark at the mean, of `top`.
+  const interval = (mean, bounds, top) => {
+    const bar = element('span', '', 'range');
+    const mark = element('b');
+    mark.style.left = `${(98 * mean) / top}%`;
+    if (bounds) {
+      const span = element('i');
+      span.style.left = `${(100 * bounds[0]) / top}%`;
+      span.style.width = `${(100 * (bounds[1] - bounds[0])) / top}%`;
+      bar.append(span);
+      bar.title = `95 %: ${number(bounds[0], 3)} to ${number(bounds[1], 3)}`;
+    }
+    bar.append(mark);
+    return bar;
+  };
+
+  // Columns: heading, value of a tracker, digits.
+  const sortable = (table, rows, columns, firstSort) => {
+    let by = firstSort;
+    let up = false;
+    const draw = () => {
+      table.replaceChildren();
+      const head = table.createTHead().insertRow();
+      columns.forEach((column, k) => {
+        const cell = element('th');
+        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
+        button.type = 'button';
+        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
+        cell.append(button);
+        head.append(cell);
+      });
+      const key = columns[by].of;
+      const sorted = [...rows].sort((a, b) => {
+        const [x, y] = [key(a), key(b)];
+        if (x === null || y === null) return (x === null) - (y === null);
+        return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1);
+      });
+      const body = table.createTBody();
+      for (const row of sorted) {
+        const line = body.insertRow();
+        columns.forEach((column, k) => {
+          if (k === 0) { line.append(dotted(row.name, row.colour)); return; }
+          const cell = line.insertCell();
+          if (column.draw) column.draw(cell, row);
+          else cell.textContent = number(column.of(row), column.digits);
+        });
+      }
+    };
+    draw();
+  };
+
+  const bracket = (name, digits) => (cell, row) => {
+    const bounds = row.overall.intervals_95[name];
+    cell.textContent = number(row.overall[name], digits);
+    if (bounds) cell.title = `95 %: ${number(bounds[0], digits)} to ${number(bounds[1], digits)}`;
+  };
+  const drawRanking = () => {
+    const top = most(scored.map((t) => (t.overall.intervals_95.auc || [0, t.overall.auc])[1])) || 1;
+    const plain = (name, title, digits, up) => ({ name: title, digits, up, of: (t) => t.overall[name] });
+    const measured = (name, title, digits, up) => ({ ...plain(name, title, digits, up), draw: bracket(name, digits) });
+    sortable(byId('ranking'), scored, [
+      { name: 'tracker', of: (t) => t.name, up: true },
+      { name: 'sequences', of: (t) => t.sequences, digits: 0 },
+      measured('auc', 'AUC', 3),
+      { name: '95 %', of: (t) => t.overall.auc, draw: (cell, t) => cell.append(interval(t.overall.auc, t.overall.intervals_95.auc, top)) },
+      measured('precision_20px', 'P@20', 3),
+      measured('normalised_auc', 'NP', 3),
+      measured('average_overlap', 'AO', 3),
+      measured('success_50', 'SR50', 3),
+      measured('centre_mean_px', 'centre, px', 1, true),
+      plain('angle_mrad', 'mrad', 1, true),
+      measured('x_rmse_px', 'x rmse, px', 1, true),
+      measured('y_rmse_px', 'y rmse, px', 1, true),
+      plain('sequences_lost', 'lost', 0, true),
+      plain('frames_per_second', 'frames/s', 1),
+    ], 2);
+    const vot = trackers.filter((t) => t.restart || t.multistart);
+    if (!vot.length) return;
+    byId('vot-place').hidden = false;
+    const of = (part, name) => (t) => (t[part] ? t[part][name] : null);
+    sortable(byId('vot'), vot, [
+      { name: 'tracker', of: (t) => t.name, up: true },
+      { name: 'restart: accuracy', of: of('restart', 'accuracy'), digits: 3 },
+      { name: 'failures', of: of('restart', 'failures'), digits: 2, up: true },
+      { name: 'reliability', of: of('restart', 'reliability'), digits: 3 },
+      { name: `EAO [${data.eao_range}]`, of: of('restart', 'eao'), digits: 3 },
+      { name: 'multi-start: accuracy', of: of('multistart', 'accuracy'), digits: 3 },
+      { name: 'robustness', of: of('multistart', 'robustness'), digits: 3 },
+      { name: `EAO [${data.eao_range}]`, of: of('multistart', 'eao'), digits: 3 },
+    ], vot.some((t) => t.restart) ? 4 : 7);
+  };
+
+  // The ranking says which colour is whose.
+  const none = { display: false };
+  const plot = (id, sets, x, y) =>
+    new Chart(byId(id), { type: 'scatter', data: { datasets: sets }, options: { plugins: { legend: none }, scales: { x, y } } });
+
+  const drawCurves = () => {
+    const curve = (name, step) =>
+      scored.map((t) => line(t.name, t.overall[name].map((v, k) => ({ x: k * step, y: v })), t.colour));
+    const share = { min: 0, max: 1 };
+    plot('success', curve('success', 0.05), axis('overlap', share), axis('share of frames', share));
+    plot('precision', curve('precision', 1), axis('centre error, px'), axis('share of frames', share));
+    plot('normalised', curve('normalised_precision', 0.01), axis('centre error over size'), axis('share of frames', share));
+    const runs = trackers.flatMap((t) => [['restart', []], ['multistart', [5, 3]]].filter(([part]) => t[part]).map(([part, dash]) =>
+      line(`${t.name}, ${part}`, t[part].eao_curve.map((v, k) => ({ x: k, y: v })).slice(1), t.colour, { borderDash: dash })));
+    if (runs.length) {
+      byId('eao-place').hidden = false;
+      byId('eao-caption').textContent = `Expected average overlap by length; the score is the mean over ${data.eao_range.join(' to ')} frames`;
+      plot('eao', runs, axis('frames'), axis('overlap', share));
+    }
+  };
+
+  const drawBreakdowns = () => {
+    for (const key of ['range_m', 'size_px', 'contrast']) {
+      const edges = [...new Set(scored.flatMap((t) => t.breakdown[key].map((bin) => bin.from)))].sort((a, b) => a - b);
+      if (!edges.length) { byId(`by-${key}`).closest('figure').hidden = true; continue; }
+      const label = (from) => {
+        const bin = scored.flatMap((t) => t.breakdown[key]).find((b) => b.from === from);
+        return bin.to === null ? `≥ ${from}` : `${from}–${bin.to}`;
+      };
+      const value = (t, from) => (t.breakdown[key].find((b) => b.from === from) || { overlap: null }).overlap;
+      new Chart(byId(`by-${key}`), {
+        type: 'line',
+        data: { labels: edges.map(label), datasets: scored.map((t) => line(t.name, edges.map((e) => value(t, e)), t.colour, { pointRadius: 2.5 })) },
+        options: { plugins: { legend: none }, scales: { y: { min: 0, title: { display: true, text: 'overlap' } } } },
+      });
+    }
+    const names = [...new Set(scored.flatMap((t) => Object.keys(t.breakdown.background)))].sort();
+    new Chart(byId('by-background'), {
+      type: 'bar',
+      data: { labels: names, datasets: scored.map((t) => ({ label: t.name, backgroundColor: t.colour, data: names.map((n) => (t.breakdown.background[n] || { overlap: null }).overlap) })) },
+      options: { plugins: { legend: none }, scales: { y: { beginAtZero: true, title: { display: true, text: 'overlap' } } } },
+    });
+  };
+
+  const drawPairs = () => {
+    if (!data.comparisons.length) { byId('pairs-place').hidden = true; return; }
+    const table = byId('pairs');
+    const head = table.createTHead().insertRow();
+    head.append(element('th', ''), ...scored.map((t) => element('th', t.name)));
+    const body = table.createTBody();
+    for (const a of scored) {
+      const row = body.insertRow();
+      row.append(dotted(a.name, a.colour));
+      for (const b of scored) {
+        const cell = row.insertCell();
+        const found = data.comparisons.find((c) => (c.a === a.name && c.b === b.name) || (c.a === b.name && c.b === a.name));
+        if (!found || !found.sequences) continue;
+        const sign = found.a === a.name ? 1 : -1;
+        const bounds = found.interval_95 && (sign > 0 ? found.interval_95 : [-found.interval_95[1], -found.interval_95[0]]);
+        const sure = bounds && (bounds[0] > 0 || bounds[1] < 0);
+        const text = `${sign * found.auc_difference >= 0 ? '+' : '−'}${number(Math.abs(found.auc_difference), 3)}`;
+        cell.append(element(sure ? 'b' : 'span', text));
+        if (bounds) cell.append(document.createTextNode(` [${number(bounds[0], 3)}, ${number(bounds[1], 3)}]`));
+        cell.append(document.createTextNode(` p ${number(found.p_value, 3)}`));
+        cell.title = `better in ${sign > 0 ? found.wins : found.losses} of ${found.sequences}`;
+      }
+    }
+  };
+
+  // One sequence at a time: three charts over the frames, and the player; all show one frame.
+  const player = (() => {
+    const hidden = new Set();
+    let sequence = null;
+    let at = 0; // index into the sequence's series
+    let charts = [];
+    let timer = null;
+    let asked = 0;
+
+    const cursor = {
+      id: 'cursor',
+      afterDatasetsDraw: (chart) => {
+        if (!sequence) return;
+        const x = chart.scales.x.getPixelForValue(sequence.frame[at]);
+        const { top, bottom } = chart.chartArea;
+        chart.ctx.save();
+        chart.ctx.strokeStyle = Chart.defaults.color;
+        chart.ctx.beginPath();
+        chart.ctx.moveTo(x, top);
+        chart.ctx.lineTo(x, bottom);
+        chart.ctx.stroke();
+        chart.ctx.restore();
+      },
+    };
+
+    const middle = (box, side) => (box ? box[side] + box[side + 2] / 2 : null);
+    const shownTrackers = () => sequence.trackers.filter((one) => !hidden.has(one.tracker));
+    const colourOf = (one) => trackers[one.tracker].colour;
+
+    const drawSeries = () => {
+      charts.forEach((chart) => chart.destroy());
+      const points = (values) => values.map((y, i) => ({ x: sequence.frame[i], y }));
+      const of = (boxes, side) => points(boxes.map((box) => middle(box, side)));
+      const series = (id, side, title) => {
+        const sets = [line('truth', of(sequence.truth, side), TRUTH, { borderWidth: 3, order: 1 })];
+        for (const one of shownTrackers()) sets.push(line(trackers[one.tracker].name, of(one.boxes, side), colourOf(one), { borderWidth: 1 }));
+        return [id, sets, axis(title)];
+      };
+      const distance = (one) => points(sequence.truth.map((box, i) =>
+        box && one.boxes[i] ? Math.hypot(middle(one.boxes[i], 0) - middle(box, 0), middle(one.boxes[i], 1) - middle(box, 1)) : null));
+      const errors = shownTrackers().map((one) => line(trackers[one.tracker].name, distance(one), colourOf(one), { borderWidth: 1 }));
+      charts = [series('x', 0, 'X of the centre, px'), series('y', 1, 'Y of the centre, px'), ['error', errors, axis('centre error, px', { beginAtZero: true })]].map(
+        ([id, sets, y]) =>
+          new Chart(byId(id), {
+            type: 'scatter',
+            data: { datasets: sets },
+            options: {
+              spanGaps: false,
+              events: [],
+              plugins: { legend: id === 'x' ? legend : none, tooltip: { enabled: false } },
+              scales: { x: axis(id === 'error' ? 'frame' : '', { min: sequence.frame[0], max: sequence.frame[sequence.frame.length - 1] }), y: { ...y, afterFit: (scale) => { scale.width = 58; } } },
+            },
+            plugins: [cursor],
+          }));
+    };
+
+    // The picture nearest to where we are, with the boxes of its own frame.
+    const nearestStill = () =>
+      sequence.stills.reduce((best, still) => (Math.abs(still.at - at) < Math.abs(best.at - at) ? still : best), sequence.stills[0]);
+
+    const outline = (context, box, colour, x, y, scale, width) => {
+      if (!box) return;
+      context.strokeStyle = colour;
+      context.lineWidth = width;
+      context.strokeRect((box[0] - x) * scale - 1, (box[1] - y) * scale - 1, box[2] * scale + 2, box[3] * scale + 2);
+    };
+    const drawPicture = (canvas, base64, still, x, y, px) => {
+      const context = canvas.getContext('2d');
+      const mine = asked;
+      const image = new Image();
+      image.onload = () => {
+        if (mine !== asked) return;
+        context.drawImage(image, 0, 0, canvas.width, canvas.height);
+        const scale = canvas.width / px;
+        outline(context, sequence.truth[still.at], TRUTH, x, y, scale, 3);
+        for (const one of shownTrackers()) outline(context, one.boxes[still.at], colourOf(one), x, y, scale, 1.5);
+      };
+      image.src = `data:image/jpeg;base64,${base64}`;
+    };
+    const drawFrame = () => {
+      asked += 1;
+      const frame = sequence.frame[at];
+      const parts = [`frame ${frame}`];
+      if (sequence.range_m[at] !== null) parts.push(`range ${number(sequence.range_m[at])} m`);
+      if (sequence.truth[at]) parts.push(`${number(sequence.truth[at][2])} x ${number(sequence.truth[at][3])} px`);
+      else parts.push('not seen');
+      if (sequence.stills.length) {
+        const still = nearestStill();
+        const text = (part) => byId(`${part}-${sequence.index}-${still.number}`);
+        byId('whole').height = Math.round((800 * sequence.height) / sequence.width);
+        drawPicture(byId('whole'), text('whole').textContent, still, 0, 0, sequence.width);
+        const close = byId('close');
+        close.getContext('2d').clearRect(0, 0, close.width, close.height);
+        if (text('close')) drawPicture(close, text('close').textContent, still, still.close_x, still.close_y, still.close_px);
+        if (still.at !== at) parts.push(`picture of frame ${sequence.frame[still.at]}`);
+      } else {
+        parts.push('no pictures');
+      }
+      byId('caption').textContent = parts.join(', ');
+      byId('frame').value = at;
+      charts.forEach((chart) => chart.draw());
+    };
+
+    const go = (index) => {
+      at = Math.max(0, Math.min(sequence.frame.length - 1, index));
+      drawFrame();
+    };
+    const stop = () => {
+      clearInterval(timer);
+      timer = null;
+      byId('play').textContent = 'Play';
+    };
+
+    const drawTable = () => {
+      const table = byId('losses');
+      table.replaceChildren();
+      const head = table.createTHead().insertRow();
+      head.append(...['tracker', 'AUC', 'P@20', 'mrad', 'first loss'].map((text) => element('th', text)));
+      const body = table.createTBody();
+      for (const one of sequence.trackers) {
+        const row = body.insertRow();
+        row.append(dotted(trackers[one.tracker].name, colourOf(one)));
+        const lost = one.first_loss
+          ? `frame ${one.first_loss.frame}${one.first_loss.range_m === null ? '' : `, ${number(one.first_loss.range_m)} m`}`
+          : 'never';
+        for (const text of [number(one.auc, 3), number(one.precision_20px, 3), number(one.angle_mrad, 1), lost]) row.append(element('td', text));
+      }
+    };
+
+    const show = (index) => {
+      stop();
+      sequence = data.sequences[index];
+      byId('sequence').value = index;
+      byId('frame').max = sequence.frame.length - 1;
+      byId('facts').textContent = `over ${sequence.background}, ${number(sequence.frames)} frames of ${sequence.width} x ${sequence.height}`;
+      at = 0;
+      drawSeries();
+      drawTable();
+      drawFrame();
+    };
+
+    const seek = (event) => {
+      const chart = charts.find((c) => c.canvas === event.currentTarget);
+      if (!chart) return;
+      const frame = chart.scales.x.getValueForPixel(event.offsetX);
+      let best = 0;
+      sequence.frame.forEach((f, i) => { if (Math.abs(f - frame) < Math.abs(sequence.frame[best] - frame)) best = i; });
+      stop();
+      go(best);
+    };
+
+    const begin = () => {
+      data.sequences.forEach((one, index) => {
+        one.index = index;
+        const option = element('option', one.name);
+        option.value = index;
+        byId('sequence').append(option);
+      });
+      trackers.forEach((tracker, k) => {
+        const label = element('label');
+        const box = element('input');
+        box.type = 'checkbox';
+        box.checked = true;
+        box.addEventListener('change', () => {
+          if (box.checked) hidden.delete(k); else hidden.add(k);
+          drawSeries();
+          drawFrame();
+        });
+        const dot = element('span', '', 'dot');
+        dot.style.background = tracker.colour;
+        label.append(box, dot, document.createTextNode(tracker.name));
+        byId('shown').append(label);
+      });
+      byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
+      const step = (by) => () => show((sequence.index + by + data.sequences.length) % data.sequences.length);
+      byId('previous').addEventListener('click', step(-1));
+      byId('next').addEventListener('click', step(1));
+      byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
+      byId('play').addEventListener('click', () => {
+        if (timer) { stop(); return; }
+        byId('play').textContent = 'Pause';
+        timer = setInterval(() => {
+          const later = sequence.stills.find((still) => still.at > at);
+          if (later) go(later.at); else stop();
+        }, 100);
+      });
+      for (const id of ['x', 'y', 'error']) {
+        byId(id).addEventListener('pointermove', seek);
+        byId(id).addEventListener('pointerdown', seek);
+      }
+      if (data.sequences.length) show(0);
+    };
+    return { begin };
+  })();
+
+  byId('title').textContent = `Trackers on ${data.dataset}`;
+  document.title = byId('title').textContent;
+  byId('summary').textContent = `${number(trackers.length)} trackers, ${number(data.sequences.length)} sequences, ${number(data.frames)} frames; made by airtruth ${data.version}`;
+  drawRanking();
+  drawCurves();
+  drawBreakdowns();
+  drawPairs();
+  player.begin();
+})();

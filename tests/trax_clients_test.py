@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shipped TraX clients, and trackers that misbehave, under `airtruth track`: python3 trax_clients_test.py AIRTRUTH CLIENTS EXAMPLE
+
+Makes a little video with a moving block, follows it with the C++ and the Python client (which share no code with the
+evaluator or each other), then runs trackers that crash, hang, babble, lie and never
+answer over two sequences: each costs its own runs and nothing else.
+"""
+
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+WIDTH, HEIGHT, FRAMES = 160, 120, 24
+
+
+def place(frame):
+    return 40 + 2 * frame, 30 + frame, 14, 10
+
+
+def png(rows):
+    """Grey, 8 bits."""
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
+
+
+def make_set(airtruth, root):
+    """Two sequences of numbered images with a patterned block on a soft ground."""
+    rows = "frame,x,y,w,h\n" + "".join(f"{i},{','.join(map(str, place(i)))}\n" for i in range(FRAMES))
+    os.makedirs(root + "/csv")
+    for name in ("first", "second"):
+        os.makedirs(f"{root}/{name}")
+        for i in range(FRAMES):
+            x, y, w, h = place(i)
+            pixel = lambda c, r: ((40 + 90 * ((c - x) // 3 + (r - y) // 3 & 1)) if x <= c < x + w and y <= r < y + h
+                                  else 150 + (c * 7 + r * 3) % 23)
+            with open(f"{root}/{name}/{i:04d}.png", "wb") as image:
+                image.write(png([bytes(pixel(c, r) for c in range(WIDTH)) for r in range(HEIGHT)]))
+        with open(f"{root}/csv/{name}.csv", "w", encoding="utf-8") as file:
+            file.write(rows)
+    command = [airtruth, "dataset", "import", root + "/csv", "-f", "csv", "-o", root + "/set"]
+    for name in ("first", "second"):
+        command += ["--video", f"{name}={root}/{name}"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+HELLO = """echo '@@TRAX:hello "trax.name=odd" "trax.version=3" "trax.image=path;" "trax.region=rectangle;"'; n=0; """
+LOOP = HELLO + "while read -r line; do n=$((n+1)); case \"$line\" in @@TRAX:quit*) exit;; esac; [ $n -lt 8 ] && echo '@@TRAX:state 10,20,30,40' || { %s; }; done"
+ODD = {
+    "crashes": (LOOP % "kill -SEGV $$", "was ended by signal 11"),
+    "hangs": (LOOP % "sleep 100", "did not answer in time"),
+    "babbles": (LOOP % "yes something", "did not answer in time"),
+    "lies": (LOOP % "echo '@@TRAX:state here and there'", "expected one"),
+    "quits": (LOOP % "echo '@@TRAX:quit'; exit", "it quit"),
+    "answers-twice": (LOOP % "echo '@@TRAX:state 1,2,3,4'; echo '@@TRAX:state 1,2,3,4'", "before it was asked"),
+}
+
+
+def main():
+    airtruth, clients, example = sys.argv[1:4]
+    airtruth = os.path.abspath(airtruth)
+    with tempfile.TemporaryDirectory(prefix="airtruth_trax_clients_") as root:
+        run = lambda *command: subprocess.run([airtruth, *command], capture_output=True, text=True, cwd=root)
+        make_set(airtruth, root)
+        good = run("track", "set", "-o", "results", "-t", f"trax:{example}", f"trax:python3 '{clients}/template_tracker.py'")
+        if good.returncode != 0 or good.stderr:
+            sys.exit(f"trax_clients_test: {good.returncode}: {good.stderr}")
+        for name in ("template", "template-python"):
+            for sequence in ("first", "second"):
+                with open(f"{root}/results/{name}/{sequence}.txt", encoding="utf-8") as file:
+                    boxes = [tuple(map(float, line.split(","))) for line in file]
+                wanted = [tuple(map(float, place(i))) for i in range(FRAMES)]
+                if boxes != wanted:
+                    sys.exit(f"trax_clients_test: {name} on {sequence}: {boxes}")
+        for name, (script, word) in ODD.items():
+            file = f"{root}/{name}.sh"
+            with open(file, "w", encoding="utf-8") as out:
+                out.write(script)
+            done = run("track", "set", "-o", "odd", "-t", f"{name}=trax:sh {file}", "--timeout", "3")
+            if done.returncode != 0 or done.stderr.count(word) != 2:
+                sys.exit(f"trax_clients_test: {name}: {done.returncode}: {done.stderr}")
+            for sequence in ("first", "second"):
+                with open(f"{root}/odd/{name}/{sequence}.txt", encoding="utf-8") as result:
+                    lines = result.read().splitlines()
+                answered = [line for line in lines if not line.startswith("nan")]
+                if len(lines) != FRAMES or not 7 <= len(answered) <= 9:
+                    sys.exit(f"trax_clients_test: {name}: {len(answered)} of {len(lines)} frames answered")
+                if word not in open(f"{root}/odd/{name}/logs/{sequence}.log", encoding="utf-8").read():
+                    sys.exit(f"trax_clients_test: {name}: the log says nothing of it")
+        # The broken-off runs are scored like any other, and a run with restarts goes on after each break.
+        again = run("track", "set", "-o", "odd", "-t", f"crashes=trax:sh {root}/crashes.sh", "--protocol", "restart")
+        scored = run("evaluate", "set", *(f"odd/{name}" for name in ODD), "results/template", "-o", "evaluation")
+        if again.returncode != 0 or scored.returncode != 0 or "template" not in scored.stdout:
+            sys.exit(f"trax_clients_test: {again.stderr} {scored.stderr}")
+        # What cannot be started is refused before anything is made.
+        for command, word in (("trax:no_such_tracker_4711", "not found"), ("trax:exit 5", "status 5"),
+                              ("trax:echo words", "ended with status 0"), ("trax:", "names no command"),
+                              ("a/b=trax:cat", "no name"), ("opencv-mill", "did you mean 'opencv-mil'")):
+            done = run("track", "set", "-o", "never", "-t", command)
+            if done.returncode != 2 or word not in done.stderr or done.stderr.count("\n") != 1 or os.path.exists(root + "/never"):
+                sys.exit(f"trax_clients_test: {command}: {done.returncode}: {done.stderr}")
+        print(f"two clients agree with the truth, {len(ODD)} that misbehave cost their own runs, 6 are refused")
+
+
+if __name__ == "__main__":
+    main()
