@@ -26,6 +26,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ DESTINATION ${CMAKE_INSTALL_INCLUDE
   FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE PATTERN "table_reader.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "xml_file.h" EXCLUDE
   PATTERN "small_catalogue.h" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/examples)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/clients/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/clients
+  PATTERN CMakeLists.txt EXCLUDE PATTERN __pycache__ EXCLUDE)
 install(EXPORT airtruth NAMESPACE airtruth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth FILE airtruth-targets.cmake)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/airtruth-config.cmake.in
   ${PROJECT_BINARY_DIR}/airtruth-config.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/airtruth)
@@ -38,7 +40,7 @@ set(CPACK_PACKAGE_CONTACT "airtruth maintainers <airtruth@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "flightgear-data-ai, libgl1-mesa-dri, libegl-mesa0")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev, gnuplot-nox")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -62,7 +62,7 @@ int run(CLI::App& app,
     say(std::string(error.what()) + " (see --help)");
     return kBadInput;
   } catch (const Interrupted&) {
-    say("interrupted; nothing is left behind");
+    say("interrupted; nothing half-made is left behind");
     return kInterrupted;
   } catch (const Error& error) {
     say(error.what());

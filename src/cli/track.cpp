@@ -80,6 +80,9 @@ void run_track(Track arguments, Context& context) {
   const bool is_video = !arguments.init.empty();
   refuse_mixed(arguments, is_video);
   const Box init = is_video ? box_of(arguments.init) : Box{};
+  // A wrong name after a right one is said before the right one has run for hours.
+  for (const std::string& tracker : arguments.trackers)
+    if (!tracking::is_trax(tracker)) tracking::make_tracker(tracker, {});
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
     options.progress = [&](std::int64_t done, std::int64_t total) {

@@ -119,12 +119,13 @@ class Running {
  public:
   Running(const fs::path& out, const RunOptions& options) : options_(options) {
     try {
-      const auto [name, command] =
+      const tracking::TrackerName name =
           tracking::named(options.tracker, tracker_options(options, options.seed));
-      command_ = command;
-      summary_.folder = out / name;
+      command_ = name.command;
+      summary_.folder = out / name.name;
       // Error for what is no tracker, before anything is made.
-      tracking::make_tracker(command_, tracker_options(options, options.seed));
+      if (!name.was_started)
+        tracking::make_tracker(command_, tracker_options(options, options.seed));
     } catch (const tracking::TrackerFailed& error) {
       throw Error("the tracker '" + options.tracker + "' " + error.what());
     }
@@ -152,7 +153,6 @@ class Running {
   RunSummary over(const fs::path& video, const Box& init, std::int64_t first_frame) {
     const std::string name = video.stem().string();
     const fs::path file = trajectory_file(summary_.folder, Protocol::kOnePass, name, 0);
-    if (is_there(file)) return summary_;
     Frames frames(video, options_.warn);
     Follower follower(command_, options_, options_.seed);
     Record record;
@@ -161,6 +161,10 @@ class Running {
     check(picture != nullptr, "the reader refuses a first frame past the end");
     expect_inside(init, *picture);
     open_folder();
+    if (is_there(file)) {
+      expect_begun_at(init, file);
+      return summary_;
+    }
     follower.begin(*picture, init);
     record.add(Mark::kAnswer, init, follower.seconds());
     for (std::int64_t i = first_frame + 1; (picture = frames.at(i)) != nullptr; ++i) {
@@ -183,6 +187,12 @@ class Running {
                               box.height,
                               picture.width,
                               picture.height));
+  }
+
+  static void expect_begun_at(const Box& init, const fs::path& file) {
+    const std::string first = text_of(Trajectory{{Mark::kAnswer, init}});
+    if (!read_file(file).starts_with(first))
+      throw Error("holds a run from another box; give another --out or remove it", {file.string()});
   }
 
   // Results of one folder are of one tracker and one seed.

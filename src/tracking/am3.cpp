@@ -398,6 +398,8 @@ Am3Options wmil_options(std::uint64_t seed) {
   options.search_radius_px = 25;
   options.levels = 1;
   options.voters = 1;
+  options.pool = 150;
+  options.selected = 15;
   options.memory = 0.85;
   options.positive_share = INFINITY;
   options.gap_px = 4;

@@ -30,8 +30,8 @@ struct Am3Options {
   int search_radius_px = 40;  // full resolution
   int levels = 3;             // at most; fewer for small objects
   int voters = 3;             // classifiers at each level
-  int pool = 150;             // weak classifiers that learn
-  int selected = 15;          // of them that decide
+  int pool = 250;             // weak classifiers that learn
+  int selected = 20;          // of them that decide
   double memory = 0.93;       // share of the old in what is learned
   // Windows nearer than this, and than this share of the object's shorter side, are the object.
   double positive_radius_px = 4;

@@ -43,21 +43,28 @@ std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOption
                        : "; expected one of " + all + "or trax:COMMAND"));
 }
 
+bool is_trax(std::string_view tracker) {
+  // A command may hold anything; a name before it may not hold a colon.
+  const std::string_view word = tracker.substr(0, std::min(tracker.find(':'), tracker.size()));
+  const std::size_t equals = word.find('=');
+  const std::string_view kind = equals == std::string_view::npos ? word : word.substr(equals + 1);
+  return word.size() < tracker.size() && (kind == "trax" || kind == "trax-socket");
+}
+
 TrackerName named(std::string_view tracker, const TrackerOptions& options) {
-  const std::size_t equals = tracker.find('=');
-  if (equals != std::string_view::npos && is_trax(tracker.substr(equals + 1))) {
-    const std::string_view name = tracker.substr(0, equals);
-    const bool fits = !name.empty() && name.front() != '.' && name.size() <= 80 &&
-                      std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                        return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-                      });
-    if (!fits)
-      throw Error("'" + std::string(name) +
-                  "' is no name for a tracker's results; expected letters, digits, '-', '_', '.'");
-    return {std::string(name), std::string(tracker.substr(equals + 1))};
-  }
-  return {is_trax(tracker) ? trax_name(tracker, options) : std::string(tracker),
-          std::string(tracker)};
+  if (!is_trax(tracker)) return {std::string(tracker), std::string(tracker)};
+  const std::size_t equals = tracker.substr(0, tracker.find(':')).find('=');
+  if (equals == std::string_view::npos)
+    return {trax_name(tracker, options), std::string(tracker), true};
+  const std::string_view name = tracker.substr(0, equals);
+  const bool fits = !name.empty() && name.front() != '.' && name.size() <= 80 &&
+                    std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                      return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+                    });
+  if (!fits)
+    throw Error("'" + std::string(name) +
+                "' is no name for a tracker's results; expected letters, digits, '-', '_', '.'");
+  return {std::string(name), std::string(tracker.substr(equals + 1))};
 }
 
 }  // namespace airtruth::tracking

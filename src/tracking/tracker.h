@@ -58,6 +58,7 @@ struct TrackerOptions {
 // cannot be run or does not say hello.
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options);
 std::vector<std::string> tracker_names();
+bool is_trax(std::string_view tracker);  // also with a name before it
 
 // Under which results are kept: the name itself; of a TraX tracker what stands before "=" in
 // "NAME=trax:COMMAND", else its own name for itself (for which it is started once). `command` is
@@ -65,6 +66,7 @@ std::vector<std::string> tracker_names();
 struct TrackerName {
   std::string name;
   std::string command;
+  bool was_started = false;  // for its name, and ended well
 };
 TrackerName named(std::string_view tracker, const TrackerOptions& options);
 

@@ -90,12 +90,8 @@ class TraxTracker : public Tracker {
 
 }  // namespace
 
-bool is_trax(std::string_view name) {
-  return name.starts_with(kStandard) || name.starts_with(kSocket);
-}
-
 std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerOptions& options) {
-  if (!is_trax(name)) return nullptr;
+  if (!name.starts_with(kStandard) && !name.starts_with(kSocket)) return nullptr;
   try {
     return std::make_unique<TraxTracker>(session_options(name, options));
   } catch (const trax::ProtocolError& error) {

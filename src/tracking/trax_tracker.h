@@ -12,8 +12,6 @@ namespace airtruth::tracking {
 // another name.
 std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerOptions& options);
 
-bool is_trax(std::string_view name);
-
 // The name that the tracker gives itself, fit for a file; "trax" where it gives none.
 std::string trax_name(std::string_view name, const TrackerOptions& options);
 

@@ -109,7 +109,7 @@ class Case(unittest.TestCase):
 
 class Help(Case):
     def test_every_subcommand_explains_itself(self):
-        for words in (["demo"], ["render"], ["overlay"], ["inspect"], ["motion"], ["synth"], ["aircraft"], ["evision"],
+        for words in (["demo"], ["render"], ["overlay"], ["inspect"], ["motion"], ["synth"], ["aircraft"], ["evision"], ["track"], ["evaluate"],
                       ["aircraft", "list"], ["aircraft", "show"]):
             result = run(*words, "--help")
             self.assertEqual(result.returncode, 0, words)
@@ -251,6 +251,43 @@ class Render(Case):
         self.assertEqual(program.returncode, 130, errors)
         self.assertEqual(len(errors.splitlines()), 1, errors)
         self.assertEqual(os.listdir(self.out), [])
+
+
+class Track(Case):
+    def track(self, *arguments, source="flight.mkv"):
+        return run("track", source, "-t", "am3", "--out", path(self.out, "results"), *arguments)
+
+    def test_a_video_from_a_box_on(self):
+        for again in (False, True):
+            done = self.track("--init", "60,40,30.5,20", "--first-frame", "2")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("were there" in done.stdout, again)
+        with open(path(self.out, "results", "am3", "flight.txt"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        self.assertEqual(len(lines), 10)
+        self.assertEqual(lines[0], "60,40,30.5,20")
+        for other, word in ((["--init", "61,40,30.5,20"], "another box"), (["--init", "60,40,30.5,20", "--seed", "2"], "seed")):
+            refused = self.track(*other)
+            self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+            self.assertIn(word, refused.stderr)
+
+    def test_what_is_wrong_is_said_before_anything_is_made(self):
+        for arguments, word in (([], "--init"), (["--init", "1,2,3"], "x,y,width,height"), (["--init", "1,2,0,4"], "above 0"),
+                                (["--init", "1,2,nan,4"], "above 0"), (["--init", "500,1,3,4"], "160x120"),
+                                (["--init", "1,2,3,4", "--first-frame", "99"], "past its end"),
+                                (["--init", "1,2,3,4", "--protocol", "restart"], "truth"),
+                                (["--init", "1,2,3,4", "--protocol", "restrat"], "did you mean 'restart'"),
+                                (["--init", "1,2,3,4", "-t", "am4"], "did you mean 'am3'")):
+            with self.subTest(arguments):
+                self.assert_refused(self.track(*arguments), word)
+        self.assert_refused(self.track(source="nothing"), "does not exist")
+        self.assert_refused(self.track("--init", "1,2,3,4", source="text.mkv"), "text.mkv")
+
+    def test_what_evaluate_refuses(self):
+        for arguments, word in ((["nothing", "results"], "nothing"), (["nothing", "results", "--figures", "gif"], "png, pdf or svg"),
+                                (["nothing", "results", "--eao-range", "9", "3"], "backward")):
+            with self.subTest(arguments):
+                self.assert_refused(run("evaluate", *arguments, "-o", path(self.out, "evaluation")), word)
 
 
 class Others(Case):
