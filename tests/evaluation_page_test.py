@@ -122,6 +122,13 @@ def main():
             file.write(CATALOGUE)
         run("dataset", "build", "c.toml", "--out", "set")
         run("track", "set", "-o", "results", "-t", *TRACKERS)
+        # One seed, one result, on any number of threads.
+        run("track", "set", "-o", "again", "-t", *TRACKERS, "-j", "3")
+        for tracker in TRACKERS:
+            for name in os.listdir(f"{root}/set/sequences"):
+                texts = [open(f"{root}/{place}/{tracker}/{name}.txt", encoding="utf-8").read() for place in ("results", "again")]
+                if texts[0] != texts[1]:
+                    sys.exit(f"evaluation_page_test: {tracker} on {name} differs from run to run")
         run("track", "set", "-o", "results", "-t", "am3", "--protocol", "restart")
         run("track", "set", "-o", "results", "-t", "am3", "opencv-kcf", "--protocol", "multistart", "--anchor-step", "15")
         results = ["results/" + name for name in TRACKERS]

@@ -78,9 +78,29 @@ const exchange::Label* label_of(const exchange::LabelledFrame& frame) {
   return frame.labels.empty() ? nullptr : &frame.labels.front();
 }
 
+using Tracks = std::map<std::int64_t, std::map<std::int64_t, Box>>;  // [frame][id]
+
+// The one with the largest overlap with the truth in the first frame where any has one.
+std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchange::Clip& clip) {
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    const exchange::Label* label = label_of(frame);
+    const auto here = tracks.find(frame.frame);
+    if (label == nullptr || here == tracks.end()) continue;
+    double best = 0;
+    std::optional<std::int64_t> found;
+    for (const auto& [id, box] : here->second)
+      if (const double shared = evaluation::overlap(box, label->box_px); shared > best) {
+        best = shared;
+        found = id;
+      }
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
 // "frame,id,x,y,w,h,confidence,..." with frames of the video from 1.
 Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
-  std::map<std::int64_t, std::map<std::int64_t, Box>> tracks;  // [frame][id]
+  Tracks tracks;
   for (const exchange::Line& line : exchange::lines_of(file)) {
     const std::vector<double> n = exchange::numbers_of(line, file);
     const auto frame =
@@ -92,22 +112,13 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
                   {file.string(), line.number});
     if (const auto box = box_from(n, 2, 1)) tracks[*frame - 1][*id] = *box;
   }
-  std::optional<std::int64_t> mine;
+  const auto mine = overlapping_track(tracks, clip);
   Trajectory trajectory;
   for (const exchange::LabelledFrame& frame : clip.frames) {
-    const auto& here = tracks[frame.frame];
-    const exchange::Label* label = label_of(frame);
-    if (!mine && label != nullptr) {
-      double best = 0;
-      for (const auto& [id, box] : here)
-        if (const double shared = evaluation::overlap(box, label->box_px); shared > best) {
-          best = shared;
-          mine = id;
-        }
-    }
     VotFrame result{Mark::kAnswer, {}};
     if (mine)
-      if (const auto found = here.find(*mine); found != here.end()) result.box = found->second;
+      if (const auto found = tracks[frame.frame].find(*mine); found != tracks[frame.frame].end())
+        result.box = found->second;
     trajectory.push_back(result);
   }
   return trajectory;

@@ -17,6 +17,8 @@
 namespace airtruth::tracking {
 namespace {
 
+constexpr double kLeastHaarPx = 8;
+
 cv::Mat bgr_of(const image::Picture& picture) {
   image::Rgb8 rgb = image::rgb8_from_picture(picture);
   const cv::Mat shared(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
@@ -31,6 +33,40 @@ void refuse_unsound(const Box& box, const cv::Mat& frame) {
   if (!sound || !intersection(pixels_of(box), {0, 0, frame.cols, frame.rows}))
     throw Error("the first box has no area within the picture");
 }
+
+// What a tracker is begun on: the object, with some of its surroundings where it is small. OpenCV's
+// MIL and Boosting draw Haar features until they find some that fit into the box, which in one of
+// four by two pixels is never.
+class Window {
+ public:
+  Window() = default;
+  Window(const Box& box, double least_px, const cv::Mat& frame) : box_(box), window_(box) {
+    window_.width = std::min<double>(frame.cols, std::max(least_px, box.width));
+    window_.height = std::min<double>(frame.rows, std::max(least_px, box.height));
+    if (!is_larger()) return;
+    window_.x =
+        std::clamp(box.x - (window_.width - box.width) / 2, 0.0, frame.cols - window_.width);
+    window_.y =
+        std::clamp(box.y - (window_.height - box.height) / 2, 0.0, frame.rows - window_.height);
+  }
+
+  const Box& window() const { return window_; }
+  // The object in a window that was found.
+  Box object_in(const Box& found) const {
+    if (!is_larger()) return found;
+    const double across = found.width / window_.width;
+    const double down = found.height / window_.height;
+    return {found.x + (box_.x - window_.x) * across,
+            found.y + (box_.y - window_.y) * down,
+            box_.width * across,
+            box_.height * down};
+  }
+
+ private:
+  bool is_larger() const { return window_.width > box_.width || window_.height > box_.height; }
+  Box box_;
+  Box window_;
+};
 
 // OpenCV throws for boxes at the border and of a few pixels; that is a tracker that lost its
 // object.
@@ -51,8 +87,8 @@ Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
 // past its buffers.
 class Modern : public Tracker {
  public:
-  Modern(std::function<cv::Ptr<cv::Tracker>()> make, std::uint64_t seed)
-      : make_(std::move(make)), seed_(seed) {}
+  Modern(std::function<cv::Ptr<cv::Tracker>()> make, std::uint64_t seed, double least_px)
+      : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
   void init(const Box& box) override {
@@ -61,10 +97,12 @@ class Modern : public Tracker {
     last_ = box;
     broken_ = false;
     tracker_ = make_();
-    const PixelBox whole{static_cast<int>(std::lround(box.x)),
-                         static_cast<int>(std::lround(box.y)),
-                         std::max(1, static_cast<int>(std::lround(box.width))),
-                         std::max(1, static_cast<int>(std::lround(box.height)))};
+    window_ = Window(box, least_px_, frame_);
+    const Box& window = window_.window();
+    const PixelBox whole{static_cast<int>(std::lround(window.x)),
+                         static_cast<int>(std::lround(window.y)),
+                         std::max(1, static_cast<int>(std::lround(window.width))),
+                         std::max(1, static_cast<int>(std::lround(window.height)))};
     try {
       tracker_->init(frame_, {whole.x, whole.y, whole.width, whole.height});
     } catch (const cv::Exception&) {
@@ -77,7 +115,8 @@ class Modern : public Tracker {
         [&](Box& box) {
           cv::Rect found;
           if (!tracker_->update(frame_, found)) return false;
-          box = {double(found.x), double(found.y), double(found.width), double(found.height)};
+          box = window_.object_in(
+              {double(found.x), double(found.y), double(found.width), double(found.height)});
           return true;
         },
         last_);
@@ -89,6 +128,8 @@ class Modern : public Tracker {
   std::function<cv::Ptr<cv::Tracker>()> make_;
   cv::Ptr<cv::Tracker> tracker_;
   std::uint64_t seed_;
+  double least_px_;
+  Window window_;
   cv::Mat frame_;
   Box last_;
   bool broken_ = false;
@@ -96,8 +137,8 @@ class Modern : public Tracker {
 
 class Legacy : public Tracker {
  public:
-  Legacy(std::function<cv::Ptr<cv::legacy::Tracker>()> make, std::uint64_t seed)
-      : make_(std::move(make)), seed_(seed) {}
+  Legacy(std::function<cv::Ptr<cv::legacy::Tracker>()> make, std::uint64_t seed, double least_px)
+      : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
   void init(const Box& box) override {
@@ -105,8 +146,11 @@ class Legacy : public Tracker {
     cv::theRNG().state = seed_;
     last_ = box;
     tracker_ = make_();
+    window_ = Window(box, least_px_, frame_);
+    const Box& window = window_.window();
     try {
-      broken_ = !tracker_->init(frame_, cv::Rect2d(box.x, box.y, box.width, box.height));
+      broken_ =
+          !tracker_->init(frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
     } catch (const cv::Exception&) {
       broken_ = true;
     }
@@ -117,7 +161,7 @@ class Legacy : public Tracker {
         [&](Box& box) {
           cv::Rect2d found;
           if (!tracker_->update(frame_, found)) return false;
-          box = {found.x, found.y, found.width, found.height};
+          box = window_.object_in({found.x, found.y, found.width, found.height});
           return true;
         },
         last_);
@@ -129,6 +173,8 @@ class Legacy : public Tracker {
   std::function<cv::Ptr<cv::legacy::Tracker>()> make_;
   cv::Ptr<cv::legacy::Tracker> tracker_;
   std::uint64_t seed_;
+  double least_px_;
+  Window window_;
   cv::Mat frame_;
   Box last_;
   bool broken_ = false;
@@ -140,12 +186,17 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   // A state of 0 would stay 0.
   const std::uint64_t state = seed * 2 + 1;
   namespace legacy = cv::legacy;
-  const auto modern = [&](auto make) { return std::make_unique<Modern>(make, state); };
-  const auto old = [&](auto make) { return std::make_unique<Legacy>(make, state); };
-  if (name == "opencv-mil") return modern([] { return cv::TrackerMIL::create(); });
+  const auto modern = [&](auto make, double least_px = 0) {
+    return std::make_unique<Modern>(make, state, least_px);
+  };
+  const auto old = [&](auto make, double least_px = 0) {
+    return std::make_unique<Legacy>(make, state, least_px);
+  };
+  if (name == "opencv-mil") return modern([] { return cv::TrackerMIL::create(); }, kLeastHaarPx);
   if (name == "opencv-kcf") return modern([] { return cv::TrackerKCF::create(); });
   if (name == "opencv-csrt") return modern([] { return cv::TrackerCSRT::create(); });
-  if (name == "opencv-boosting") return old([] { return legacy::TrackerBoosting::create(); });
+  if (name == "opencv-boosting")
+    return old([] { return legacy::TrackerBoosting::create(); }, kLeastHaarPx);
   if (name == "opencv-medianflow") return old([] { return legacy::TrackerMedianFlow::create(); });
   if (name == "opencv-tld") return old([] { return legacy::TrackerTLD::create(); });
   if (name == "opencv-mosse") return old([] { return legacy::TrackerMOSSE::create(); });

@@ -184,6 +184,19 @@ TEST(Trackers, OfOpenCvFollow) {
   }
 }
 
+// Also where nothing of what they look for fits in.
+TEST(Trackers, AnswerOnAnObjectOfAFewPixels) {
+  for (const std::string& name : tracker_names())
+    for (const Box& box : {Box{60, 50, 4, 2}, Box{60, 50, 1, 1}, Box{318, 238, 2, 2}}) {
+      const auto tracker = make_tracker(name, {});
+      const image::Picture picture = scene(box.x, box.y, 2, 2, 1);
+      tracker->load(picture);
+      tracker->init(box);
+      const Box found = tracker->update().box_px;
+      EXPECT_TRUE(std::isfinite(found.area()) && found.area() > 0) << name;
+    }
+}
+
 TEST(Trackers, RefuseABoxWithoutArea) {
   for (const std::string& name : tracker_names()) {
     const auto tracker = make_tracker(name, {});
