@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line of a tracker's: a message, chatter or a ProtocolError; a message goes out and comes back the
-// same, and what it says of itself or of its object is read or refused.
+// A line of a tracker's: a message, chatter or a ProtocolError; a message goes out and comes back
+// the same, and what it says of itself or of its object is read or refused.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
