@@ -20,7 +20,7 @@ using evaluation::Mark;
 using evaluation::Score;
 
 // Stills of all sequences together: about 20 KB each on the page.
-constexpr std::size_t kMostStills = 2400;
+constexpr std::size_t kMostStills = 1500;
 constexpr std::size_t kMostStillsOfOne = 150;
 constexpr std::size_t kLeastStillsOfOne = 4;
 

@@ -34,6 +34,13 @@ void refuse_unsound(const Box& box, const cv::Mat& frame) {
     throw Error("the first box has no area within the picture");
 }
 
+Box whole(const Box& box) {
+  return {std::round(box.x),
+          std::round(box.y),
+          std::max(1.0, std::round(box.width)),
+          std::max(1.0, std::round(box.height))};
+}
+
 // What a tracker is begun on: the object, with some of its surroundings where it is small. OpenCV's
 // MIL and Boosting draw Haar features until they find some that fit into the box, which in one of
 // four by two pixels is never.
@@ -98,13 +105,13 @@ class Modern : public Tracker {
     broken_ = false;
     tracker_ = make_();
     window_ = Window(box, least_px_, frame_);
-    const Box& window = window_.window();
-    const PixelBox whole{static_cast<int>(std::lround(window.x)),
-                         static_cast<int>(std::lround(window.y)),
-                         std::max(1, static_cast<int>(std::lround(window.width))),
-                         std::max(1, static_cast<int>(std::lround(window.height)))};
+    const Box window = whole(window_.window());
     try {
-      tracker_->init(frame_, {whole.x, whole.y, whole.width, whole.height});
+      tracker_->init(frame_,
+                     cv::Rect(static_cast<int>(window.x),
+                              static_cast<int>(window.y),
+                              static_cast<int>(window.width),
+                              static_cast<int>(window.height)));
     } catch (const cv::Exception&) {
       broken_ = true;
     }
@@ -146,8 +153,10 @@ class Legacy : public Tracker {
     cv::theRNG().state = seed_;
     last_ = box;
     tracker_ = make_();
-    window_ = Window(box, least_px_, frame_);
-    const Box& window = window_.window();
+    // Boosting cuts a box between pixels in two ways and reads past its features: whole pixels for
+    // what has a least size, as the modern interface has them for all.
+    window_ = Window(least_px_ > 0 ? whole(box) : box, least_px_, frame_);
+    const Box window = least_px_ > 0 ? whole(window_.window()) : window_.window();
     try {
       broken_ =
           !tracker_->init(frame_, cv::Rect2d(window.x, window.y, window.width, window.height));

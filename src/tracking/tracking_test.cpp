@@ -187,7 +187,11 @@ TEST(Trackers, OfOpenCvFollow) {
 // Also where nothing of what they look for fits in.
 TEST(Trackers, AnswerOnAnObjectOfAFewPixels) {
   for (const std::string& name : tracker_names())
-    for (const Box& box : {Box{60, 50, 4, 2}, Box{60, 50, 1, 1}, Box{318, 238, 2, 2}}) {
+    for (const Box& box : {Box{60, 50, 4, 2},
+                           Box{61.14, 55.08, 34.86, 23.92},
+                           Box{60.6, 50.7, 9.5, 8.49},
+                           Box{60, 50, 1, 1},
+                           Box{318, 238, 2, 2}}) {
       const auto tracker = make_tracker(name, {});
       const image::Picture picture = scene(box.x, box.y, 2, 2, 1);
       tracker->load(picture);
