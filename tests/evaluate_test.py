@@ -316,16 +316,19 @@ def main():
                 ("s0.txt", "1,2,3,4\n" * (len(truth) + 1), f"has {len(truth) + 1} lines"),
                 ("s0.txt", "1,2,3\n" * len(truth), ":1: has 3 numbers"),
                 ("s0.txt", "1,2,x,4\n" * len(truth), ":1:5: 'x' is not a number"),
-                ("other.txt", "1,2,3,4\n", "holds no result for any sequence")):
+                ("other.txt", "1,2,3,4\n", "holds no result for any sequence"),
+                ("s0.txt", "1,2,3,4\n" * len(truth), "s0_time.txt: has 1 lines")):
             bad = os.path.join(root, "bad")
             os.makedirs(bad, exist_ok=True)
             for old in os.listdir(bad):
                 os.remove(os.path.join(bad, old))
             write(bad, name, text)
+            if "_time" in expected:
+                write(bad, "s0_time.txt", "0.1\n")
             done = run_airtruth("evaluate", place + "/set", bad, "-o", root + "/never")
             if done.returncode != 2 or expected not in done.stderr or os.path.exists(root + "/never"):
                 sys.exit(f"evaluate_test: {name}: {done.returncode}, {done.stderr!r}; expected {expected!r}")
-        print(f"{checked} scores agree to 1e-9; 5 kinds of bad results are refused")
+        print(f"{checked} scores agree to 1e-9; 6 kinds of bad results are refused")
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ ODD = {
     "babbles": (LOOP % "yes something", "did not answer in time"),
     "lies": (LOOP % "echo '@@TRAX:state here and there'", "expected one"),
     "quits": (LOOP % "echo '@@TRAX:quit'; exit", "it quit"),
-    "answers-twice": (LOOP % "echo '@@TRAX:state 1,2,3,4'; echo '@@TRAX:state 1,2,3,4'", "before it was asked"),
+    "answers-twice": (LOOP % "printf '@@TRAX:state 1,2,3,4\\n@@TRAX:state 1,2,3,4\\n'", "before it was asked"),
 }
 
 

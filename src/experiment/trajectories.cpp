@@ -61,7 +61,7 @@ Trajectory read_trajectory(const fs::path& file, int origin_px) {
   return trajectory;
 }
 
-// Empty where there is none or one of another length. Of several columns (GOT-10k's repetitions)
+// Empty where there is none. Of several columns (GOT-10k's repetitions)
 // the first.
 std::vector<double> read_times(const fs::path& file, std::size_t frames) {
   std::vector<double> seconds;
@@ -70,7 +70,9 @@ std::vector<double> read_times(const fs::path& file, std::size_t frames) {
       const std::vector<double> numbers = exchange::numbers_of(line, file);
       seconds.push_back(numbers.empty() ? 0 : numbers.front());
     }
-  if (seconds.size() != frames) seconds.clear();
+  if (!seconds.empty() && seconds.size() != frames)
+    throw Error(fmt::format("has {} lines; its results have {}", seconds.size(), frames),
+                {file.string()});
   return seconds;
 }
 

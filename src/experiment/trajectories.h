@@ -56,8 +56,8 @@ struct Results {
 // `origin_px`: what the results call the first pixel, 0 or 1 (MOTChallenge's: always 1). Boxes that
 // are not finite or have no area are answers without a box; polygons become the box that bounds
 // them. Of MOTChallenge's tracks it takes the one that overlaps the truth most where any first
-// does. Error at file and line for what is no result, and for one pass of another length than the
-// clip.
+// does. Error at file and line for what is no result, for runs of another length than the clip, and
+// for times of another length than their run.
 Results read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
 
 // Sequences that a folder has results for, sorted.

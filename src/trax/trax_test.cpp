@@ -270,7 +270,7 @@ TEST(Session, ThatGoesWrongSaysHow) {
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:quit \"trax.reason=tired\"'")),
               HasSubstr("quit: tired"));
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:state \"1,2'")), HasSubstr("never closed"));
-  EXPECT_THAT(fault_of(answering("echo '@@TRAX:state 1,2,3,4'; echo '@@TRAX:state 1,2,3,4'")),
+  EXPECT_THAT(fault_of(answering(R"(printf '@@TRAX:state 1,2,3,4\n@@TRAX:state 1,2,3,4\n')")),
               HasSubstr("before it was asked"));
   EXPECT_THAT(hang_of("exec sleep 60 # never says hello"), HasSubstr("in time"));
   // It reads nothing: a picture in the message fills the pipe.
