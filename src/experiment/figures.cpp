@@ -72,9 +72,13 @@ class Plot {
     const std::string size = format_ == "png"   ? fmt::format("{:.0f}", height * 100)
                              : format_ == "svg" ? fmt::format("{:.0f}", height * 50)
                                                 : fmt::format("{:.1f}", height);
-    head_ = "set terminal " + fmt::format(fmt::runtime(terminals().at(format_)), size) +
-            " noenhanced\nset output " + quoted((name_ + "." + format_)) +
-            "\nset grid lc rgb '#dddddd'\nset key outside right top\nset border lc rgb '#555555'\n";
+    head_ =
+        "set terminal " + fmt::format(fmt::runtime(terminals().at(format_)), size) +
+        " noenhanced\nset output " + quoted((name_ + "." + format_)) +
+        "\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\n"
+        // One column, beside the plot however many trackers there are.
+        "set key at screen 0.99, screen 0.98 right top vertical maxrows 60 samplen 2 spacing 0.9\n"
+        "set rmargin 26\n";
   }
 
   // Names the block.
@@ -215,11 +219,11 @@ class Figures {
     if (count == 0) return;
     Plot plot = begin("ranking", 2.5 + 0.7 * count);
     const std::string block = plot.data(lines);
-    plot.command(
-        fmt::format("unset key\nset ytics ({})\nset yrange [{}:0.7]\nset xrange [0:*]\n"
-                    "set xlabel 'AUC, with 95 % interval over sequences'",
-                    names,
-                    -count + 0.3));
+    plot.command(fmt::format(
+        "unset key\nset rmargin 4\nset ytics ({})\nset yrange [{}:0.7]\nset xrange [0:*]\n"
+        "set xlabel 'AUC, with 95 % interval over sequences'",
+        names,
+        -count + 0.3));
     plot.plot({block + fmt::format(" using 1:2:3:4 with xerrorbars pt 7 ps 1 lc rgb '{}'",
                                    hex(kColours[0]))});
     plot.write();
@@ -293,7 +297,7 @@ class Figures {
       });
     }
     plot.command(
-        fmt::format("set multiplot layout 3,1\nset lmargin 9\nset rmargin 26\n"
+        fmt::format("set multiplot layout 3,1\nset lmargin 9\n"
                     "set xrange [{}:{}]",
                     truth.clip.frames.front().frame,
                     std::max(truth.clip.frames.back().frame, truth.clip.frames.front().frame + 1)));
