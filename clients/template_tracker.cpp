@@ -38,10 +38,11 @@ int main() {
       continue;
     }
     const cv::Rect box = whole(last, frame);
-    const cv::Rect around =
-        cv::Rect(box.x - kSearchPx, box.y - kSearchPx, model.cols + 2 * kSearchPx,
-                 model.rows + 2 * kSearchPx) &
-        cv::Rect({0, 0}, frame.size());
+    const cv::Rect around = cv::Rect(box.x - kSearchPx,
+                                     box.y - kSearchPx,
+                                     model.cols + 2 * kSearchPx,
+                                     model.rows + 2 * kSearchPx) &
+                            cv::Rect({0, 0}, frame.size());
     if (around.width < model.cols || around.height < model.rows) {
       server.reply_lost();
       continue;
