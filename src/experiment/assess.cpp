@@ -75,21 +75,54 @@ evaluation::MultiStartRuns multistart_runs(const TruthClip& truth, const Results
   return runs;
 }
 
+// What a folder holds for each truth. Error where that is nothing; warns of what it holds for
+// sequences that are not there, and of sequences that it lacks.
+std::vector<Results> results_in(const fs::path& folder,
+                                const std::vector<TruthClip>& truths,
+                                const AssessOptions& options) {
+  if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
+  std::vector<Results> results;
+  std::size_t missing = 0;
+  std::set<std::string> known;
+  for (const TruthClip& truth : truths) {
+    results.push_back(read_results(folder, truth.clip, options.origin_px));
+    missing += results.back().empty() ? 1 : 0;
+    known.insert(truth.clip.name);
+  }
+  std::vector<std::string> unknown = sequences_in(folder);
+  std::erase_if(unknown, [&](const std::string& name) { return known.contains(name); });
+  if (missing == truths.size())
+    throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
+                    (unknown.empty() ? "" : " (found one for '" + unknown.front() + "')"),
+                {folder.string()});
+  if (!unknown.empty())
+    airtruth::warn(options.warn,
+                   fmt::format("{}: {} results are for no sequence of the data set (the first: {})",
+                               folder.string(),
+                               unknown.size(),
+                               unknown.front()));
+  if (missing > 0)
+    airtruth::warn(options.warn,
+                   fmt::format("{}: has results for {} of {} sequences; its score is of those",
+                               folder.string(),
+                               truths.size() - missing,
+                               truths.size()));
+  return results;
+}
+
 class Scoring {
  public:
-  Scoring(const std::vector<TruthClip>& truths,
-          std::pair<int, int> eao_range,
-          const AssessOptions& options)
-      : truths_(truths), eao_range_(eao_range), options_(options) {}
+  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range)
+      : truths_(truths), eao_range_(eao_range) {}
 
-  ScoredTracker operator()(const fs::path& folder) const {
-    if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
+  // found[i] belongs to the i-th truth.
+  ScoredTracker operator()(const std::string& name, const std::vector<Results>& found) const {
     ScoredTracker tracker;
-    tracker.name = name_of(folder);
+    tracker.name = name;
     std::vector<evaluation::RestartRuns> restarts;
     std::vector<evaluation::MultiStartRuns> multistarts;
     for (std::size_t i = 0; i < truths_.size(); ++i) {
-      const Results results = read_results(folder, truths_[i].clip, options_.origin_px);
+      const Results& results = found[i];
       if (results.empty()) continue;
       ScoredSequence scored;
       scored.truth = i;
@@ -105,7 +138,6 @@ class Scoring {
       }
       tracker.sequences.push_back(std::move(scored));
     }
-    warn_of_strangers(folder, tracker);
     if (!restarts.empty()) tracker.restart = evaluation::restart_score(restarts, eao_range_);
     if (!multistarts.empty())
       tracker.multistart = evaluation::multistart_score(multistarts, eao_range_);
@@ -114,33 +146,6 @@ class Scoring {
   }
 
  private:
-  void warn_of_strangers(const fs::path& folder, const ScoredTracker& tracker) const {
-    std::set<std::string> unknown;
-    for (const std::string& name : sequences_in(folder))
-      if (std::none_of(truths_.begin(), truths_.end(), [&](const TruthClip& truth) {
-            return truth.clip.name == name;
-          }))
-        unknown.insert(name);
-    if (tracker.sequences.empty())
-      throw Error(
-          "holds no result for any sequence of the data set; expected SEQUENCE.txt" +
-              (unknown.empty() ? std::string() : " (found one for '" + *unknown.begin() + "')"),
-          {folder.string()});
-    if (!unknown.empty())
-      airtruth::warn(
-          options_.warn,
-          fmt::format("{}: {} results are for no sequence of the data set (the first: {})",
-                      folder.string(),
-                      unknown.size(),
-                      *unknown.begin()));
-    if (tracker.sequences.size() < truths_.size())
-      airtruth::warn(options_.warn,
-                     fmt::format("{}: has results for {} of {} sequences; its score is of those",
-                                 folder.string(),
-                                 tracker.sequences.size(),
-                                 truths_.size()));
-  }
-
   void summarise(ScoredTracker& tracker) const {
     std::vector<Score> scores;
     for (const ScoredSequence& sequence : tracker.sequences) {
@@ -187,7 +192,6 @@ class Scoring {
 
   const std::vector<TruthClip>& truths_;
   std::pair<int, int> eao_range_;
-  const AssessOptions& options_;
 };
 
 Comparison compared(const ScoredTracker& a, const ScoredTracker& b) {
@@ -250,18 +254,18 @@ Assessment assess(const fs::path& set,
   assessment.set = name_of(set);
   assessment.truths = truths_of(dataset::LabelledSet(set));
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
-  // What is wrong with the results is said before minutes of video are read.
+  // Results first: what is wrong with them is said before minutes of video are read.
+  std::map<std::string, std::vector<Results>> found;
   for (const fs::path& folder : results) {
     const std::string name = name_of(folder);
-    for (const fs::path& other : results)
-      if (&other < &folder && name_of(other) == name)
-        throw Error("is the second folder of results called '" + name + "'", {folder.string()});
-    for (const TruthClip& truth : assessment.truths)
-      read_results(folder, truth.clip, options.origin_px);
+    if (found.contains(name))
+      throw Error("is the second folder of results called '" + name + "'", {folder.string()});
+    found[name] = results_in(folder, assessment.truths, options);
   }
   if (options.with_film) add_films(assessment.truths, options);
-  const Scoring scored(assessment.truths, assessment.eao_range, options);
-  for (const fs::path& folder : results) assessment.trackers.push_back(scored(folder));
+  const Scoring scored(assessment.truths, assessment.eao_range);
+  for (const fs::path& folder : results)
+    assessment.trackers.push_back(scored(name_of(folder), found[name_of(folder)]));
   std::stable_sort(assessment.trackers.begin(),
                    assessment.trackers.end(),
                    [](const ScoredTracker& a, const ScoredTracker& b) {

@@ -22,6 +22,8 @@ class Frames {
 
   // Valid until the next call; nullptr past the end.
   const image::Picture* at(std::int64_t frame);
+  // How many there are, about; 0 where that is not known, and before the first is asked for.
+  std::int64_t count_estimate() const { return reader_ ? reader_->info().frame_count_estimate : 0; }
 
  private:
   void open(std::int64_t first);

@@ -156,9 +156,9 @@ class Running {
     Frames frames(video, options_.warn);
     Follower follower(command_, options_, options_.seed);
     Record record;
-    const std::int64_t total = video::Reader(video, {.threads = 1}).info().frame_count_estimate;
     const image::Picture* picture = frames.at(first_frame);
     check(picture != nullptr, "the reader refuses a first frame past the end");
+    const std::int64_t total = frames.count_estimate();
     expect_inside(init, *picture);
     open_folder();
     if (is_there(file)) {
@@ -377,7 +377,6 @@ RunSummary run_on_video(const fs::path& video,
                         std::int64_t first_frame,
                         const fs::path& out,
                         const RunOptions& options) {
-  video::Reader(video, {.threads = 1});  // Error for what is no video, before anything is made
   return Running(out, options).over(video, init, first_frame);
 }
 
