@@ -7,19 +7,26 @@
 
 #include "aircraft/mesh.h"
 #include "geometry/box.h"
+#include "geometry/within_frame.h"
 #include "lens/lens.h"
 
 namespace airtruth::annotation {
 
-// How a frame is seen: design.md section 2 in reverse, world to pixel.
+// How a frame is seen: docs/architecture.md's ray in reverse, world to pixel.
 struct Sight {
   const lens::Lens* lens = nullptr;
-  Rigid cam_from_world;
+  Rigid cam_from_world;  // at the frame's time, as are all that have no other
   Homography frame_from_nominal = Homography::Identity();
+  // What goes on within the frame.
+  Shutter shutter;
+  Twist camera;  // of world_from_cam
+  Homography frame_from_nominal_per_s = Homography::Zero();
+
+  Sight at(double dt_s) const;  // the same, dt_s from the frame's time
 };
 
-// Where a point of the world is seen; empty behind the camera, beyond the lens's field, or beyond
-// H's horizon.
+// Where a point of the world is seen at the frame's time; empty behind the camera, beyond the
+// lens's field, or beyond H's horizon.
 std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world);
 
 // The silhouette points of a mesh, prepared once per aircraft.
@@ -34,11 +41,13 @@ struct ExactBox {
       false;  // some points have no pixel (behind the camera or beyond the lens's field)
 };
 
-// Bounding box of the projected silhouette, in frame pixels, not clipped. Never looks at rendered
-// pixels: it is the other of the two roads to the box.
+// Bounding box of the projected silhouette, in frame pixels, not clipped: of all that the shutter
+// lets it sweep, each row at its own time. `body`: how the aircraft goes on within the frame. Never
+// looks at rendered pixels: it is the other of the two roads to the box.
 ExactBox exact_box(const Sight& sight,
                    const Silhouette& silhouette,
                    const Rigid& world_from_body,
-                   double time_s);
+                   double time_s,
+                   const Twist& body = {});
 
 }  // namespace airtruth::annotation

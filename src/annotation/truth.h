@@ -11,6 +11,7 @@
 
 #include "geometry/box.h"
 #include "geometry/transform.h"
+#include "geometry/within_frame.h"
 
 // The truth of a frame, and truth.jsonl (docs/formats/truth.md, docs/formats/truth.schema.json).
 namespace airtruth::annotation {
@@ -33,7 +34,9 @@ struct Intruder {
   std::optional<Vector3> position_ned_m;
   std::optional<Vector3> velocity_ned_mps;
   std::optional<YawPitchRoll> attitude_yaw_pitch_roll_deg;
-  std::optional<Vector3> position_in_cam_m;  // nominal camera: x right, y down, z forward
+  // x right, y down, z forward; in the measured camera where motion is a rotation, else in the
+  // nominal one.
+  std::optional<Vector3> position_in_cam_m;
   std::optional<double> range_m;
   std::optional<double> range_rate_mps;  // negative: closing
   std::optional<double> azimuth_deg;     // from the boresight, right positive
@@ -56,7 +59,7 @@ struct Frame {
   bool damaged = false;  // the background's frame came from corrupt data
   Vector3 camera_position_ned_m = Vector3::Zero();
   YawPitchRoll camera_attitude_yaw_pitch_roll_deg;
-  Homography frame_from_reference = Homography::Identity();
+  Shake shake;
   std::string motion_state = "reference";
   std::vector<Intruder> intruders;
 };

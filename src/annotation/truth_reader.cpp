@@ -167,6 +167,19 @@ Intruder intruder_from(const Object& object) {
   return intruder;
 }
 
+Shake shake_from(const Object& motion) {
+  Shake shake;
+  shake.frame_from_reference = motion.matrix("frame_from_reference");
+  if (motion.has("rotation")) {
+    const auto q = motion.tuple<4>("rotation");
+    shake.rotation = Quaternion(q[0], q[1], q[2], q[3]);
+  }
+  if (motion.has("rate_radps")) shake.rate_radps = motion.vector("rate_radps");
+  if (motion.has("frame_from_reference_per_s"))
+    shake.frame_from_reference_per_s = motion.matrix("frame_from_reference_per_s");
+  return shake;
+}
+
 Frame frame_from(const Object& object) {
   Frame frame;
   frame.frame = object.whole("frame");
@@ -177,7 +190,7 @@ Frame frame_from(const Object& object) {
   frame.camera_attitude_yaw_pitch_roll_deg = camera.attitude("attitude_yaw_pitch_roll_deg");
   const Object motion = object.object("motion");
   frame.motion_state = motion.text("state");
-  frame.frame_from_reference = motion.matrix("frame_from_reference");
+  frame.shake = shake_from(motion);
   for (const Object& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
   return frame;

@@ -63,8 +63,12 @@ std::optional<std::string> fault(const Intruder& i) {
 std::optional<std::string> fault(const Frame& frame) {
   if (frame.frame < 0) return "frame is below 0";
   if (!finite(frame.time_s) || !finite(frame.camera_position_ned_m) ||
-      !finite(frame.camera_attitude_yaw_pitch_roll_deg) || !frame.frame_from_reference.allFinite())
+      !finite(frame.camera_attitude_yaw_pitch_roll_deg) ||
+      !frame.shake.frame_from_reference.allFinite() ||
+      !frame.shake.frame_from_reference_per_s.allFinite() || !finite(frame.shake.rate_radps))
     return "holds a number that is not finite";
+  if (frame.shake.rotation && !(std::abs(frame.shake.rotation->norm() - 1) < 1e-6))
+    return "has a rotation that is no unit quaternion";
   for (const Intruder& intruder : frame.intruders)
     if (const auto found = fault(intruder))
       return fmt::format("intruder '{}' {}", intruder.id, *found);

@@ -48,7 +48,7 @@ Frame frame_of_two() {
   frame.damaged = true;
   frame.camera_position_ned_m = {16, 0, -150};
   frame.camera_attitude_yaw_pitch_roll_deg = {1, 2, 3};
-  frame.frame_from_reference << 1, 0.01, 3, -0.01, 1, 4.5, 1e-7, 0, 1;
+  frame.shake.frame_from_reference << 1, 0.01, 3, -0.01, 1, 4.5, 1e-7, 0, 1;
   frame.motion_state = "bridged";
   frame.intruders.push_back(visible_intruder());
   Intruder ended;
@@ -80,7 +80,7 @@ TEST(Truth, ALineReadsBackTheSame) {
   const std::string line = jsonl_line(frame_of_two(), kLens);
   const Frame again = parse_jsonl_line(line, "truth.jsonl", 1);
   EXPECT_EQ(jsonl_line(again, kLens), line);
-  EXPECT_EQ(again.frame_from_reference, frame_of_two().frame_from_reference);
+  EXPECT_EQ(again.shake.frame_from_reference, frame_of_two().shake.frame_from_reference);
   EXPECT_EQ(again.intruders[0].attitude_yaw_pitch_roll_deg->pitch_deg, 1.0 / 3.0);
   EXPECT_EQ(again.intruders[0].visible_box_px, (PixelBox{10, 339, 31, 10}));
   EXPECT_EQ(again.intruders[1].state, State::kEnded);
@@ -94,7 +94,9 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
     EXPECT_THROW(jsonl_line(frame, kLens), std::logic_error);
   };
   refused([](Frame& f) { f.time_s = std::nan(""); });
-  refused([](Frame& f) { f.frame_from_reference(0, 0) = std::numeric_limits<double>::infinity(); });
+  refused([](Frame& f) {
+    f.shake.frame_from_reference(0, 0) = std::numeric_limits<double>::infinity();
+  });
   refused([](Frame& f) { f.intruders[0].visible_box_px.reset(); });
   refused([](Frame& f) { f.intruders[0].state = State::kHidden; });
   refused([](Frame& f) { f.intruders[0].range_m.reset(); });

@@ -90,7 +90,15 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
       {"position_ned_m", json(frame.camera_position_ned_m)},
       {"attitude_yaw_pitch_roll_deg", json(frame.camera_attitude_yaw_pitch_roll_deg)}};
   object["motion"] = {{"state", frame.motion_state},
-                      {"frame_from_reference", json(frame.frame_from_reference)}};
+                      {"frame_from_reference", json(frame.shake.frame_from_reference)}};
+  if (frame.shake.rotation) {
+    const Quaternion& q = *frame.shake.rotation;
+    object["motion"]["rotation"] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  if (!frame.shake.rate_radps.isZero(0))
+    object["motion"]["rate_radps"] = json(frame.shake.rate_radps);
+  if (!frame.shake.frame_from_reference_per_s.isZero(0))
+    object["motion"]["frame_from_reference_per_s"] = json(frame.shake.frame_from_reference_per_s);
   Json intruders = Json::array();
   for (const Intruder& intruder : frame.intruders) intruders.push_back(json(intruder));
   object["intruders"] = std::move(intruders);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/commands.h"
+#include "lens/calibration_file.h"
 #include "motion/plot.h"
 #include "motion/stabilise.h"
 #include "sequence/motion_source.h"
@@ -24,13 +25,27 @@ struct Arguments {
   std::string mask;
   std::string plot;
   std::string stabilised;
+  std::string model = "homography";
+  std::string lens;
   std::string reference = "first_frame";
   double smoothing_s = 1;
   bool overwrite = false;
 };
 
+// The lens that the model rotation needs; empty for homography.
+std::optional<lens::Lens> lens_of(const Arguments& arguments, const lens::ImageSize& size) {
+  if (arguments.model == "homography") {
+    if (!arguments.lens.empty())
+      throw Error("--lens is for --model rotation; a homography knows no lens");
+    return std::nullopt;
+  }
+  if (arguments.lens.empty()) throw Error("--model rotation needs --lens, a calibration file");
+  return lens::read_calibration(arguments.lens, size);
+}
+
 void stabilise(const Arguments& arguments,
                const std::vector<motion::FrameMotion>& all,
+               const std::optional<lens::Lens>& lens,
                Context& context) {
   const fs::path out = arguments.stabilised;
   const std::string extension = out.extension().string();
@@ -41,7 +56,9 @@ void stabilise(const Arguments& arguments,
   while (auto frame = reader.next()) {
     if (context.stop.stop_requested()) throw Interrupted();
     const auto& motion = all[static_cast<std::size_t>(frame->index)];
-    frame->picture = motion::stabilised(frame->picture, motion.frame_from_reference);
+    frame->picture = motion.rotation
+                         ? motion::stabilised(frame->picture, *lens, *motion.rotation)
+                         : motion::stabilised(frame->picture, motion.frame_from_reference);
     writer.write(*frame);
     context.console().progress(
         "stabilising", frame->index + 1, static_cast<std::int64_t>(all.size()));
@@ -60,15 +77,20 @@ void measure(const Arguments& arguments, Context& context) {
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
   motion::Options options;
   options.smoothing_s = arguments.smoothing_s;
-  auto all = sequence::measure_motion(
-      reader, options, mask ? &*mask : nullptr, context.stop, [&](std::int64_t done) {
+  const image::Mask* own_aircraft = mask ? &*mask : nullptr;
+  const auto lens = lens_of(arguments, {info.width, info.height});
+  motion::Estimator estimator =
+      lens ? motion::Estimator(*lens, options, own_aircraft)
+           : motion::Estimator(info.width, info.height, options, own_aircraft);
+  auto all =
+      sequence::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
   if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
   write_file(arguments.out, motion::csv_from_motion(all));
   if (!arguments.plot.empty())
     video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
-  if (!arguments.stabilised.empty()) stabilise(arguments, all, context);
+  if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
   std::size_t measured = 0;
   for (const auto& frame : all)
     measured +=
@@ -83,10 +105,19 @@ void add_motion(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command
-      ->add_option("-o,--out",
-                   arguments->out,
-                   "Table to write: frame,time_s,h11..h33,inliers,rms_px,state (.csv)")
+      ->add_option(
+          "-o,--out",
+          arguments->out,
+          "Table to write: frame,time_s,h11..h33 (or qw,qx,qy,qz),inliers,rms_px,state (.csv)")
       ->required();
+  command
+      ->add_option("--model",
+                   arguments->model,
+                   "homography: one plane; rotation: on the sphere, through a known lens")
+      ->check(CLI::IsMember({"homography", "rotation"}))
+      ->capture_default_str();
+  command->add_option(
+      "--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for --model rotation");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
   command->add_option(

@@ -87,6 +87,8 @@ class Work {
     scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
     if (*needed_[i] > 0) scene.background.frame_count = *needed_[i];
     scene.motion = catalogue_.backgrounds[i].motion;
+    scene.lens = catalogue_.backgrounds[i].lens;
+    scene.composite = catalogue_.composite;
     scene.seed = catalogue_.seed;
     sequence::Options how;
     how.cache = folder_.cache();

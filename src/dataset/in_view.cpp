@@ -20,7 +20,7 @@ bool is_in_view(const annotation::Frame& frame,
   if (!intruder.position_in_cam_m) return false;
   const auto nominal = lens.pixel_from_cam(*intruder.position_in_cam_m);
   if (!nominal) return false;
-  const Vector3 h = frame.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
+  const Vector3 h = frame.shake.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return false;
   const Pixel pixel = h.head<2>() / h.z();
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < lens.size().width &&

@@ -51,8 +51,8 @@ Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intru
 
 Portrait::Camera camera_of(const annotation::Frame& frame, int width, int height) {
   const Vector3 middle(width / 2.0, height / 2.0, 1);
-  const Vector3 moved = frame.frame_from_reference * middle;
-  const Homography& h = frame.frame_from_reference;
+  const Vector3 moved = frame.shake.frame_from_reference * middle;
+  const Homography& h = frame.shake.frame_from_reference;
   const double degrees = 180 / std::numbers::pi;
   return {frame.frame,
           numbers(frame.camera_position_ned_m),

@@ -18,11 +18,12 @@ constexpr int kEstimatorVersion = 4;  // raise it whenever the estimator's numbe
 
 std::string CacheKey::file_name() const {
   // Smoothing comes after measuring and is no part of what is kept.
-  return sha256_of(fmt::format("{} {} {} {} {} {} {} {} {} {}",
+  return sha256_of(fmt::format("{} {} {} {} {} {} {} {} {} {} {}",
                                kEstimatorVersion,
                                video_sha256,
                                mask_sha256,
                                first_frame,
+                               lens,
                                options.max_corners,
                                options.min_corner_distance_px,
                                options.forward_backward_px,

@@ -20,6 +20,7 @@ struct CacheKey {
   std::string mask_sha256;  // "" without a mask
   std::int64_t first_frame = 0;
   std::int64_t frame_count = -1;  // -1: to the end
+  std::string lens;               // "" for the model homography; else words that tell lenses apart
   Options options;
   std::string file_name() const;  // a hash of all of it but frame_count, ".csv"
 };

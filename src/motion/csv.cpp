@@ -15,7 +15,9 @@ namespace {
 
 constexpr const char* kHeader =
     "frame,time_s,h11,h12,h13,h21,h22,h23,h31,h32,h33,inliers,rms_px,state";
+constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
 constexpr std::size_t kCells = 14;
+constexpr std::size_t kRotationCells = 9;
 
 double number(const std::string& cell, const Where& where) {
   double value = 0;
@@ -36,11 +38,17 @@ State state_of(const std::string& word, const Where& where) {
 }  // namespace
 
 std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
-  std::string text = std::string(kHeader) + "\n";
+  const bool rotations = !motion.empty() && motion.front().rotation;
+  std::string text = std::string(rotations ? kRotationHeader : kHeader) + "\n";
   for (const FrameMotion& m : motion) {
+    check(m.rotation.has_value() == rotations, "one model of motion");
     text += fmt::format("{},{}", m.frame, m.time_s);
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
+    if (rotations)
+      text += fmt::format(
+          ",{},{},{},{}", m.rotation->w(), m.rotation->x(), m.rotation->y(), m.rotation->z());
+    else
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
     text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, name(m.state));
   }
   return text;
@@ -49,29 +57,39 @@ std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
 std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& file) {
   std::istringstream lines{std::string(text)};
   std::string line;
-  if (!std::getline(lines, line) || line != kHeader)
-    throw Error(std::string("does not begin with ") + kHeader, {file.string(), 1});
+  if (!std::getline(lines, line) || (line != kHeader && line != kRotationHeader))
+    throw Error(std::string("does not begin with ") + kHeader + " or " + kRotationHeader,
+                {file.string(), 1});
+  const bool rotations = line == kRotationHeader;
+  const std::size_t expected = rotations ? kRotationCells : kCells;
   std::vector<FrameMotion> motion;
   for (int row = 2; std::getline(lines, line); ++row) {
     const Where where{file.string(), row};
     std::vector<std::string> cells;
     std::istringstream stream(line);
     for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    if (cells.size() != kCells)
-      throw Error("has " + std::to_string(cells.size()) + " cells; expected 14", where);
+    if (cells.size() != expected)
+      throw Error(fmt::format("has {} cells; expected {}", cells.size(), expected), where);
     FrameMotion m;
     const double frame = number(cells[0], where);
-    const double inliers = number(cells[11], where);
+    const double inliers = number(cells[expected - 3], where);
     if (std::abs(frame) > 1e15 || std::abs(inliers) > 1e9)
       throw Error("a count is too large", where);
     m.frame = static_cast<std::int64_t>(frame);
     m.time_s = number(cells[1], where);
-    for (std::size_t i = 0; i < 9; ++i)
-      m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
-          number(cells[2 + i], where);
+    if (rotations) {
+      const auto q = [&](std::size_t i) { return number(cells[2 + i], where); };
+      m.rotation = Quaternion(q(0), q(1), q(2), q(3));
+      if (std::abs(m.rotation->norm() - 1) > 1e-6)
+        throw Error("qw,qx,qy,qz is no rotation; expected a unit quaternion", where);
+    } else {
+      for (std::size_t i = 0; i < 9; ++i)
+        m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
+            number(cells[2 + i], where);
+    }
     m.inliers = static_cast<int>(inliers);
-    m.rms_px = number(cells[12], where);
-    m.state = state_of(cells[13], where);
+    m.rms_px = number(cells[expected - 2], where);
+    m.state = state_of(cells[expected - 1], where);
     motion.push_back(m);
   }
   return motion;

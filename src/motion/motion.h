@@ -4,19 +4,27 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "geometry/transform.h"
+#include "geometry/within_frame.h"
 #include "image/layer.h"
 #include "image/picture.h"
+#include "lens/lens.h"
 
-// How the picture moved, as one plane homography per frame (the paper, section II.C).
+// How the camera moved: strong corners (Shi and Tomasi 1994) outside the own aircraft, spread over
+// the image; pyramidal Lucas-Kanade (Bouguet 2001) with a forward-backward check (Kalal 2010); and
+// one of two models of what they tell.
 //
-// Strong corners (Shi and Tomasi 1994) outside the own aircraft, spread over the image; pyramidal
-// Lucas-Kanade (Bouguet 2001) with a forward-backward check (Kalal 2010); RANSAC (Fischler and
-// Bolles 1981) homography to the key frame, refined on its inliers; new key frames before tracks
-// run thin, homographies composed.
+// homography (the paper, section II.C): one plane map per frame, by RANSAC (Fischler and Bolles
+// 1981) to the key frame, refined on its inliers; new key frames before tracks run thin,
+// homographies composed.
+//
+// rotation: through a known lens corners are bearings, and what is far turns with the camera. One
+// rotation per frame by RANSAC and robust least squares; near ground and own aircraft fall out
+// (rotation_fit.h). Exact for any lens, where a homography is exact for a pinhole alone.
 namespace airtruth::motion {
 
 enum class State {
@@ -34,7 +42,10 @@ struct FrameMotion {
   // p_in_frame ~ H p_in_reference, in airtruth's pixels (corner origin), h33 = 1. For
   // Reference::kFirstFrame the reference is the first frame; for kSmoothed the steady camera that
   // the shaking one follows.
+  // Identity for the model rotation.
   Homography frame_from_reference = Homography::Identity();
+  // cam_from_reference_cam, of the model rotation; empty for homography.
+  std::optional<Quaternion> rotation;
   int inliers = 0;
   double rms_px = 0;  // of the inliers' reprojection, in the frame
   State state = State::kReference;
@@ -55,8 +66,13 @@ struct Options {
 // Frame by frame, in order; memory does not grow with the number of frames. One thread at a time.
 class Estimator {
  public:
+  // Model homography.
   Estimator(int width,
             int height,
+            const Options& options,
+            const image::Mask* own_aircraft = nullptr);
+  // Model rotation.
+  Estimator(const lens::Lens& lens,
             const Options& options,
             const image::Mask* own_aircraft = nullptr);
   ~Estimator();
@@ -69,13 +85,18 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-// Splits motion against the first frame into steady camera and shake: returns frame_from_reference
+// Splits motion against the first frame into steady camera and shake: returns it
 // with the reference following a Gaussian-smoothed camera. All frames are needed at once (a few
 // hundred bytes each).
 std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
                                   const Options& options);
 
-// motion.csv: frame,time_s,h11,...,h33,inliers,rms_px,state. Numbers round-trip exactly.
+// The shake of one frame with its change per second, from the frames beside it: what blur and a
+// rolling shutter need.
+Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k);
+
+// motion.csv: frame,time_s,h11,...,h33,inliers,rms_px,state, or for rotations
+// frame,time_s,qw,qx,qy,qz,inliers,rms_px,state. Numbers round-trip exactly.
 std::string csv_from_motion(const std::vector<FrameMotion>& motion);
 std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& name);
 

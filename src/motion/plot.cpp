@@ -122,17 +122,27 @@ image::Rgb8 plot(const std::vector<FrameMotion>& motion, int width, int height) 
   Series x{"centre, x", {}, kBlue}, y{"centre, y", {}, kOrange}, turn{"rotation", {}, kBlue},
       rms{"rms of the inliers", {}, kBlue}, inliers{"inliers", {}, kOrange};
   const Pixel centre(width / 2.0, height / 2.0);
+  const bool rotations = !motion.empty() && motion.front().rotation;
+  if (rotations) x.name = "yaw", y.name = "pitch", turn.name = "roll";
   for (const FrameMotion& m : motion) {
+    rms.values.push_back(m.rms_px);
+    inliers.values.push_back(m.inliers);
+    if (rotations) {
+      // Of the camera: right, up and clockwise.
+      const Vector3 turned = vector_from_rotation(m.rotation->conjugate());
+      x.values.push_back(degrees(turned.y()));
+      y.values.push_back(degrees(turned.x()));
+      turn.values.push_back(degrees(turned.z()));
+      continue;
+    }
     const Pixel moved = apply(m.frame_from_reference, centre);
     const Pixel right = apply(m.frame_from_reference, centre + Pixel(1, 0)) - moved;
     x.values.push_back(moved.x() - centre.x());
     y.values.push_back(moved.y() - centre.y());
     turn.values.push_back(degrees(std::atan2(right.y(), right.x())));
-    rms.values.push_back(m.rms_px);
-    inliers.values.push_back(m.inliers);
   }
   cv::Mat canvas(4 * (kPanelPx + kTopPx) + 56, kWidthPx, CV_8UC3, cv::Scalar(252, 252, 252));
-  panel(canvas, motion, 0, "px", {x, y});
+  panel(canvas, motion, 0, rotations ? "degrees" : "px", {x, y});
   panel(canvas, motion, 1, "degrees", {turn});
   panel(canvas, motion, 2, "px", {rms});
   panel(canvas, motion, 3, "corners", {inliers});

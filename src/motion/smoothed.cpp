@@ -21,6 +21,39 @@ Homography step(const std::vector<FrameMotion>& motion, std::size_t from, std::s
                           motion[from].frame_from_reference.inverse());
 }
 
+// How frame `to` is turned against `from`, as a rotation vector.
+Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+  const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
+  return turned.angle() * turned.axis();
+}
+
+// The same on the group of rotations, where every frame of the window can be held against k at
+// once.
+void smooth_rotations(const std::vector<FrameMotion>& against_first,
+                      double sigma_s,
+                      std::vector<FrameMotion>& result) {
+  for (std::size_t k = 0; k < against_first.size(); ++k) {
+    Vector3 sum = Vector3::Zero();
+    double total = 1;
+    const auto add = [&](std::size_t i) {
+      const double dt = (against_first[i].time_s - against_first[k].time_s) / sigma_s;
+      if (std::abs(dt) > 2.5) return false;
+      const double weight = std::exp(-0.5 * dt * dt);
+      sum += weight * turn(against_first, k, i);
+      total += weight;
+      return true;
+    };
+    for (std::size_t i = k + 1; i < against_first.size(); ++i)
+      if (against_first[i].state == State::kCut || !add(i)) break;
+    for (std::size_t i = k; i > 0; --i)
+      if (against_first[i].state == State::kCut || !add(i - 1)) break;
+    const Vector3 steady = sum / total;
+    const double angle = steady.norm();
+    result[k].rotation =
+        angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle)) : Quaternion::Identity();
+  }
+}
+
 }  // namespace
 
 // Around frame k its neighbours i are seen through i_from_k. The steady camera is the one to which
@@ -34,6 +67,10 @@ std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
   std::vector<FrameMotion> result = against_first;
   const std::size_t n = against_first.size();
   const double sigma = options.smoothing_s;
+  if (n > 0 && against_first.front().rotation) {
+    smooth_rotations(against_first, sigma, result);
+    return result;
+  }
   for (std::size_t k = 0; k < n; ++k) {
     Homography sum = Homography::Zero();
     double total = 1;

@@ -27,7 +27,11 @@ cv::Matx33d plane_map(const Homography& h, int sx, int sy) {
 
 }  // namespace
 
-image::Picture stabilised(const image::Picture& picture, const Homography& frame_from_reference) {
+namespace {
+
+// warp(source, target, sx, sy, black) for each plane.
+template <typename Warp>
+image::Picture each_plane(const image::Picture& picture, const Warp& warp) {
   image::Picture result = image::make_picture(picture.width, picture.height, picture.colour);
   const bool rgb = picture.colour.matrix == image::Matrix::kRgb;
   const int black = picture.colour.range == image::Range::kFull || rgb ? 0 : 16;
@@ -36,15 +40,56 @@ image::Picture stabilised(const image::Picture& picture, const Homography& frame
     const int sx = chroma ? image::log2_chroma_width(picture.colour.chroma) : 0;
     const int sy = chroma ? image::log2_chroma_height(picture.colour.chroma) : 0;
     cv::Mat target = mat_of(result.planes[i]);
-    cv::warpPerspective(mat_of(picture.planes[i]),
-                        target,
-                        plane_map(frame_from_reference, sx, sy),
-                        target.size(),
-                        cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
-                        cv::BORDER_CONSTANT,
-                        cv::Scalar(chroma ? 128 : black));
+    warp(mat_of(picture.planes[i]), target, sx, sy, cv::Scalar(chroma ? 128 : black));
   }
   return result;
+}
+
+}  // namespace
+
+image::Picture stabilised(const image::Picture& picture, const Homography& frame_from_reference) {
+  return each_plane(
+      picture,
+      [&](const cv::Mat& source, cv::Mat& target, int sx, int sy, const cv::Scalar& black) {
+        cv::warpPerspective(source,
+                            target,
+                            plane_map(frame_from_reference, sx, sy),
+                            target.size(),
+                            cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                            cv::BORDER_CONSTANT,
+                            black);
+      });
+}
+
+image::Picture stabilised(const image::Picture& picture,
+                          const lens::Lens& lens,
+                          const Quaternion& cam_from_reference) {
+  // Where each pixel of the reference is in the frame, in our pixels; far away where the lens has
+  // no answer.
+  constexpr float kNowhere = -1e4F;
+  cv::Mat map(picture.height, picture.width, CV_32FC2);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
+      const auto pixel = ray ? lens.pixel_from_cam(cam_from_reference * *ray) : std::nullopt;
+      map.at<cv::Vec2f>(y, x) =
+          pixel ? cv::Vec2f(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()))
+                : cv::Vec2f(kNowhere, kNowhere);
+    }
+  return each_plane(
+      picture,
+      [&](const cv::Mat& source, cv::Mat& target, int sx, int sy, const cv::Scalar& black) {
+        cv::Mat here;
+        cv::resize(map, here, target.size(), 0, 0, cv::INTER_AREA);
+        for (int y = 0; y < here.rows; ++y)
+          for (int x = 0; x < here.cols; ++x) {
+            cv::Vec2f& at = here.at<cv::Vec2f>(y, x);
+            at = {at[0] / static_cast<float>(1 << sx) - 0.5F,
+                  at[1] / static_cast<float>(1 << sy) - 0.5F};
+          }
+        cv::remap(
+            source, target, here, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, black);
+      });
 }
 
 }  // namespace airtruth::motion

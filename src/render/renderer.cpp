@@ -113,7 +113,7 @@ double area_outside(const View& view, const Tracer& tracer, int actor, const Box
       const Vector3 direction = RayGrid::direction(view, p);
       if (!direction.allFinite()) continue;
       unused.clear();
-      rows[static_cast<std::size_t>(row)] += tracer.collect(actor, direction, 1e-3, unused);
+      rows[static_cast<std::size_t>(row)] += tracer.collect(actor, {direction, 0, 0}, 1e-3, unused);
     }
   });
   double sum = 0;
@@ -121,10 +121,11 @@ double area_outside(const View& view, const Tracer& tracer, int actor, const Box
   return sum * cell;
 }
 
-std::optional<PixelBox> patch_of(const std::vector<Actor>& actors) {
+std::optional<PixelBox> patch_of(const std::vector<std::optional<Box>>& search, const View& view) {
   std::optional<PixelBox> patch;
-  for (const Actor& actor : actors)
-    if (actor.pixels) patch = patch ? bounds(*patch, *actor.pixels) : *actor.pixels;
+  for (const auto& box : search)
+    if (const auto pixels = pixels_to_search(box, view))
+      patch = patch ? bounds(*patch, *pixels) : *pixels;
   return patch;
 }
 
@@ -149,7 +150,7 @@ class Refiner {
     if (counts.edge == counts.base) return;
     for (const Actor& actor : actors)
       silhouettes_.push_back(
-          actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch)
+          actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch, grid)
                        : std::nullopt);
   }
 
@@ -229,9 +230,7 @@ class Refiner {
   const Cover& cover(int x, int y, int actor, int samples) {
     thread_local Cover found;
     found.covered = 0;
-    const auto corners = grid_.corners(x, y);
-    if (finite(corners))
-      silhouettes_[static_cast<std::size_t>(actor)]->cover(x, y, corners, samples, found);
+    silhouettes_[static_cast<std::size_t>(actor)]->cover(x, y, samples, found);
     const std::size_t i = canvas_.index(x, y);
     Sum& sum = canvas_.sums[i];
     sum = {};
@@ -294,12 +293,15 @@ image::Layer render(const View& view,
                     const Options& options) {
   check(view.lens != nullptr && instances.size() == search.size(),
         "a view has a lens and an instance has its box");
+  const auto patch = patch_of(search, view);
+  const RayGrid grid(view, patch.value_or(PixelBox{0, 0, 1, 1}));
   std::vector<Actor> actors;
   for (std::size_t i = 0; i < instances.size(); ++i)
-    actors.push_back(place(instances[i], view, light, search[i]));
-  const SampleCounts counts = counts_for(options.quality, largest_px(actors));
-  const auto patch = patch_of(actors);
-  const RayGrid grid(view, patch.value_or(PixelBox{0, 0, 1, 1}));
+    actors.push_back(place(instances[i], view, light, search[i], grid.span()));
+  SampleCounts counts = counts_for(options.quality, largest_px(actors));
+  // A third dimension, time, takes more samples for the same error.
+  if (view.shutter.exposure_s > 0)
+    counts.outline = std::min(2 * counts.outline, PixelSamples::kMost);
   const Tracer tracer(light, actors, grid, counts);
   image::Layer layer;
   if (patch) {

@@ -10,6 +10,7 @@
 #include "aircraft/mesh.h"
 #include "geometry/box.h"
 #include "geometry/transform.h"
+#include "geometry/within_frame.h"
 #include "image/layer.h"
 #include "lens/lens.h"
 
@@ -17,7 +18,9 @@
 //
 //   ray_in_world(pixel) = world_from_cam * lens.ray_from_pixel(nominal_from_frame * pixel)
 //
-// carried into each aircraft's own frame, where its BVH (Embree) never moves.
+// carried into each aircraft's own frame, where its BVH (Embree) never moves. With a shutter every
+// sample has its own time: that of its row plus its own place in the exposure; camera, aircraft and
+// propellers stand where they are then.
 namespace airtruth::render {
 
 struct Light {
@@ -36,6 +39,12 @@ struct View {
   Homography nominal_from_frame = Homography::Identity();
   int width = 0;  // of the frame
   int height = 0;
+  // What goes on within the frame (geometry/within_frame.h).
+  Shutter shutter;
+  Twist camera;  // of world_from_cam
+  Homography frame_from_nominal_per_s = Homography::Zero();
+
+  View at(double dt_s) const;  // the same, dt_s from the frame's time
 };
 
 // One aircraft ready to be hit: its BVH, in body coordinates. Immutable; share one among intruders
@@ -56,6 +65,7 @@ struct Instance {
   const Model* model = nullptr;
   Rigid world_from_body;
   double time_s = 0;  // turns the propellers
+  Twist twist;        // how the body goes on within the frame
 };
 
 struct Options {

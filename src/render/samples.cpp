@@ -17,10 +17,19 @@ std::uint32_t hashed(std::uint32_t x, std::uint32_t y) {
 struct SobolPoints {
   std::array<std::uint32_t, PixelSamples::kMost> x;
   std::array<std::uint32_t, PixelSamples::kMost> y;
+  std::array<std::uint32_t, PixelSamples::kMost> t;
 };
+
+// Direction numbers of the primitive polynomial x^2 + x + 1 (Sobol 1967; m = 1, 3).
+constexpr std::array<std::uint32_t, 12> third_directions() {
+  std::array<std::uint32_t, 12> v{1u << 31, 3u << 30};
+  for (std::size_t i = 2; i < v.size(); ++i) v[i] = v[i - 1] ^ v[i - 2] ^ (v[i - 2] >> 2);
+  return v;
+}
 
 constexpr SobolPoints sobol_points() {
   SobolPoints points{};
+  constexpr auto third = third_directions();
   for (std::uint32_t n = 0; n < PixelSamples::kMost; ++n) {
     std::uint32_t vx = 1u << 31;
     std::uint32_t vy = 1u << 31;
@@ -30,17 +39,24 @@ constexpr SobolPoints sobol_points() {
         points.y[n] ^= vy;
       }
     }
+    for (std::uint32_t bit = 0; bit < third.size(); ++bit)
+      if ((n >> bit & 1u) != 0) points.t[n] ^= third[bit];
   }
   return points;
 }
 
 constexpr SobolPoints kPoints = sobol_points();
 
+float unit(std::uint32_t bits) {
+  return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
+}
+
 }  // namespace
 
 PixelSamples::PixelSamples(int x, int y)
     : scramble_x_(hashed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))),
-      scramble_y_(hashed(scramble_x_, 0x68bc21ebu)) {}
+      scramble_y_(hashed(scramble_x_, 0x68bc21ebu)),
+      scramble_t_(hashed(scramble_y_, 0x02e5be93u)) {}
 
 std::array<double, 2> PixelSamples::at(int i) const {
   const auto n = static_cast<std::size_t>(i);
@@ -48,10 +64,15 @@ std::array<double, 2> PixelSamples::at(int i) const {
           ((kPoints.y[n] ^ scramble_y_) + 0.5) * 0x1.0p-32};
 }
 
+double PixelSamples::time(int i) const {
+  return ((kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_) + 0.5) * 0x1.0p-32;
+}
+
+void PixelSamples::fill_times(int n, float* t) const {
+  for (int i = 0; i < n; ++i) t[i] = unit(kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_);
+}
+
 void PixelSamples::fill(int n, float* x, float* y) const {
-  const auto unit = [](std::uint32_t bits) {
-    return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
-  };
   for (int i = 0; i < n; ++i) {
     x[i] = unit(kPoints.x[static_cast<std::size_t>(i)] ^ scramble_x_);
     y[i] = unit(kPoints.y[static_cast<std::size_t>(i)] ^ scramble_y_);

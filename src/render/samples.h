@@ -17,10 +17,14 @@ class PixelSamples {
   std::array<double, 2> at(int i) const;  // i in [0, kMost); in (0, 1)
   // The first n of them, to 2^-23.
   void fill(int n, float* x, float* y) const;
+  // When in the exposure a sample is taken, in (0, 1): the sequence's third dimension.
+  double time(int i) const;
+  void fill_times(int n, float* t) const;
 
  private:
   std::uint32_t scramble_x_;
   std::uint32_t scramble_y_;
+  std::uint32_t scramble_t_;
 };
 
 // How many samples a pixel takes; powers of two.

@@ -19,7 +19,8 @@ struct Placed {
   const Model::Impl* model = nullptr;
   Eigen::Vector3f to_sun_in_body{0, 0, -1};
   Eigen::Vector3f up_in_body{0, 0, -1};
-  std::vector<Eigen::Affine3f> part_from_body;
+  double time_s = 0;
+  std::vector<Eigen::Affine3f> part_from_body;  // at that time
   std::vector<Eigen::Affine3f> body_from_part;
 };
 

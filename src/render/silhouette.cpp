@@ -50,7 +50,33 @@ Bilinear bilinear_of(const std::array<double, 4>& corner) {
 struct Places {
   alignas(32) std::array<float, PixelSamples::kMost> x;
   alignas(32) std::array<float, PixelSamples::kMost> y;
+  alignas(32) std::array<float, PixelSamples::kMost> t;
 };
+
+// A side's product over a pixel and its exposure: steady + u (first + u second), u from -1 to 1.
+struct Swept {
+  Bilinear steady, first, second;
+};
+
+Swept swept_of(const Thrice<std::array<double, 4>>& at) {
+  double largest = 0;
+  for (const auto& corner : at)
+    for (const double value : corner) largest = std::max(largest, std::abs(value));
+  const double scale = 1 / largest;
+  const auto bilinear = [scale](const std::array<double, 4>& c) {
+    return Bilinear{static_cast<float>(c[0] * scale),
+                    static_cast<float>((c[1] - c[0]) * scale),
+                    static_cast<float>((c[2] - c[0]) * scale),
+                    static_cast<float>((c[0] - c[1] - c[2] + c[3]) * scale)};
+  };
+  std::array<double, 4> first;
+  std::array<double, 4> second;
+  for (std::size_t i = 0; i < 4; ++i) {
+    first[i] = 0.5 * (at[2][i] - at[0][i]);
+    second[i] = 0.5 * (at[2][i] - 2 * at[1][i] + at[0][i]);
+  }
+  return {bilinear(at[1]), bilinear(first), bilinear(second)};
+}
 
 // The same instructions in vectors of 16, 8 or 4, as the machine has them. No product is fused with
 // its sum (-ffp-contract=off), so that the answers are the same bits on all of them.
@@ -98,10 +124,62 @@ bool mark_one(
   return all == -1;
 }
 
+// Marks the samples on the inner side of all three while things move.
+AIRTRUTH_VECTORS
+bool mark_swept(const Swept* sides,
+                int count,
+                const float* px,
+                const float* py,
+                const float* pt,
+                int n,
+                std::int32_t* covered) {
+  std::int32_t all = -1;
+  for (int i = 0; i < n; ++i) {
+    const float x = px[i];
+    const float y = py[i];
+    const float u = 2 * pt[i] - 1;
+    std::int32_t inside = -1;
+    for (int k = 0; k < count; ++k) {
+      const Bilinear& p = sides[k].steady;
+      const Bilinear& q = sides[k].first;
+      const Bilinear& r = sides[k].second;
+      const float a = p.a + u * (q.a + u * r.a);
+      const float b = p.b + u * (q.b + u * r.b);
+      const float c = p.c + u * (q.c + u * r.c);
+      const float d = p.d + u * (q.d + u * r.d);
+      inside &= -static_cast<std::int32_t>((a + b * x) + y * (c + d * x) >= 0);
+    }
+    const std::int32_t now = covered[i] | inside;
+    covered[i] = now;
+    all &= now;
+  }
+  return all == -1;
+}
+
 }  // namespace
 
+struct Silhouette::Pencil {
+  bool known = true;
+  bool moves = false;
+  // Directions at a pixel's corners: in world at an instant (moment 1); in body, with e x d, at the
+  // three moments of the pixel's exposure (or moment 1 alone) while things move.
+  Thrice<std::array<Vector3, 4>> direction;
+  Thrice<std::array<Vector3, 4>> moment;
+  bool exposes = false;
+
+  double product(const Triangle& triangle,
+                 std::size_t side,
+                 std::size_t k,
+                 std::size_t corner) const {
+    const double still = triangle.side[side].dot(direction[k][corner]);
+    return moves ? still + triangle.edge[side].dot(moment[k][corner]) : still;
+  }
+};
+
 struct Silhouette::Eye {
-  const View& view;
+  View view;
+  Matrix3 world_from_body;
+  Vector3 eye_in_body;
   Homography frame_from_nominal;
   Quaternion cam_from_world;
 
@@ -112,52 +190,147 @@ struct Silhouette::Eye {
   double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
 
-Silhouette::Silhouette(const Actor& actor, const View& view, const PixelBox& patch)
-    : patch_(patch) {
+Silhouette::Silhouette(const Actor& actor,
+                       const View& view,
+                       const PixelBox& patch,
+                       const RayGrid& grid)
+    : patch_(patch), grid_(grid), actor_(actor) {
+  std::vector<Eye> eyes;
+  for (int k = actor.moves ? 0 : 1; k < (actor.moves ? 3 : 2); ++k) {
+    const View then = view.at(grid.span().at(k));
+    const auto i = static_cast<std::size_t>(k);
+    eyes.push_back({then,
+                    actor.body_from_world_at[i].transpose(),
+                    actor.eye_in_body_at[i],
+                    then.nominal_from_frame.inverse(),
+                    then.world_from_cam.rotation.conjugate()});
+  }
   std::vector<Reach> reaches;
   for (std::size_t part = 0; part < actor.placed.model->mesh.parts.size(); ++part)
-    add_part(actor, part, view, reaches);
+    add_part(actor, part, eyes, reaches);
   sort_by_pixel(reaches);
 }
 
 void Silhouette::add_part(const Actor& actor,
                           std::size_t part,
-                          const View& view,
+                          const std::vector<Eye>& eyes,
                           std::vector<Reach>& reaches) {
   const Model::Impl& model = *actor.placed.model;
   const aircraft::Mesh& mesh = model.mesh;
-  const Matrix3 world_from_body = actor.body_from_world.transpose();
-  const Eye eye{view, view.nominal_from_frame.inverse(), view.world_from_cam.rotation.conjugate()};
   const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
-  std::vector<Seen> seen(mesh.positions.size());
+  std::vector<std::vector<Seen>> seen(eyes.size(), std::vector<Seen>(mesh.positions.size()));
   std::vector<bool> known(mesh.positions.size(), false);
-  const auto at = [&](std::uint32_t vertex) -> const Seen& {
-    Seen& result = seen[vertex];
-    if (known[vertex]) return result;
-    known[vertex] = true;
-    const Eigen::Vector3f in_body = actor.placed.body_from_part[part] * mesh.positions[vertex];
-    result.in_world = world_from_body * (in_body.cast<double>() - actor.eye_in_body);
-    const auto pixel = eye.pixel(result.in_world);
-    result.pixel = pixel ? *pixel : Pixel(nowhere.head<2>());
-    return result;
+  const auto in_body = [&](std::uint32_t vertex) {
+    return Vector3((actor.placed.body_from_part[part] * mesh.positions[vertex]).cast<double>());
   };
+  const auto look_at = [&](std::uint32_t vertex) {
+    if (known[vertex]) return;
+    known[vertex] = true;
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+      Seen& result = seen[e][vertex];
+      result.in_world = eyes[e].world_from_body * (in_body(vertex) - eyes[e].eye_in_body);
+      const auto pixel = eyes[e].pixel(result.in_world);
+      result.pixel = pixel ? *pixel : Pixel(nowhere.head<2>());
+    }
+  };
+  // A part that spins while the shutter is open is for rays.
+  const bool spins = actor.moves && mesh.parts[part].spins;
+  const std::optional<Reach> disc =
+      spins ? std::optional(reach_of_disc(mesh, mesh.parts[part], eyes)) : std::nullopt;
   const auto& source = mesh.parts[part].triangles;
+  std::vector<std::array<const Seen*, 3>> corners(eyes.size());
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const std::array<const Seen*, 3> corners = {
-        &at(source[i].vertex[0]), &at(source[i].vertex[1]), &at(source[i].vertex[2])};
-    const Reach reach = reach_of(corners, eye);
+    const auto& vertex = source[i].vertex;
+    for (const std::uint32_t v : vertex) look_at(v);
+    for (std::size_t e = 0; e < eyes.size(); ++e)
+      corners[e] = {&seen[e][vertex[0]], &seen[e][vertex[1]], &seen[e][vertex[2]]};
+    const Reach reach = spins             ? *disc
+                        : eyes.size() > 1 ? reach_over_time(corners, eyes)
+                                          : reach_of(corners[0], eyes[0]);
     if (reach.x0 >= reach.x1 || reach.y0 >= reach.y1) continue;
-    const Vector3& a = corners[0]->in_world;
-    const Vector3& b = corners[1]->in_world;
-    const Vector3& c = corners[2]->in_world;
-    Triangle triangle{{a.cross(b), b.cross(c), c.cross(a)}, model.opaque[part][i] != 0};
+    const auto& middle = corners[eyes.size() / 2];
+    const Vector3& a = middle[0]->in_world;
+    const Vector3& b = middle[1]->in_world;
+    const Vector3& c = middle[2]->in_world;
+    Triangle triangle{
+        {a.cross(b), b.cross(c), c.cross(a)}, {}, model.opaque[part][i] != 0 && !spins};
     const double turn = a.dot(triangle.side[1]);
-    if (turn == 0) continue;  // seen from its edge
+    if (turn == 0 && !actor.moves) continue;  // seen from its edge
+    if (actor.moves) {
+      const std::array<Vector3, 3> p = {in_body(vertex[0]), in_body(vertex[1]), in_body(vertex[2])};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.side[k] = p[k].cross(p[(k + 1) % 3]);
+        triangle.edge[k] = p[(k + 1) % 3] - p[k];
+      }
+    }
     if (turn < 0)
-      for (Vector3& side : triangle.side) side = -side;
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.side[k] = -triangle.side[k];
+        triangle.edge[k] = -triangle.edge[k];
+      }
     triangles_.push_back(triangle);
     reaches.push_back(reach);
   }
+}
+
+// Wherever a spinning part can be: an octahedron about a sphere about its hub.
+Silhouette::Reach Silhouette::reach_of_disc(const aircraft::Mesh& mesh,
+                                            const aircraft::Part& part,
+                                            const std::vector<Eye>& eyes) const {
+  float radius_m = 0;
+  for (const aircraft::Triangle& triangle : part.triangles)
+    for (const std::uint32_t v : triangle.vertex)
+      radius_m = std::max(radius_m, (mesh.positions[v] - part.centre_in_body).norm());
+  const double reach_m = std::sqrt(3.0) * static_cast<double>(radius_m);
+  BoxBounds bounds;
+  for (const Eye& eye : eyes)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Vector3 in_body = part.centre_in_body.cast<double>();
+        in_body[axis] += side * reach_m;
+        const auto pixel = eye.pixel(eye.world_from_body * (in_body - eye.eye_in_body));
+        if (!pixel) return {patch_.x, patch_.y, patch_.right(), patch_.bottom()};
+        bounds.add(*pixel);
+      }
+  const Box box = *bounds.box();
+  return reach_within(patch_, {box.x, box.y}, {box.right(), box.bottom()}, 1);
+}
+
+// Around its reach at each moment; between them its corners go along parabolas, which stick out of
+// their chords by an eighth of the second difference.
+Silhouette::Reach Silhouette::reach_over_time(
+    const std::vector<std::array<const Seen*, 3>>& corners, const std::vector<Eye>& eyes) const {
+  Reach all{patch_.right(), patch_.bottom(), patch_.x, patch_.y};
+  for (std::size_t e = 0; e < eyes.size(); ++e) {
+    const Reach r = reach_of(corners[e], eyes[e]);
+    if (r.x0 >= r.x1 || r.y0 >= r.y1) {
+      // Outside the patch now; the way there may still lead through it.
+      for (const Seen* corner : corners[e]) {
+        if (!corner->pixel.allFinite()) continue;
+        const Reach point = reach_within(patch_, corner->pixel, corner->pixel, 1);
+        all = {std::min(all.x0, point.x0),
+               std::min(all.y0, point.y0),
+               std::max(all.x1, point.x1),
+               std::max(all.y1, point.y1)};
+      }
+      continue;
+    }
+    all = {std::min(all.x0, r.x0),
+           std::min(all.y0, r.y0),
+           std::max(all.x1, r.x1),
+           std::max(all.y1, r.y1)};
+  }
+  double bulge = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pixel second = corners[0][k]->pixel - 2 * corners[1][k]->pixel + corners[2][k]->pixel;
+    if (second.allFinite()) bulge = std::max(bulge, second.cwiseAbs().maxCoeff() / 8);
+  }
+  if (all.x0 >= all.x1 || all.y0 >= all.y1) return {};
+  const int more = static_cast<int>(std::ceil(std::min(bulge, 1e4)));
+  return {std::max(all.x0 - more, patch_.x),
+          std::max(all.y0 - more, patch_.y),
+          std::min(all.x1 + more, patch_.right()),
+          std::min(all.y1 + more, patch_.bottom())};
 }
 
 // The picture of the part of a triangle that lies before a pinhole's plane; empty where none does,
@@ -282,9 +455,47 @@ std::span<const std::uint32_t> Silhouette::triangles_of(int x, int y) const {
 
 Silhouette::Touch Silhouette::touch(int x, int y) const { return touch_[index(x, y)]; }
 
-void Silhouette::cover(
-    int x, int y, const std::array<Vector3, 4>& corners, int samples, Cover& result) const {
+Silhouette::Pencil Silhouette::pencil_of(int x, int y) const {
+  Pencil pencil;
+  pencil.moves = actor_.moves;
+  Thrice<std::array<Vector3, 4>> in_world;
+  for (int k = actor_.moves ? 0 : 1; k < (actor_.moves ? 3 : 2); ++k) {
+    in_world[static_cast<std::size_t>(k)] = grid_.corners(x, y, k);
+    pencil.known = pencil.known && finite(in_world[static_cast<std::size_t>(k)]);
+  }
+  if (!pencil.known) return pencil;
+  if (!actor_.moves) {
+    pencil.direction[1] = in_world[1];
+    return pencil;
+  }
+  const double exposure_s = grid_.exposure_s();
+  pencil.exposes = exposure_s > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double dt_s = grid_.middle_s(x, y) + 0.5 * (static_cast<double>(k) - 1) * exposure_s;
+    const double u = grid_.span().u(dt_s);
+    const Matrix3 body_from_world = between(actor_.body_from_world_at, u);
+    const Vector3 eye = between(actor_.eye_in_body_at, u);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Thrice<Vector3> corner = {in_world[0][c], in_world[1][c], in_world[2][c]};
+      pencil.direction[k][c] = body_from_world * between(corner, u);
+      pencil.moment[k][c] = eye.cross(pencil.direction[k][c]);
+    }
+  }
+  return pencil;
+}
+
+void Silhouette::cover(int x, int y, int samples, Cover& result) const {
   result.is_covered.assign(static_cast<std::size_t>(samples), 0);
+  result.covered = 0;
+  const Pencil pencil = pencil_of(x, y);
+  if (!pencil.known) return;
+  if (pencil.exposes)
+    cover_moving(x, y, pencil, samples, result);
+  else
+    cover_still(x, y, pencil, samples, result);
+}
+
+void Silhouette::cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const {
   std::int32_t* covered = result.is_covered.data();
   Places places;
   bool placed = false;
@@ -293,12 +504,12 @@ void Silhouette::cover(
     std::array<Bilinear, 3> sides = {{{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}}};
     std::size_t crossing = 0;
     bool outside = false;
-    for (const Vector3& side : triangles_[index].side) {
+    for (std::size_t side = 0; side < 3; ++side) {
       std::array<double, 4> at;
       int inner = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        at[k] = side.dot(corners[k]);
-        inner += at[k] >= 0 ? 1 : 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        at[c] = pencil.product(triangles_[index], side, 1, c);
+        inner += at[c] >= 0 ? 1 : 0;
       }
       if (inner == 4) continue;
       outside = outside || inner == 0;
@@ -313,6 +524,51 @@ void Silhouette::cover(
       full = mark_one(sides.data(), places.x.data(), places.y.data(), samples, covered);
     else
       full = mark(sides.data(), places.x.data(), places.y.data(), samples, covered);
+    if (full) break;
+  }
+  if (full) std::fill_n(covered, samples, -1);
+  result.covered = -std::accumulate(covered, covered + samples, 0);
+}
+
+void Silhouette::cover_moving(
+    int x, int y, const Pencil& pencil, int samples, Cover& result) const {
+  std::int32_t* covered = result.is_covered.data();
+  Places places;
+  bool placed = false;
+  bool full = false;
+  for (const std::uint32_t index : triangles_of(x, y)) {
+    std::array<Swept, 3> sides;
+    int crossing = 0;
+    bool outside = false;
+    for (std::size_t side = 0; side < 3; ++side) {
+      Thrice<std::array<double, 4>> at;
+      int inner = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 0; c < 4; ++c) {
+          at[k][c] = pencil.product(triangles_[index], side, k, c);
+          inner += at[k][c] >= 0 ? 1 : 0;
+        }
+      if (inner == 12) continue;
+      if (inner == 0) {
+        outside = true;
+        break;
+      }
+      sides[static_cast<std::size_t>(crossing++)] = swept_of(at);
+    }
+    if (outside) continue;
+    if (!placed && crossing > 0) {
+      const PixelSamples here(x, y);
+      here.fill(samples, places.x.data(), places.y.data());
+      here.fill_times(samples, places.t.data());
+      placed = true;
+    }
+    full = crossing == 0 || mark_swept(sides.data(),
+                                       crossing,
+                                       places.x.data(),
+                                       places.y.data(),
+                                       places.t.data(),
+                                       samples,
+                                       covered);
     if (full) break;
   }
   if (full) std::fill_n(covered, samples, -1);

@@ -17,6 +17,15 @@
 //
 // The samples, and what covers them, are those of the rays (Tracer::sample); this is some fifty
 // times faster where a pixel needs many.
+//
+// While the shutter works, eye and aircraft move, and each sample has its own time. In the
+// aircraft's own frame the side from a to b stays, and the test becomes the product of two lines
+// (Pluecker 1865): with the sample's ray through the eye e along d,
+//
+//   d . (a x b) + (b - a) . (e x d) >= 0
+//
+// which is exact at every time. d and e x d go along parabolas over a pixel's exposure, and so do
+// the products.
 namespace airtruth::render {
 
 // Which of a pixel's first n samples an aircraft covers.
@@ -29,21 +38,23 @@ class Silhouette {
  public:
   enum class Touch { kNone, kOpaque, kRays };
 
-  // Sorts the actor's triangles by the pixels of the patch that they can touch.
-  Silhouette(const Actor& actor, const View& view, const PixelBox& patch);
+  // Sorts the actor's triangles by the pixels of the patch that they can touch. `grid` is kept.
+  Silhouette(const Actor& actor, const View& view, const PixelBox& patch, const RayGrid& grid);
 
   // What of the aircraft may be seen in a pixel: nothing; opaque triangles alone, few enough that
   // cover() is the faster way; or anything else, which takes rays.
   Touch touch(int x, int y) const;
 
-  // For a pixel that opaque triangles touch. `corners`: RayGrid::corners of it. samples: 1 to
-  // PixelSamples::kMost.
-  void cover(int x, int y, const std::array<Vector3, 4>& corners, int samples, Cover& result) const;
+  // For a pixel that opaque triangles touch. Nothing is covered where the lens has no direction for
+  // all of it. samples: 1 to PixelSamples::kMost.
+  void cover(int x, int y, int samples, Cover& result) const;
 
  private:
   struct Triangle {
-    // Normals, in world, of the planes through the eye and a side; inwards.
+    // At an instant: normals, in world, of the planes through the eye and a side; inwards. While
+    // things move: a x b of each side, and b - a, in body.
     std::array<Vector3, 3> side;
+    std::array<Vector3, 3> edge;
     bool opaque = true;
   };
   struct Reach {  // pixels of the patch, [x0, x1) by [y0, y1)
@@ -54,7 +65,8 @@ class Silhouette {
     Pixel pixel;       // in the frame; not finite where the lens has none
   };
 
-  struct Eye;  // of the view, as a point's picture needs it
+  struct Eye;     // of the view, as a point's picture needs it
+  struct Pencil;  // a pixel's rays, as the sides meet them
   static BoxBounds bounds_before_plane(const std::array<const Seen*, 3>& corners,
                                        const Eye& eye,
                                        bool& all_have_pictures);
@@ -65,8 +77,16 @@ class Silhouette {
   Reach reach_of(const std::array<const Seen*, 3>& corners, const Eye& eye) const;
   void add_part(const Actor& actor,
                 std::size_t part,
-                const View& view,
+                const std::vector<Eye>& eyes,
                 std::vector<Reach>& reaches);
+  Reach reach_over_time(const std::vector<std::array<const Seen*, 3>>& corners,
+                        const std::vector<Eye>& eyes) const;
+  Reach reach_of_disc(const aircraft::Mesh& mesh,
+                      const aircraft::Part& part,
+                      const std::vector<Eye>& eyes) const;
+  Pencil pencil_of(int x, int y) const;
+  void cover_moving(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
+  void cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
   void sort_by_pixel(const std::vector<Reach>& reaches);
   std::span<const std::uint32_t> triangles_of(int x, int y) const;
   std::size_t index(int x, int y) const {
@@ -75,6 +95,8 @@ class Silhouette {
   }
 
   PixelBox patch_;
+  const RayGrid& grid_;
+  const Actor& actor_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> first_;  // of each pixel in by_pixel_; one more at the end
   std::vector<std::uint32_t> by_pixel_;

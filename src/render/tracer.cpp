@@ -18,19 +18,33 @@ Vector3 interpolated(const std::array<Vector3, 4>& corners, const std::array<dou
       .normalized();
 }
 
-BodyRay body_ray(const Actor& actor, const Vector3& direction) {
-  const Vector3 d = actor.body_from_world * direction;
-  return {(actor.eye_in_body + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
+BodyRay body_ray(const Actor& actor, const Shot& shot) {
+  const Vector3 eye = actor.moves ? between(actor.eye_in_body_at, shot.u) : actor.eye_in_body;
+  const Vector3 d =
+      actor.moves
+          ? Vector3((between(actor.body_from_world_at, shot.u) * shot.direction).normalized())
+          : Vector3(actor.body_from_world * shot.direction);
+  return {(eye + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
 }
 
-std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from) {
+// A spinning part stands elsewhere at every moment of the exposure.
+Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt_s) {
+  if (dt_s == 0) return placed.part_from_body[part];
+  return aircraft::body_from_part(placed.model->mesh.parts[part], placed.time_s + dt_s)
+      .inverse(Eigen::Isometry);
+}
+
+std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from, double dt_s) {
   std::optional<Hit> best;
   for (std::size_t i = 0; i < placed.model->scenes.size(); ++i) {
     const bool moves = placed.model->mesh.parts[i].spins;
-    const Eigen::Vector3f o =
-        moves ? Eigen::Vector3f(placed.part_from_body[i] * ray.origin) : ray.origin;
-    const Eigen::Vector3f d =
-        moves ? Eigen::Vector3f(placed.part_from_body[i].linear() * ray.direction) : ray.direction;
+    Eigen::Vector3f o = ray.origin;
+    Eigen::Vector3f d = ray.direction;
+    if (moves) {
+      const Eigen::Affine3f here = part_from_body(placed, i, dt_s);
+      o = here * ray.origin;
+      d = here.linear() * ray.direction;
+    }
     RTCRayHit query{};
     query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
     query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
@@ -61,23 +75,63 @@ bool alike(const std::array<float, 3>& low, const std::array<float, 3>& high) {
 Actor place(const Instance& instance,
             const View& view,
             const Light& light,
-            const std::optional<Box>& search) {
+            const std::optional<Box>& search,
+            const Span& span) {
   Actor actor;
   const Model::Impl& model = instance.model->impl();
   actor.placed.model = &model;
-  const Rigid body_from_world = instance.world_from_body.inverse();
-  actor.body_from_world = body_from_world.rotation.toRotationMatrix();
-  actor.eye_in_body = body_from_world * view.world_from_cam.translation;
-  actor.start_m = std::max(0.0, (actor.eye_in_body - model.centre_in_body).norm() - model.radius_m);
+  actor.moves = !span.is_instant();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double dt_s = span.at(static_cast<int>(k));
+    const Rigid body_from_world = carried(instance.world_from_body, instance.twist, dt_s).inverse();
+    actor.body_from_world_at[k] = body_from_world.rotation.toRotationMatrix();
+    actor.eye_in_body_at[k] = body_from_world * view.at(dt_s).world_from_cam.translation;
+  }
+  actor.body_from_world = actor.body_from_world_at[1];
+  actor.eye_in_body = actor.eye_in_body_at[1];
+  double nearest_m = INFINITY;
+  for (const Vector3& eye : actor.eye_in_body_at)
+    nearest_m = std::min(nearest_m, (eye - model.centre_in_body).norm());
+  actor.start_m = std::max(0.0, nearest_m - model.radius_m);
   actor.placed.to_sun_in_body =
       (actor.body_from_world * light.to_sun_in_world).normalized().cast<float>();
   actor.placed.up_in_body = (actor.body_from_world * Vector3(0, 0, -1)).cast<float>();
+  actor.placed.time_s = instance.time_s;
+  const double turned_at_s = instance.time_s + (actor.moves ? 0 : span.begin_s);
   for (const aircraft::Part& part : model.mesh.parts) {
-    actor.placed.body_from_part.push_back(aircraft::body_from_part(part, instance.time_s));
+    actor.placed.body_from_part.push_back(aircraft::body_from_part(part, turned_at_s));
     actor.placed.part_from_body.push_back(actor.placed.body_from_part.back().inverse());
   }
-  if (search) actor.pixels = intersection(pixels_of(*search), {0, 0, view.width, view.height});
+  actor.pixels = pixels_to_search(search, view);
   return actor;
+}
+
+std::optional<PixelBox> pixels_to_search(const std::optional<Box>& search, const View& view) {
+  if (!search) return std::nullopt;
+  return intersection(pixels_of(*search), {0, 0, view.width, view.height});
+}
+
+PixelShots::PixelShots(const RayGrid& grid, int x, int y)
+    : samples_(x, y), is_instant_(grid.span().is_instant()), span_(grid.span()) {
+  if (!is_instant_) {
+    middle_s_ = grid.middle_s(x, y);
+    exposure_s_ = grid.exposure_s();
+  }
+  for (int k = is_instant_ ? 1 : 0; k < (is_instant_ ? 2 : 3); ++k) {
+    corners_[static_cast<std::size_t>(k)] = grid.corners(x, y, k);
+    known_ = known_ && finite(corners_[static_cast<std::size_t>(k)]);
+  }
+  pixel_rad_ = (corners_[1][1] - corners_[1][0]).norm();
+}
+
+Shot PixelShots::operator()(int sample) const {
+  const auto at = samples_.at(sample);
+  if (is_instant_) return {interpolated(corners_[1], at), 0, 0};
+  const double dt_s = middle_s_ + exposure_s_ * (samples_.time(sample) - 0.5);
+  const double u = span_.u(dt_s);
+  const Thrice<Vector3> directions = {
+      interpolated(corners_[0], at), interpolated(corners_[1], at), interpolated(corners_[2], at)};
+  return {between(directions, u).normalized(), u, dt_s};
 }
 
 bool finite(const std::array<Vector3, 4>& corners) {
@@ -87,33 +141,32 @@ bool finite(const std::array<Vector3, 4>& corners) {
 
 void Tracer::sample(
     int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const {
-  const auto corners = grid_.corners(x, y);
+  const PixelShots shots(grid_, x, y);
   sum.count += to - from;
-  if (!finite(corners)) return;
-  const PixelSamples samples(x, y);
-  const double pixel_rad = (corners[1] - corners[0]).norm();
+  if (!shots.known()) return;
+  const double pixel_rad = shots.pixel_rad();
   std::vector<Fragment> fragments;
   for (int i = from; i < to; ++i) {
-    const Vector3 direction = interpolated(corners, samples.at(i));
+    const Shot shot = shots(i);
     fragments.clear();
     for (std::size_t a = 0; a < actors_.size(); ++a) {
       if (!actors_[a].pixels || !actors_[a].pixels->contains(x, y)) continue;
-      alone[a] += collect(static_cast<int>(a), direction, pixel_rad, fragments);
+      alone[a] += collect(static_cast<int>(a), shot, pixel_rad, fragments);
     }
-    if (!fragments.empty()) add(direction, pixel_rad, fragments, sum, coverage);
+    if (!fragments.empty()) add(shot, pixel_rad, fragments, sum, coverage);
   }
 }
 
 double Tracer::collect(int actor_index,
-                       const Vector3& direction,
+                       const Shot& shot,
                        double pixel_rad,
                        std::vector<Fragment>& fragments) const {
   const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
-  const BodyRay ray = body_ray(actor, direction);
+  const BodyRay ray = body_ray(actor, shot);
   double through = 1;
   float from = 0;
   for (int layer = 0; layer < kMaxLayers; ++layer) {
-    const auto hit = nearest_hit(actor.placed, ray, from);
+    const auto hit = nearest_hit(actor.placed, ray, from, shot.dt_s);
     if (!hit) break;
     const double distance = actor.start_m + hit->t;
     const auto sample_m = static_cast<float>(kSampleShare * distance * pixel_rad);
@@ -129,9 +182,8 @@ double Tracer::collect(int actor_index,
 bool Tracer::shade_covered(
     int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
   const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
-  const auto corners = grid_.corners(x, y);
-  const PixelSamples samples(x, y);
-  const double pixel_rad = (corners[1] - corners[0]).norm();
+  const PixelShots shots(grid_, x, y);
+  const double pixel_rad = shots.pixel_rad();
   double distance_sum = 0;
   std::array<float, 3> low;
   low.fill(INFINITY);
@@ -140,11 +192,11 @@ bool Tracer::shade_covered(
     if (is_covered[i] == 0) continue;
     if (sum.opaque_shaded > 0 && sum.opaque_shaded % counts_.shaded_alike == 0 && alike(low, high))
       break;
-    const Vector3 direction = interpolated(corners, samples.at(static_cast<int>(i)));
-    const auto hit = nearest_hit(actor.placed, body_ray(actor, direction), 0);
+    const Shot shot = shots(static_cast<int>(i));
+    const auto hit = nearest_hit(actor.placed, body_ray(actor, shot), 0, shot.dt_s);
     if (!hit) continue;  // a hair's breadth from an edge, where floats and doubles part
     const Fragment fragment{actor.start_m + hit->t, actor_index, 1, *hit};
-    const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
+    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
     for (std::size_t c = 0; c < 3; ++c) {
       sum.opaque_rgb[c] += rgb[c];
       low[c] = std::min(low[c], rgb[c]);
@@ -158,7 +210,7 @@ bool Tracer::shade_covered(
   return true;
 }
 
-void Tracer::add(const Vector3& direction,
+void Tracer::add(const Shot& shot,
                  double pixel_rad,
                  std::vector<Fragment>& fragments,
                  Sum& sum,
@@ -168,14 +220,14 @@ void Tracer::add(const Vector3& direction,
       return a.distance_m < b.distance_m;
     });
   const double before = sum.alpha;
-  blend(direction, pixel_rad, fragments, sum, coverage);
+  blend(shot, pixel_rad, fragments, sum, coverage);
   ++sum.hits;
   sum.least = std::min(sum.least, sum.alpha - before);
   sum.most = std::max(sum.most, sum.alpha - before);
 }
 
 // One sample's surfaces, nearest first, over one another.
-void Tracer::blend(const Vector3& direction,
+void Tracer::blend(const Shot& shot,
                    double pixel_rad,
                    const std::vector<Fragment>& fragments,
                    Sum& sum,
@@ -190,25 +242,25 @@ void Tracer::blend(const Vector3& direction,
     if (simple) {
       sum.opaque += share;
       if (sum.opaque_shaded < counts_.shaded) {
-        const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
+        const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
         for (std::size_t c = 0; c < 3; ++c) sum.opaque_rgb[c] += rgb[c];
         ++sum.opaque_shaded;
       }
       return;
     }
-    const std::array<float, 3> rgb = colour(direction, pixel_rad, fragment);
+    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
     for (std::size_t c = 0; c < 3; ++c) sum.translucent_rgb[c] += through * rgb[c];
     through *= 1.0 - fragment.alpha;
     if (through <= 0) return;
   }
 }
 
-std::array<float, 3> Tracer::colour(const Vector3& direction,
+std::array<float, 3> Tracer::colour(const Shot& shot,
                                     double pixel_rad,
                                     const Fragment& fragment) const {
   const Actor& actor = actors_[static_cast<std::size_t>(fragment.actor)];
   return shade(actor.placed,
-               body_ray(actor, direction),
+               body_ray(actor, shot),
                fragment.hit,
                light_,
                footprint(fragment.distance_m, pixel_rad));

@@ -18,13 +18,48 @@ struct Actor {
   Vector3 eye_in_body;
   // Rays begin here, just before the sphere about the aircraft, so that floats suffice.
   double start_m = 0;
+  // Where the patch's span is no instant, `moves`, and the same holds at its three moments.
+  bool moves = false;
+  Thrice<Matrix3> body_from_world_at;
+  Thrice<Vector3> eye_in_body_at;
   std::optional<PixelBox> pixels;  // where it can be in the frame
 };
 
+// `span`: of the patch that holds all actors.
 Actor place(const Instance& instance,
             const View& view,
             const Light& light,
-            const std::optional<Box>& search);
+            const std::optional<Box>& search,
+            const Span& span);
+
+// The pixels of the frame that a search box asks for.
+std::optional<PixelBox> pixels_to_search(const std::optional<Box>& search, const View& view);
+
+// A sample: where it looks, and when.
+struct Shot {
+  Vector3 direction;  // in world, unit
+  double u = 0;       // in the patch's span; 0 where that is an instant
+  double dt_s = 0;
+};
+
+// The shots of one pixel, sample by sample.
+class PixelShots {
+ public:
+  PixelShots(const RayGrid& grid, int x, int y);
+  bool known() const { return known_; }  // has the lens a direction for all of the pixel?
+  double pixel_rad() const { return pixel_rad_; }
+  Shot operator()(int sample) const;
+
+ private:
+  PixelSamples samples_;
+  Thrice<std::array<Vector3, 4>> corners_;
+  bool is_instant_;
+  Span span_;
+  double middle_s_ = 0;
+  double exposure_s_ = 0;
+  bool known_ = true;
+  double pixel_rad_ = 0;
+};
 
 // Are all four a pixel's directions known?
 bool finite(const std::array<Vector3, 4>& corners);
@@ -65,7 +100,7 @@ class Tracer {
 
   // The share of a sample's light that one actor alone would stop; its surfaces are appended.
   double collect(int actor,
-                 const Vector3& direction,
+                 const Shot& shot,
                  double pixel_rad,
                  std::vector<Fragment>& fragments) const;
 
@@ -75,19 +110,17 @@ class Tracer {
       int x, int y, int actor, const std::vector<std::int32_t>& is_covered, Sum& sum) const;
 
  private:
-  void add(const Vector3& direction,
+  void add(const Shot& shot,
            double pixel_rad,
            std::vector<Fragment>& fragments,
            Sum& sum,
            double* coverage) const;
-  void blend(const Vector3& direction,
+  void blend(const Shot& shot,
              double pixel_rad,
              const std::vector<Fragment>& fragments,
              Sum& sum,
              double* coverage) const;
-  std::array<float, 3> colour(const Vector3& direction,
-                              double pixel_rad,
-                              const Fragment& fragment) const;
+  std::array<float, 3> colour(const Shot& shot, double pixel_rad, const Fragment& fragment) const;
   float footprint(double distance_m, double pixel_rad) const;
 
   const Light& light_;

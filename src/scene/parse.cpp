@@ -47,6 +47,11 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
                           "camera",
                           "motion",
                           "light",
+                          "shutter",
+                          "air",
+                          "optics",
+                          "sensor",
+                          "realism",
                           "intruder",
                           "render",
                           "composite",
@@ -61,11 +66,41 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.camera = camera_in(root);
   scene.motion = motion_in(root);
   scene.light = light_in(root);
+  scene.camera_model = camera_model_in(root);
+  scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
   scene.render = render_in(root);
   scene.composite = composite_in(root);
   scene.output = output_in(root);
   return scene;
+}
+
+CameraFile read_camera_file(const fs::path& file) {
+  return parse_camera_file(read_file(file, kLargestToml), file);
+}
+
+CameraFile parse_camera_file(std::string_view text, const fs::path& file) {
+  const toml::table parsed = parsed_toml(text, file.string());
+  const TableReader root(parsed,
+                         "a camera file",
+                         file.string(),
+                         {"clip", "shutter", "air", "optics", "sensor", "light", "uncertainty"});
+  CameraFile camera;
+  const TableReader clip = root.table("clip", {"video", "width", "height", "frames", "lens"});
+  camera.width = static_cast<int>(clip.whole("width", 1, 1 << 16).value_or(0));
+  camera.height = static_cast<int>(clip.whole("height", 1, 1 << 16).value_or(0));
+  if (camera.width == 0 || camera.height == 0)
+    throw Error("[clip] has no width and height; expected a file that airtruth calibrate wrote",
+                {file.string()});
+  camera.lens = clip.text("lens").value_or("");
+  camera.model = camera_model_in(root);
+  if (!camera.model.automatic.empty())
+    throw Error(camera.model.automatic.front() + " is \"auto\"; expected a value in a camera file",
+                {file.string()});
+  const TableReader light = root.table("light", {"sun_azimuth_deg", "sun_elevation_deg"});
+  camera.sun_azimuth_deg = light.number("sun_azimuth_deg", kTurn);
+  camera.sun_elevation_deg = light.number("sun_elevation_deg", kPitch);
+  return camera;
 }
 
 }  // namespace airtruth::scene

@@ -48,7 +48,8 @@ struct Camera {
 };
 
 struct Motion {
-  std::string model = "homography";       // homography | none
+  // auto: rotation for a fisheye and for views wider than 90 degrees, else homography
+  std::string model = "auto";             // auto | rotation | homography | none
   std::string reference = "first_frame";  // first_frame | smoothed
   double smoothing_s = 1.0;
   Where where;
@@ -61,6 +62,38 @@ struct Light {
   std::optional<std::array<double, 3>>
       sky_colour;  // linear RGB of the light from above; else from the background
   std::optional<std::array<double, 3>> ground_colour;
+  Where where;
+};
+
+// What light meets on its way to the sample, and when; the tables [shutter], [air], [optics] and
+// [sensor]. Empty: not stated. Used by scenes and by camera.toml, which `airtruth calibrate`
+// writes.
+struct CameraModel {
+  // [shutter]
+  std::optional<double> exposure_s;
+  std::optional<double> angle_deg;  // of 360 for a whole frame interval; in place of exposure_s
+  std::optional<double> readout_s;
+  std::optional<std::string> readout;  // down | up | right | left
+  // [air]
+  std::optional<std::array<double, 3>> extinction_per_km;  // red, green, blue
+  std::optional<std::array<double, 3>> airlight;           // linear; else the background's
+  // [optics]
+  std::optional<double> point_spread_px;  // standard deviation of a Gaussian
+  std::optional<double> sharpening;       // amount of an unsharp mask
+  std::optional<double> sharpening_px;    // standard deviation of its Gaussian
+  // [sensor]
+  std::optional<double> noise_gain;   // variance of linear light is noise_gain * light
+  std::optional<double> noise_floor;  // + noise_floor
+  std::optional<double> noise_correlation_px;
+  std::optional<double> codec_step;  // of the quantiser, in luma code values
+  // Keys that said "auto", as "air.airlight".
+  std::vector<std::string> automatic;
+};
+
+struct Realism {
+  std::optional<fs::path> file;  // a camera.toml: values for what the scene does not state
+  bool automatic = false;        // what neither states is measured from the clip
+  bool fallback = false;         // what cannot be measured is left out, with a warning
   Where where;
 };
 
@@ -101,6 +134,8 @@ struct Scene {
   Camera camera;
   Motion motion;
   Light light;
+  CameraModel camera_model;
+  Realism realism;
   std::vector<Intruder> intruders;
   Render render;
   Composite composite;
@@ -113,6 +148,20 @@ struct Scene {
 // missing required key.
 Scene read_scene(const fs::path& file);
 Scene parse_scene(std::string_view text, const fs::path& file);
+
+// camera.toml (docs/formats/camera.md): the tables of CameraModel, with what they were measured on.
+struct CameraFile {
+  CameraModel model;
+  int width = 0;
+  int height = 0;
+  std::string
+      lens;  // "" where none was given; else name and focal length, as lens_words() has them
+  std::optional<double> sun_azimuth_deg;
+  std::optional<double> sun_elevation_deg;
+};
+std::string toml_from_camera_model(const CameraModel& model);
+CameraFile read_camera_file(const fs::path& file);
+CameraFile parse_camera_file(std::string_view text, const fs::path& file);
 
 // The effective scene as TOML, every key written out, paths absolute; parse_scene of it gives the
 // same value.

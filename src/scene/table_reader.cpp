@@ -124,6 +124,11 @@ Where TableReader::place(const toml::node& node) const {
 }
 
 bool TableReader::has(std::string_view key) const { return node(key) != nullptr; }
+bool TableReader::says(std::string_view key, std::string_view word) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_string() && value->value_or(std::string_view()) == word;
+}
+
 Where TableReader::where() const { return place(*table_); }
 
 Where TableReader::where(std::string_view key) const {
@@ -173,6 +178,13 @@ std::optional<std::int64_t> TableReader::whole(std::string_view key,
   if (number < low || number > high)
     fail_at(place(*value), key, fmt::format("{}", number), expected);
   return number;
+}
+
+std::optional<bool> TableReader::truth(std::string_view key) const {
+  const toml::node* const value = node(key);
+  if (!value) return std::nullopt;
+  if (!value->is_boolean()) fail_at(place(*value), key, words_of(value->type()), "true or false");
+  return **value->as_boolean();
 }
 
 std::optional<std::string> TableReader::text(std::string_view key) const {

@@ -47,6 +47,7 @@ class TableReader {
   TableReader(const toml::table& table, std::string title, const std::string& file, Keys keys);
 
   bool has(std::string_view key) const;
+  bool says(std::string_view key, std::string_view word) const;  // is the value this very string?
   Where where() const;                      // the table's; no line where the file lacks the table
   Where where(std::string_view key) const;  // the value's
 
@@ -55,6 +56,7 @@ class TableReader {
   std::optional<std::int64_t> whole(std::string_view key,
                                     std::int64_t low,
                                     std::int64_t high) const;
+  std::optional<bool> truth(std::string_view key) const;
   std::optional<std::string> text(std::string_view key) const;  // not empty, no control characters
   std::optional<std::vector<std::string>> texts(std::string_view key) const;  // an array of such
   std::optional<std::string> file_name(std::string_view key) const;  // a text with no folder in it

@@ -116,11 +116,91 @@ Motion motion_in(const TableReader& parent) {
   const TableReader table = parent.table("motion", {"model", "reference", "smoothing_s"});
   Motion motion;
   motion.where = table.where();
-  motion.model = table.choice("model", {"homography", "none"}).value_or(motion.model);
+  motion.model =
+      table.choice("model", {"auto", "rotation", "homography", "none"}).value_or(motion.model);
   motion.reference =
       table.choice("reference", {"first_frame", "smoothed"}).value_or(motion.reference);
   motion.smoothing_s = table.number("smoothing_s", kAboveZero).value_or(motion.smoothing_s);
   return motion;
+}
+
+namespace {
+
+// Reads a key that may say "auto" in place of a value; those are listed.
+class AutoReader {
+ public:
+  AutoReader(const TableReader& table, std::string name, std::vector<std::string>& automatic)
+      : table_(table), name_(std::move(name)), automatic_(automatic) {}
+
+  std::optional<double> number(std::string_view key, const Limits& limits) {
+    return is_automatic(key) ? std::nullopt : table_.number(key, limits);
+  }
+  std::optional<std::array<double, 3>> colour(std::string_view key) {
+    return is_automatic(key) ? std::nullopt : colour_from(table_, key);
+  }
+
+ private:
+  bool is_automatic(std::string_view key) {
+    if (!table_.says(key, "auto")) return false;
+    automatic_.push_back(name_ + "." + std::string(key));
+    return true;
+  }
+
+  const TableReader& table_;
+  std::string name_;
+  std::vector<std::string>& automatic_;
+};
+
+constexpr Limits kAngle{.expected = "degrees from 0 to 360", .low = 0, .high = 360};
+constexpr Limits kSeconds{.expected = "seconds from 0 to 1", .low = 0, .high = 1};
+constexpr Limits kSpread{.expected = "pixels from 0 to 10", .low = 0, .high = 10};
+constexpr Limits kAmount{.expected = "a number from 0 to 3", .low = 0, .high = 3};
+constexpr Limits kVariance{.expected = "a variance from 0 to 0.1", .low = 0, .high = 0.1};
+constexpr Limits kStep{.expected = "code values from 0 to 128", .low = 0, .high = 128};
+
+}  // namespace
+
+CameraModel camera_model_in(const TableReader& parent) {
+  CameraModel model;
+  const TableReader shutter =
+      parent.table("shutter", {"exposure_s", "angle_deg", "readout_s", "readout"});
+  shutter.exclude("exposure_s", {"angle_deg"});
+  AutoReader in_shutter(shutter, "shutter", model.automatic);
+  model.exposure_s = in_shutter.number("exposure_s", kSeconds);
+  model.angle_deg = shutter.number("angle_deg", kAngle);
+  model.readout_s = in_shutter.number("readout_s", kSeconds);
+  model.readout = shutter.choice("readout", {"down", "up", "right", "left"});
+
+  const TableReader air = parent.table("air", {"extinction_per_km", "airlight"});
+  AutoReader in_air(air, "air", model.automatic);
+  model.extinction_per_km = in_air.colour("extinction_per_km");
+  model.airlight = in_air.colour("airlight");
+
+  const TableReader optics =
+      parent.table("optics", {"point_spread_px", "sharpening", "sharpening_px"});
+  AutoReader in_optics(optics, "optics", model.automatic);
+  model.point_spread_px = in_optics.number("point_spread_px", kSpread);
+  model.sharpening = in_optics.number("sharpening", kAmount);
+  model.sharpening_px = in_optics.number("sharpening_px", kSpread);
+
+  const TableReader sensor =
+      parent.table("sensor", {"noise_gain", "noise_floor", "noise_correlation_px", "codec_step"});
+  AutoReader in_sensor(sensor, "sensor", model.automatic);
+  model.noise_gain = in_sensor.number("noise_gain", kVariance);
+  model.noise_floor = in_sensor.number("noise_floor", kVariance);
+  model.noise_correlation_px = in_sensor.number("noise_correlation_px", kSpread);
+  model.codec_step = in_sensor.number("codec_step", kStep);
+  return model;
+}
+
+Realism realism_in(const TableReader& parent) {
+  const TableReader table = parent.table("realism", {"file", "auto", "fallback"});
+  Realism realism;
+  realism.where = table.where();
+  realism.file = table.path("file");
+  realism.automatic = table.truth("auto").value_or(false);
+  realism.fallback = table.truth("fallback").value_or(false);
+  return realism;
 }
 
 Light light_in(const TableReader& parent) {

@@ -20,6 +20,8 @@ toml::table parsed_toml(std::string_view text, const std::string& file);
 Lens lens_in(const TableReader& parent);
 Camera camera_in(const TableReader& parent);
 Motion motion_in(const TableReader& parent);
+CameraModel camera_model_in(const TableReader& parent);
+Realism realism_in(const TableReader& parent);
 Light light_in(const TableReader& parent);
 Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -33,6 +34,7 @@ class Text {
     if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" is a whole number without a sign
     return fmt::format("{}", value);
   }
+  static std::string toml(bool value) { return value ? "true" : "false"; }
   static std::string toml(int value) { return fmt::format("{}", value); }
   static std::string toml(std::int64_t value) { return fmt::format("{}", value); }
   static std::string toml(const fs::path& path) {
@@ -97,6 +99,47 @@ void add_light(Text& text, const Light& light) {
   text.add("ground_colour", light.ground_colour);
 }
 
+// A stated value, or "auto".
+template <typename T>
+void add_or_auto(Text& text,
+                 const CameraModel& model,
+                 const std::string& table,
+                 const std::string& key,
+                 const std::optional<T>& value) {
+  const auto& automatic = model.automatic;
+  if (std::find(automatic.begin(), automatic.end(), table + "." + key) != automatic.end())
+    text.add(key, std::string("auto"));
+  else
+    text.add(key, value);
+}
+
+void add_camera_model(Text& text, const CameraModel& model) {
+  text.heading("[shutter]");
+  add_or_auto(text, model, "shutter", "exposure_s", model.exposure_s);
+  text.add("angle_deg", model.angle_deg);
+  add_or_auto(text, model, "shutter", "readout_s", model.readout_s);
+  text.add("readout", model.readout);
+  text.heading("[air]");
+  add_or_auto(text, model, "air", "extinction_per_km", model.extinction_per_km);
+  add_or_auto(text, model, "air", "airlight", model.airlight);
+  text.heading("[optics]");
+  add_or_auto(text, model, "optics", "point_spread_px", model.point_spread_px);
+  add_or_auto(text, model, "optics", "sharpening", model.sharpening);
+  add_or_auto(text, model, "optics", "sharpening_px", model.sharpening_px);
+  text.heading("[sensor]");
+  add_or_auto(text, model, "sensor", "noise_gain", model.noise_gain);
+  add_or_auto(text, model, "sensor", "noise_floor", model.noise_floor);
+  add_or_auto(text, model, "sensor", "noise_correlation_px", model.noise_correlation_px);
+  add_or_auto(text, model, "sensor", "codec_step", model.codec_step);
+}
+
+void add_realism(Text& text, const Realism& realism) {
+  text.heading("[realism]");
+  text.add("file", realism.file);
+  text.add("auto", realism.automatic);
+  text.add("fallback", realism.fallback);
+}
+
 std::string aircraft_text(const std::string& aircraft) {
   return names_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string() : aircraft;
 }
@@ -140,6 +183,8 @@ std::string toml_from_scene(const Scene& scene) {
   text.add("smoothing_s", scene.motion.smoothing_s);
   add_light(text, scene.light);
   for (const Intruder& intruder : scene.intruders) add_intruder(text, intruder);
+  add_camera_model(text, scene.camera_model);
+  add_realism(text, scene.realism);
   text.heading("[render]");
   text.add("quality", scene.render.quality);
   text.heading("[composite]");
@@ -147,6 +192,12 @@ std::string toml_from_scene(const Scene& scene) {
   text.heading("[output]");
   text.add("video", scene.output.video);
   text.add("quality", scene.output.quality);
+  return text.take();
+}
+
+std::string toml_from_camera_model(const CameraModel& model) {
+  Text text;
+  add_camera_model(text, model);
   return text.take();
 }
 

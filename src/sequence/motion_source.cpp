@@ -4,10 +4,26 @@
 #include <algorithm>
 #include <exception>
 
+#include <fmt/ranges.h>
+
 #include "base/error.h"
 #include "base/files.h"
+#include "sequence/outputs.h"
 
 namespace airtruth::sequence {
+namespace {
+
+// Every number of a lens, so that two lenses never share a cached motion.
+std::string words_of(const lens::Lens& lens) {
+  const annotation::LensFacts facts = facts_of(lens);
+  return fmt::format("{} {} {} {}",
+                     facts.model,
+                     fmt::join(facts.focal_px, ","),
+                     fmt::join(facts.principal_point_px, ","),
+                     fmt::join(facts.distortion, ","));
+}
+
+}  // namespace
 
 std::string sha256_of_video(const fs::path& video) {
   if (fs::is_regular_file(video)) return sha256_of_file(video);
@@ -22,26 +38,54 @@ std::string sha256_of_video(const fs::path& video) {
   return sha256_of(all);
 }
 
+bool is_wide(const lens::Lens& lens) {
+  constexpr double kWideDeg = 90;
+  return lens.horizontal_fov_deg() > kWideDeg || lens.vertical_fov_deg() > kWideDeg;
+}
+
+std::string motion_model(const scene::Scene& scene, const lens::Lens& lens) {
+  const bool paper = scene.composite.method == "chroma-key";
+  if (scene.motion.model == "rotation" && paper)
+    throw Error(
+        "motion.model rotation is not for composite.method chroma-key, which warps planes; "
+        "expected model = \"homography\" or method = \"matte\"",
+        scene.motion.where);
+  if (scene.motion.model != "auto") return scene.motion.model;
+  const bool fisheye = std::holds_alternative<lens::Fisheye>(lens.model());
+  return (fisheye || is_wide(lens)) && !paper ? "rotation" : "homography";
+}
+
 MotionSource::MotionSource(const scene::Scene& scene,
+                           const lens::Lens& lens,
+                           bool needs_change,
                            const std::string& video_sha256,
                            const image::Mask* mask,
                            const fs::path& cache)
-    : none_(scene.motion.model == "none"),
-      smoothed_(scene.motion.model != "none" && scene.motion.reference == "smoothed"),
-      cache_(video_sha256.empty() || none_ ? fs::path() : cache),
-      mask_(mask) {
+    : mask_(mask) {
+  const std::string model = motion_model(scene, lens);
+  none_ = model == "none";
+  smoothed_ = !none_ && scene.motion.reference == "smoothed";
+  needs_change_ = needs_change;
+  if (model == "rotation") lens_ = lens;
+  if (!video_sha256.empty() && !none_) cache_ = cache;
   options_.seed = scene.seed;
   options_.smoothing_s = scene.motion.smoothing_s;
   key_.video_sha256 = video_sha256;
   if (scene.background.mask) key_.mask_sha256 = sha256_of_file(*scene.background.mask);
   key_.first_frame = scene.background.first_frame;
   key_.frame_count = scene.background.frame_count.value_or(-1);
+  if (lens_) key_.lens = words_of(*lens_);
   key_.options = options_;
   if (cache_.empty()) return;
   if (auto found = motion::cached(cache_, key_)) {
     from_cache_ = true;
     set_pass(std::move(*found));
   }
+}
+
+motion::Estimator MotionSource::estimator(int width, int height) const {
+  return lens_ ? motion::Estimator(*lens_, options_, mask_)
+               : motion::Estimator(width, height, options_, mask_);
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
@@ -53,23 +97,28 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
 void MotionSource::measure(video::Reader& reader,
                            const std::stop_token& stop,
                            const std::function<void(std::int64_t)>& seen) {
-  set_pass(measure_motion(reader, options_, mask_, stop, seen));
+  set_pass(
+      measure_motion(reader, estimator(reader.info().width, reader.info().height), stop, seen));
 }
 
-motion::FrameMotion MotionSource::next(const video::Frame& frame) {
+MotionSource::Measured MotionSource::next(const video::Frame& frame) {
   if (none_) {
     motion::FrameMotion still;
     still.frame = frame.index;
     still.time_s = frame.time_s;
-    return still;
+    return {still, {}};
   }
-  if (!ready_) return measured(frame);
+  if (!ready_) {
+    const motion::FrameMotion motion = measured(frame);
+    return {motion, motion::shake_of({motion}, 0)};
+  }
   check(frame.index < static_cast<std::int64_t>(all_.size()), "motion is known for every frame");
-  return all_[static_cast<std::size_t>(frame.index)];
+  const auto k = static_cast<std::size_t>(frame.index);
+  return {all_[k], needs_change_ ? motion::shake_of(all_, k) : motion::shake_of({all_[k]}, 0)};
 }
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
-  if (!estimator_) estimator_.emplace(frame.picture.width, frame.picture.height, options_, mask_);
+  if (!estimator_) estimator_.emplace(estimator(frame.picture.width, frame.picture.height));
   motion::FrameMotion motion = estimator_->next(frame.picture, frame.time_s, frame.damaged);
   motion.frame = frame.index;
   against_first_.push_back(motion);
@@ -85,11 +134,9 @@ void MotionSource::store() const {
 }
 
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
-                                                const motion::Options& options,
-                                                const image::Mask* mask,
+                                                motion::Estimator estimator,
                                                 std::stop_token stop,
                                                 const std::function<void(std::int64_t)>& seen) {
-  motion::Estimator estimator(reader.info().width, reader.info().height, options, mask);
   std::vector<motion::FrameMotion> result;
   while (const auto frame = reader.next()) {
     if (stop.stop_requested()) throw Interrupted();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "image/layer.h"
+#include "lens/lens.h"
 #include "motion/cache.h"
 #include "motion/motion.h"
 #include "scene/scene.h"
@@ -26,21 +27,29 @@ std::string sha256_of_video(const fs::path& video);
 class MotionSource {
  public:
   // model "none": identity for every frame.
+  // `needs_change`: next() must know how the shake goes on within a frame, which takes the frame
+  // after it, and so a pass before.
   MotionSource(const scene::Scene& scene,
+               const lens::Lens& lens,
+               bool needs_change,
                const std::string& video_sha256,
                const image::Mask* mask,
                const fs::path& cache);  // empty: none
 
-  // True when frames must be seen once before the first homography is known (reference "smoothed",
-  // not cached).
-  bool needs_pass() const { return smoothed_ && !ready_; }
+  // True when frames must be seen once before the first motion is known (reference "smoothed", a
+  // shutter; not cached).
+  bool needs_pass() const { return (smoothed_ || needs_change_) && !ready_ && !none_; }
   // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
   void measure(video::Reader& reader,
                const std::stop_token& stop,
                const std::function<void(std::int64_t)>& seen);
 
   // Frames in order.
-  motion::FrameMotion next(const video::Frame& frame);
+  struct Measured {
+    motion::FrameMotion motion;
+    Shake shake;
+  };
+  Measured next(const video::Frame& frame);
   // After the last frame: keeps what was measured for the next run. A cache that cannot be written
   // is no error.
   void store() const;
@@ -50,7 +59,11 @@ class MotionSource {
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
 
+  motion::Estimator estimator(int width, int height) const;
+
   bool none_ = false;
+  bool needs_change_ = false;
+  std::optional<lens::Lens> lens_;  // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
@@ -63,11 +76,15 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
-// Motion of a whole clip against its first frame; `seen` after each frame. Throws Interrupted on
-// stop.
+// The scene's model of motion, with "auto" made out: "rotation" for a fisheye and for views wider
+// than 90 degrees (but not for chroma-key, which is the paper's road), else "homography".
+std::string motion_model(const scene::Scene& scene, const lens::Lens& lens);
+bool is_wide(const lens::Lens& lens);
+
+// Motion of a whole clip against its first frame, as a rotation where a lens is given; `seen` after
+// each frame. Throws Interrupted on stop.
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
-                                                const motion::Options& options,
-                                                const image::Mask* mask,
+                                                motion::Estimator estimator,
                                                 std::stop_token stop,
                                                 const std::function<void(std::int64_t)>& seen);
 

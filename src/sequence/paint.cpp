@@ -159,7 +159,10 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.cam_from_world.inverse(),
                           moment.sight.frame_from_nominal.inverse(),
                           world.lens.size().width,
-                          world.lens.size().height};
+                          world.lens.size().height,
+                          moment.sight.shutter,
+                          moment.sight.camera,
+                          moment.sight.frame_from_nominal_per_s};
   const render::Light light{
       render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg),
       ambient.sun,
@@ -168,7 +171,7 @@ image::Layer render_layer(const scene::Scene& scene,
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
-    render::Instance instance{world.actors[i].model.get(), {}, moment.time_s};
+    render::Instance instance{world.actors[i].model.get(), {}, moment.time_s, moment.twists[i]};
     if (moment.states[i]) instance.world_from_body = moment.states[i]->world_from_body_rigid();
     any = any || moment.search[i].has_value();
     instances.push_back(instance);

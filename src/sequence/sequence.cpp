@@ -17,6 +17,7 @@
 #include "sequence/motion_source.h"
 #include "sequence/outputs.h"
 #include "sequence/paint.h"
+#include "sequence/resolve.h"
 #include "sequence/staging.h"
 #include "sequence/stopwatch.h"
 #include "sequence/world.h"
@@ -52,17 +53,23 @@ using WorkPtr = std::shared_ptr<Work>;
 class Run {
  public:
   Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
-      : scene_(scene),
-        options_(options),
+      : options_(options),
         reader_(open(scene, options)),
+        scene_(resolved(scene, reader_.info())),
         size_{reader_.info().width, reader_.info().height},
         mask_(read_mask(scene, size_)),
-        world_(load_world(scene, size_, options.warn)),
+        world_(load_world(scene_, size_, options.warn)),
         video_sha256_(sha256_of_video(scene.background.video)),
-        motion_(scene, video_sha256_, mask_ptr(), cache_of(options)),
+        motion_(scene_,
+                world_.lens,
+                !world_.shutter.is_instant(),
+                video_sha256_,
+                mask_ptr(),
+                cache_of(options)),
         ambient_(scene.light, mask_ptr()),
         painter_(make_painter(scene, world_, mask_ptr(), options)),
         staged_(folder, options.overwrite) {
+    scene_.motion.model = motion_model(scene_, world_.lens);
     outputs_.emplace(staged_.path(), scene_, world_.lens, stream_info(), options_.threads);
     if (motion_.needs_pass()) {
       motion_.measure(reader_, options_.stop, {});
@@ -115,8 +122,10 @@ class Run {
 
   void move(Work& work) {
     const Timed timed(clocks_.move);
-    work.motion = motion_.next(work.frame);
-    work.moment = moment_at(world_, work.frame.time_s, work.motion.frame_from_reference);
+    const MotionSource::Measured measured = motion_.next(work.frame);
+    work.motion = measured.motion;
+    work.truth.shake = measured.shake;
+    work.moment = moment_at(world_, work.frame.time_s, measured.shake);
     work.ambient = ambient_.next(work.frame.picture, search_bounds(work.moment));
   }
 
@@ -128,7 +137,6 @@ class Run {
     truth.frame = work.frame.index;
     truth.time_s = work.frame.time_s;
     truth.damaged = work.frame.damaged;
-    truth.frame_from_reference = work.motion.frame_from_reference;
     truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
     write_moment(world_, work.moment, painted, truth);
     clocks_.composite += painting.seconds() - painted.render_s;
@@ -253,9 +261,9 @@ class Run {
     return result;
   }
 
-  scene::Scene scene_;
   Options options_;
   video::Reader reader_;
+  scene::Scene scene_;
   lens::ImageSize size_;
   std::optional<image::Mask> mask_;
   World world_;
@@ -292,8 +300,13 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
   if (scene.motion.model == "none") return;
   video::Reader reader = open(scene, options);
   const auto mask = read_mask(scene, {reader.info().width, reader.info().height});
-  MotionSource source(
-      scene, sha256_of_video(scene.background.video), mask ? &*mask : nullptr, cache_of(options));
+  const lens::Lens lens = lens_of(scene.lens, {reader.info().width, reader.info().height});
+  MotionSource source(scene,
+                      lens,
+                      false,
+                      sha256_of_video(scene.background.video),
+                      mask ? &*mask : nullptr,
+                      cache_of(options));
   if (source.from_cache()) return;
   const std::int64_t total =
       scene.background.frame_count.value_or(reader.info().frame_count_estimate);

@@ -117,6 +117,42 @@ std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::Ima
   return box;
 }
 
+Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake, double dt_s) {
+  Rigid world_from_cam =
+      camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  if (shake.rotation)
+    world_from_cam.rotation =
+        (world_from_cam.rotation * shake.rotation_at(dt_s).conjugate()).normalized();
+  return world_from_cam;
+}
+
+// Rate of turning along a path, in world axes; one-sided where the path begins or ends.
+// rotation(state, dt_s) is what turns.
+template <typename Rotation>
+Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
+  constexpr double kStep_s = 1e-3;
+  const double before_s = path.at(time_s - kStep_s) ? -kStep_s : 0;
+  const double after_s = path.at(time_s + kStep_s) ? kStep_s : 0;
+  if (!(after_s > before_s)) return Vector3::Zero();
+  const auto before = path.at(time_s + before_s);
+  const auto after = path.at(time_s + after_s);
+  return vector_from_rotation(rotation(*after, after_s) * rotation(*before, before_s).conjugate()) /
+         (after_s - before_s);
+}
+
+Shutter shutter_of(const scene::CameraModel& model) {
+  Shutter shutter;
+  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
+  shutter.exposure_s = model.exposure_s.value_or(0);
+  shutter.readout_s = model.readout_s.value_or(0);
+  const std::string readout = model.readout.value_or("down");
+  shutter.readout = readout == "up"      ? Readout::kUp
+                    : readout == "right" ? Readout::kRight
+                    : readout == "left"  ? Readout::kLeft
+                                         : Readout::kDown;
+  return shutter;
+}
+
 annotation::State state_of(const Moment& moment,
                            std::size_t i,
                            const Vector3& p_in_cam,
@@ -192,7 +228,8 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
 World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
-              {}};
+              {},
+              shutter_of(scene.camera_model)};
   std::map<std::string, Type> types;  // one BVH for all intruders of one type
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = at_place(intruder.where, [&] { return intruder_path(intruder); });
@@ -214,7 +251,7 @@ std::optional<PixelBox> search_bounds(const Moment& moment) {
   return all;
 }
 
-Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference) {
+Moment moment_at(const World& world, double time_s, const Shake& shake) {
   const auto camera = world.camera.at(time_s);
   if (!camera)
     throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
@@ -223,15 +260,30 @@ Moment moment_at(const World& world, double time_s, const Homography& frame_from
   Moment moment;
   moment.time_s = time_s;
   moment.camera = *camera;
-  const Rigid world_from_cam =
-      camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
-  moment.sight = {&world.lens, world_from_cam.inverse(), frame_from_reference};
+  const Rigid world_from_cam = world_from_shaken_cam(*camera, shake, 0);
+  moment.sight = {&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
+  if (!world.shutter.is_instant()) {
+    moment.sight.shutter = world.shutter;
+    moment.sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
+    moment.sight.camera = {
+        camera->velocity_in_world_mps,
+        turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
+          return world_from_shaken_cam(state, shake, dt_s).rotation;
+        })};
+  }
   for (const Actor& actor : world.actors) {
     const auto state = actor.path.at(time_s);
     moment.states.push_back(state);
+    Twist twist;
+    if (state && !world.shutter.is_instant())
+      twist = {state->velocity_in_world_mps,
+               turning(actor.path, time_s, [](const trajectory::State& then, double) {
+                 return then.world_from_body;
+               })};
+    moment.twists.push_back(twist);
     moment.boxes.push_back(
         state ? annotation::exact_box(
-                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s)
+                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
               : annotation::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }

@@ -32,9 +32,11 @@ struct World {
   lens::Lens lens;
   trajectory::Path camera;
   std::vector<Actor> actors;
+  Shutter shutter;
 };
 
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
+// The scene's camera model is resolved (resolve.h).
 World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn);
 
 // Where everything is in one frame, from geometry alone.
@@ -43,6 +45,7 @@ struct Moment {
   trajectory::State camera;
   annotation::Sight sight;
   std::vector<std::optional<trajectory::State>> states;  // per actor; empty: not in the world
+  std::vector<Twist> twists;                             // per actor: how it goes on
   std::vector<annotation::ExactBox> boxes;
   std::vector<std::optional<Box>>
       search;  // where to look for pixels: boxes with a margin, if in view
@@ -52,7 +55,7 @@ struct Moment {
 std::optional<PixelBox> search_bounds(const Moment& moment);
 
 // Error where the camera's path does not reach that time.
-Moment moment_at(const World& world, double time_s, const Homography& frame_from_reference);
+Moment moment_at(const World& world, double time_s, const Shake& shake);
 
 // The truth of the frame's intruders from geometry and from what compositing changed.
 std::vector<annotation::Intruder> truth_of(const World& world,
