@@ -48,6 +48,7 @@ struct Intruder {
   std::optional<PixelBox> visible_box_px;
   std::int64_t visible_area_px = 0;   // pixels that changed
   double alpha_sum_px = 0;            // coverage seen, in pixels
+  std::optional<Pixel> centroid_px;   // of that coverage, over the exposure; empty: none is seen
   double hidden_by_own_aircraft = 0;  // fractions of its silhouette, 0..1
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;

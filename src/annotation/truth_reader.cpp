@@ -161,6 +161,10 @@ Intruder intruder_from(const Object& object) {
   intruder.visible_box_px = object.pixel_box("visible_box_px");
   intruder.visible_area_px = object.whole("visible_area_px");
   intruder.alpha_sum_px = object.number("alpha_sum_px");
+  if (object.has("centroid_px")) {
+    const auto at = object.tuple<2>("centroid_px");
+    intruder.centroid_px = Pixel(at[0], at[1]);
+  }
   intruder.hidden_by_own_aircraft = object.number("hidden_by_own_aircraft");
   intruder.hidden_by_intruder = object.number("hidden_by_intruder");
   intruder.cut_by_frame = object.number("cut_by_frame");

@@ -28,7 +28,8 @@ bool all_finite(const Intruder& i) {
          finite(i.attitude_yaw_pitch_roll_deg) && finite(i.position_in_cam_m) &&
          finite(i.range_m) && finite(i.range_rate_mps) && finite(i.azimuth_deg) &&
          finite(i.elevation_deg) && finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
-         finite(i.hidden_by_own_aircraft) && finite(i.hidden_by_intruder) && finite(i.cut_by_frame);
+         (!i.centroid_px || i.centroid_px->allFinite()) && finite(i.hidden_by_own_aircraft) &&
+         finite(i.hidden_by_intruder) && finite(i.cut_by_frame);
 }
 
 bool is_fraction(double value) { return value >= 0 && value <= 1; }

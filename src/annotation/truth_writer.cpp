@@ -44,6 +44,8 @@ Json json(const Intruder& intruder) {
   add(object, "visible_box_px", intruder.visible_box_px);
   object["visible_area_px"] = intruder.visible_area_px;
   object["alpha_sum_px"] = intruder.alpha_sum_px;
+  if (intruder.centroid_px)
+    object["centroid_px"] = {intruder.centroid_px->x(), intruder.centroid_px->y()};
   object["hidden_by_own_aircraft"] = intruder.hidden_by_own_aircraft;
   object["hidden_by_intruder"] = intruder.hidden_by_intruder;
   object["cut_by_frame"] = intruder.cut_by_frame;

@@ -40,7 +40,7 @@ Footprint footprint(int log2_size, bool on_a_pixel) {
 // changed.
 class Matte {
  public:
-  Matte(image::Picture& picture, const image::Layer& layer, const image::Mask* own_aircraft);
+  Matte(image::Picture& picture, const image::Layer& layer, const MatteOptions& options);
   void blend();
   std::vector<Visible> visible() const;
 
@@ -52,15 +52,27 @@ class Matte {
   image::Ycc change(std::size_t index, float cb, float cr) const;
   image::Ycc chroma_at(int cx, int cy) const;
   bool block_is_drawn(int cx, int cy) const;
-  void blend_luma();
+  void find_luma_changes();
+  void pass_sensor();
+  void write_luma();
   void blend_chroma();
   image::Ycc chroma_change(int cx, int cy) const;
   bool move_chroma(int cx, int cy, const image::Ycc& change);
   void mark_block(int cx, int cy);
+  struct Reach {
+    PixelBox patch;
+    std::vector<std::uint8_t> is_own;
+    bool contains(int x, int y) const {
+      return is_own[static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +
+                    static_cast<std::size_t>(x - patch.x)] != 0;
+    }
+  };
+  Reach with_halo(const std::vector<float>& coverage) const;
   void add_coverage(std::size_t intruder, Visible& visible) const;
 
   image::Picture& picture_;
   const image::Layer& layer_;
+  const MatteOptions& options_;
   const TransferCurve& curve_ = transfer_curve();
   image::ColourCode colour_code_;
   int log2_width_;
@@ -74,14 +86,16 @@ class Matte {
   std::vector<image::Ycc> change_;     // with the chroma of the pixel's own block
 };
 
-Matte::Matte(image::Picture& picture, const image::Layer& layer, const image::Mask* own_aircraft)
+Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOptions& options)
     : picture_(picture),
       layer_(layer),
+      options_(options),
       colour_code_(picture.colour),
       log2_width_(image::log2_chroma_width(picture.colour.chroma)),
       log2_height_(image::log2_chroma_height(picture.colour.chroma)),
       across_(footprint(log2_width_, picture.colour.siting != image::Siting::kCenter)),
       down_(footprint(log2_height_, picture.colour.siting == image::Siting::kTopLeft)) {
+  const image::Mask* own_aircraft = options.own_aircraft;
   const std::size_t size = layer.pixels.size();
   free_.assign(size, 1);
   drawn_.assign(size, 0);
@@ -121,14 +135,53 @@ image::Ycc Matte::chroma_at(int cx, int cy) const {
           static_cast<float>(picture_.planes[2].row(cy)[cx])};
 }
 
-void Matte::blend_luma() {
-  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
-    std::uint8_t* row = picture_.planes[0].row(y);
+void Matte::find_luma_changes() {
+  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y)
     for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
       const std::size_t i = layer_.index(x, y);
       if (!drawn_[i]) continue;
       const image::Ycc under = chroma_at(x >> log2_width_, y >> log2_height_);
       change_[i] = change(i, under.cb, under.cr);
+    }
+}
+
+// Sharpening reaches beyond the layer; quantiser and noise stay where something is drawn.
+void Matte::pass_sensor() {
+  const Sensor& sensor = options_.sensor;
+  if (!(sensor.sharpening > 0) && !(sensor.codec_step > 0) && !sensor.has_noise()) return;
+  const PixelBox& patch = layer_.patch;
+  std::vector<float> luma(change_.size());
+  for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = change_[i].y;
+  sharpen(luma, patch.width, patch.height, sensor);
+  constexpr float kHalo = 0.5F;  // less does not move a sample
+  for (std::size_t i = 0; i < luma.size(); ++i)
+    drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kHalo);
+  quantise(luma, patch, sensor);
+  if (sensor.has_noise()) {
+    const std::vector<float> field =
+        noise_field(patch, options_.seed, options_.frame, sensor.noise_correlation_px);
+    const float dark = colour_code_.ycc_from_rgb({0, 0, 0}).y;
+    const float codes_per_unit = colour_code_.ycc_from_rgb({1, 1, 1}).y - dark;
+    const auto sigma_at = [&](float code_value) {
+      return noise_sigma((code_value - dark) / codes_per_unit, codes_per_unit, sensor);
+    };
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+      if (!drawn_[i]) continue;
+      const auto under = static_cast<float>(luma_[i]);
+      const float wanted = sigma_at(under + luma[i]);
+      const float left = (1 - layer_.pixels[i].alpha) * sigma_at(under);
+      luma[i] += field[i] * std::sqrt(std::max(0.0F, wanted * wanted - left * left));
+    }
+  }
+  for (std::size_t i = 0; i < luma.size(); ++i) change_[i].y = drawn_[i] ? luma[i] : 0.0F;
+}
+
+void Matte::write_luma() {
+  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
+    std::uint8_t* row = picture_.planes[0].row(y);
+    for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
+      const std::size_t i = layer_.index(x, y);
+      if (!drawn_[i]) continue;
       row[x] = code(static_cast<float>(luma_[i]) + change_[i].y);
       changed_[i] = row[x] != luma_[i];
     }
@@ -194,21 +247,46 @@ void Matte::blend_chroma() {
 }
 
 void Matte::blend() {
-  blend_luma();
+  find_luma_changes();
+  pass_sensor();
+  write_luma();
   if (picture_.plane_count == 3) blend_chroma();
+}
+
+// Where the intruder and its halo can be: pixels that it covers, and those that sharpening reaches
+// from there.
+Matte::Reach Matte::with_halo(const std::vector<float>& coverage) const {
+  const int halo = options_.sensor.halo_px();
+  Reach reach{layer_.patch, std::vector<std::uint8_t>(coverage.size(), 0)};
+  const PixelBox& patch = layer_.patch;
+  for (int y = patch.y; y < patch.bottom(); ++y)
+    for (int x = patch.x; x < patch.right(); ++x) {
+      if (!(coverage[layer_.index(x, y)] > 0)) continue;
+      for (int v = std::max(y - halo, patch.y); v <= std::min(y + halo, patch.bottom() - 1); ++v)
+        std::fill_n(reach.is_own.begin() +
+                        static_cast<std::ptrdiff_t>(layer_.index(std::max(x - halo, patch.x), v)),
+                    std::min(x + halo, patch.right() - 1) - std::max(x - halo, patch.x) + 1,
+                    std::uint8_t{1});
+    }
+  return reach;
 }
 
 void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
   const std::vector<float>& coverage = layer_.coverage[intruder];
   if (coverage.empty()) return;
+  const auto own = with_halo(coverage);
   int left = picture_.width, right = -1, top = picture_.height, bottom = -1;
+  Pixel sum = Pixel::Zero();
   for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
     for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
       const std::size_t i = layer_.index(x, y);
-      if (!(coverage[i] > 0)) continue;
-      visible.alpha_before_mask_px += static_cast<double>(coverage[i]);
-      if (free_[i]) visible.alpha_sum_px += static_cast<double>(coverage[i]);
-      if (!changed_[i]) continue;
+      const auto here = static_cast<double>(coverage[i]);
+      visible.alpha_before_mask_px += here;
+      if (free_[i]) {
+        visible.alpha_sum_px += here;
+        sum += here * Pixel(x + 0.5, y + 0.5);
+      }
+      if (!own.contains(x, y) || !changed_[i]) continue;
       ++visible.pixels;
       left = std::min(left, x);
       right = std::max(right, x);
@@ -216,6 +294,7 @@ void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
       bottom = std::max(bottom, y);
     }
   }
+  if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
   if (visible.pixels > 0) visible.box = PixelBox{left, top, right - left + 1, bottom - top + 1};
 }
 
@@ -247,7 +326,7 @@ std::vector<Visible> composite_matte(image::Picture& picture,
                                      const MatteOptions& options) {
   if (layer.empty()) return std::vector<Visible>(layer.coverage.size());
   check_fits(picture, layer, options.own_aircraft);
-  Matte matte(picture, layer, options.own_aircraft);
+  Matte matte(picture, layer, options);
   matte.blend();
   return matte.visible();
 }

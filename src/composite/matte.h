@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "composite/sensor.h"
 #include "geometry/box.h"
 #include "image/layer.h"
 #include "image/picture.h"
@@ -15,7 +17,7 @@
 // the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
 // nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
 // the sample sits, and only where one of the pixels of its own block is under the layer. Every
-// other sample keeps its bits.
+// other sample keeps its bits. A sensor's sharpening, noise and quantiser change those changes.
 namespace airtruth::composite {
 
 // What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
@@ -26,10 +28,17 @@ struct Visible {
   std::int64_t pixels = 0;  // how many
   double alpha_sum_px = 0;  // coverage that is seen: after the own aircraft and nearer intruders
   double alpha_before_mask_px = 0;  // the same before the own aircraft's mask
+  std::optional<Pixel> centroid;    // of the coverage that is seen; empty: none is
 };
 
 struct MatteOptions {
   const image::Mask* own_aircraft = nullptr;  // where not free, nothing is drawn
+  // What the camera does to the samples. Sharpening puts a halo around the layer, inside its patch:
+  // spread() makes room. Each pixel's own noise makes way for as much as the light that is there
+  // now would have; the codec keeps what it would keep.
+  Sensor sensor;
+  std::uint64_t seed = 1;  // of the noise ...
+  std::int64_t frame = 0;  // ... which is another in each frame
 };
 
 // One entry per intruder of the layer.

@@ -223,7 +223,7 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
       const Oracle oracle(mesh, scene.view, scene.instance);
       double worst = 0, sum = 0, oracle_sum = 0;
       Pixel centroid(0, 0), oracle_centroid(0, 0);
-      std::optional<PixelBox> box, oracle_box;
+      std::optional<PixelBox> box, oracle_box, surely, perhaps;
       for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
         for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
           const double alpha = layer.pixels[layer.index(x, y)].alpha;
@@ -236,13 +236,17 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
           const PixelBox one{x, y, 1, 1};
           if (alpha > kSeen) box = box ? bounds(*box, one) : one;
           if (truth > kSeen) oracle_box = oracle_box ? bounds(*oracle_box, one) : one;
+          // Where brute force itself is that near to the limit, either answer is right.
+          if (truth > 1.5 * kSeen) surely = surely ? bounds(*surely, one) : one;
+          if (truth > 0.5 * kSeen) perhaps = perhaps ? bounds(*perhaps, one) : one;
         }
       std::printf("%s, %.0f px: alpha within %.4f\n", setting.name, size_px, worst);
       EXPECT_LT(worst, 1.0 / 64) << setting.name << " at " << size_px << " px";
       EXPECT_LT((centroid / sum - oracle_centroid / oracle_sum).norm(), 0.05)
           << setting.name << " at " << size_px << " px";
-      ASSERT_TRUE(box && oracle_box);
-      EXPECT_EQ(*box, *oracle_box) << setting.name << " at " << size_px << " px";
+      ASSERT_TRUE(box && oracle_box && surely && perhaps);
+      EXPECT_EQ(bounds(*box, *surely), *box) << setting.name << " at " << size_px << " px";
+      EXPECT_EQ(bounds(*box, *perhaps), *perhaps) << setting.name << " at " << size_px << " px";
       // The other road to the box.
       EXPECT_LE(scene.exact->x, oracle_box->x + 1);
       EXPECT_GE(scene.exact->x, oracle_box->x - 1.05);

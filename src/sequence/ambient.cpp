@@ -64,10 +64,35 @@ std::vector<Block> blocks_of(const image::Picture& picture,
       blocks.push_back(block);
     }
   }
+  return blocks;
+}
+
+void sort_by_brightness(std::vector<Block>& blocks) {
   std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
     return a.brightness < b.brightness;
   });
-  return blocks;
+}
+
+// The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
+// nor near white.
+Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now) {
+  constexpr float kDarkest = 0.02F;
+  constexpr float kBrightest = 0.8F;
+  constexpr std::size_t kFewest = 20;
+  Rgb change = {1, 1, 1};
+  if (before.size() != now.size()) return change;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<float> ratios;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (before[i][c] > kDarkest && before[i][c] < kBrightest && now[i][c] > kDarkest &&
+          now[i][c] < kBrightest)
+        ratios.push_back(now[i][c] / before[i][c]);
+    if (ratios.size() < kFewest) continue;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    change[c] = *middle;
+  }
+  return change;
 }
 
 // Weighted mean of the blocks whose share of the total weight lies in [from, to).
@@ -92,6 +117,10 @@ Ambient measure(const std::vector<Block>& blocks) {
   Ambient ambient;
   ambient.sky = mean(blocks, 0.5f, 1.01f);
   ambient.ground = mean(blocks, 0.0f, 0.25f);
+  std::vector<Block> around;
+  for (const Block& block : blocks)
+    if (block.weight > 1) around.push_back(block);
+  ambient.airlight = around.empty() ? ambient.sky : mean(around, 0.3f, 1.01f);
   const std::size_t last = blocks.empty() ? 0 : blocks.size() * 98 / 100;
   const float white =
       blocks.empty() ? 0.7f
@@ -114,12 +143,30 @@ std::array<float, 3> floats(const std::array<double, 3>& v) {
 Ambient AmbientEstimator::next(const image::Picture& picture, const std::optional<PixelBox>& near) {
   const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
   if (all_stated) return with_scene({});
-  const Ambient now = measure(blocks_of(picture, own_aircraft_, near));
+  std::vector<Block> blocks = blocks_of(picture, own_aircraft_, near);
+  std::vector<Rgb> colours;
+  for (const Block& block : blocks) colours.push_back(block.linear);
+  follow_exposure(colours);
+  sort_by_brightness(blocks);
+  const Ambient now = measure(blocks);
   if (!smooth_) smooth_ = now;
   blend(smooth_->sun, now.sun);
   blend(smooth_->sky, now.sky);
   blend(smooth_->ground, now.ground);
+  blend(smooth_->airlight, now.airlight);
   return with_scene(*smooth_);
+}
+
+void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
+  constexpr float kJump = 0.04F;  // less is what moves through the picture
+  const Rgb change = exposure_change(blocks_before_, blocks);
+  blocks_before_ = blocks;
+  if (!smooth_) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (std::abs(std::log(change[c])) < kJump) continue;
+    for (auto* light : {&smooth_->sun, &smooth_->sky, &smooth_->ground, &smooth_->airlight})
+      (*light)[c] *= change[c];
+  }
 }
 
 Ambient AmbientEstimator::with_scene(Ambient measured) const {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
+#include <vector>
 
 #include "image/layer.h"
 #include "image/picture.h"
@@ -13,13 +15,15 @@
 // brighter half stands for the sky and its darkest quarter for the ground, whatever the bank of the
 // camera; the 98th percentile of brightness is what this exposure makes of a bright white thing
 // (cloud, haze), and a white surface square to the sun is given that much. Blocks near the intruder
-// count four times. Smoothed over time, since exposure is.
+// count four times. Smoothed over time; a jump of the camera's exposure or white balance (the
+// median over the blocks of what each becomes from one frame to the next) is followed at once.
 namespace airtruth::sequence {
 
 struct Ambient {
   std::array<float, 3> sun{};
   std::array<float, 3> sky{};
   std::array<float, 3> ground{};
+  std::array<float, 3> airlight{};  // the background around the intruder: where haze leads to
 };
 
 class AmbientEstimator {
@@ -32,10 +36,12 @@ class AmbientEstimator {
 
  private:
   Ambient with_scene(Ambient measured) const;
+  void follow_exposure(const std::vector<std::array<float, 3>>& blocks);
 
   scene::Light light_;
   const image::Mask* own_aircraft_;
   std::optional<Ambient> smooth_;
+  std::vector<std::array<float, 3>> blocks_before_;
 };
 
 }  // namespace airtruth::sequence

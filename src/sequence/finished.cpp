@@ -170,7 +170,7 @@ image::Rgb8 inspect(const Finished& sequence,
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
   const World world = load_world(scene, {before.picture.width, before.picture.height}, {});
-  const Moment moment = moment_at(world, truth.time_s, truth.shake);
+  const Moment moment = moment_at(world, truth.frame, truth.time_s, truth.shake);
   const image::Layer layer = render_layer(scene, world, moment, Ambient{});
   const bool matte = scene.composite.method == "matte";
   return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},

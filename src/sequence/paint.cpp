@@ -6,11 +6,42 @@
 #include "backdrop/backdrop.h"
 #include "base/error.h"
 #include "composite/chroma_key.h"
+#include "composite/spread.h"
 #include "sequence/stopwatch.h"
 #include "video/still.h"
 
 namespace airtruth::sequence {
 namespace {
+
+composite::Sensor sensor_of(const scene::CameraModel& model) {
+  composite::Sensor sensor;
+  sensor.sharpening = model.sharpening.value_or(0);
+  sensor.sharpening_px = model.sharpening_px.value_or(sensor.sharpening_px);
+  sensor.noise_gain = model.noise_gain.value_or(0);
+  sensor.noise_floor = model.noise_floor.value_or(0);
+  sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
+  sensor.codec_step = model.codec_step.value_or(0);
+  return sensor;
+}
+
+// Air and lens, after the light has left the intruder.
+image::Layer through_air_and_lens(image::Layer layer,
+                                  const scene::CameraModel& model,
+                                  const Ambient& ambient,
+                                  const lens::ImageSize& size) {
+  if (layer.empty()) return layer;
+  if (model.extinction_per_km) {
+    std::array<double, 3> airlight;
+    for (std::size_t c = 0; c < 3; ++c)
+      airlight[c] = model.airlight ? (*model.airlight)[c] : double(ambient.airlight[c]);
+    composite::add_haze(layer, *model.extinction_per_km, airlight);
+  }
+  return composite::spread(layer,
+                           model.point_spread_px.value_or(0),
+                           sensor_of(model).halo_px(),
+                           size.width,
+                           size.height);
+}
 
 class Matte : public Painter {
  public:
@@ -27,8 +58,12 @@ class Matte : public Painter {
     const Stopwatch rendering;
     painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
     painted.render_s = rendering.seconds();
-    if (!painted.layer.empty())
-      painted.visible = composite::composite_matte(picture, painted.layer, {.own_aircraft = mask_});
+    if (painted.layer.empty()) return painted;
+    composite::MatteOptions options{.own_aircraft = mask_};
+    options.sensor = sensor_of(scene_.camera_model);
+    options.seed = scene_.seed;
+    options.frame = moment.frame;
+    painted.visible = composite::composite_matte(picture, painted.layer, options);
     return painted;
   }
 
@@ -177,8 +212,12 @@ image::Layer render_layer(const scene::Scene& scene,
     instances.push_back(instance);
   }
   if (!any) return {};
-  return render::render(
-      view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
+  return through_air_and_lens(
+      render::render(
+          view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop}),
+      scene.camera_model,
+      ambient,
+      world.lens.size());
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

@@ -81,7 +81,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
       fault(truth, before ? "is not in the video" : "is not in the background");
       break;
     }
-    const Moment moment = moment_at(world, before->time_s, truth.shake);
+    const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
     const Ambient light = ambient.next(before->picture, search_bounds(moment));
     if (truth.frame % every != 0) continue;
     annotation::Frame again = truth;

@@ -125,7 +125,7 @@ class Run {
     const MotionSource::Measured measured = motion_.next(work.frame);
     work.motion = measured.motion;
     work.truth.shake = measured.shake;
-    work.moment = moment_at(world_, work.frame.time_s, measured.shake);
+    work.moment = moment_at(world_, work.frame.index, work.frame.time_s, measured.shake);
     work.ambient = ambient_.next(work.frame.picture, search_bounds(work.moment));
   }
 

@@ -194,6 +194,7 @@ void add_pixels(annotation::Intruder& truth,
   truth.visible_box_px = visible.box;
   truth.visible_area_px = visible.pixels;
   truth.alpha_sum_px = visible.alpha_sum_px;
+  truth.centroid_px = visible.centroid;
   if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
   const double alone = layer.area_alone_px[i];
   const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
@@ -251,13 +252,14 @@ std::optional<PixelBox> search_bounds(const Moment& moment) {
   return all;
 }
 
-Moment moment_at(const World& world, double time_s, const Shake& shake) {
+Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
   const auto camera = world.camera.at(time_s);
   if (!camera)
     throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
                 " s, but the clip goes on at " + std::to_string(time_s) +
                 " s; expected a path as long as the clip");
   Moment moment;
+  moment.frame = frame;
   moment.time_s = time_s;
   moment.camera = *camera;
   const Rigid world_from_cam = world_from_shaken_cam(*camera, shake, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,7 @@ World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& wa
 
 // Where everything is in one frame, from geometry alone.
 struct Moment {
+  std::int64_t frame = 0;
   double time_s = 0;
   trajectory::State camera;
   annotation::Sight sight;
@@ -55,7 +57,7 @@ struct Moment {
 std::optional<PixelBox> search_bounds(const Moment& moment);
 
 // Error where the camera's path does not reach that time.
-Moment moment_at(const World& world, double time_s, const Shake& shake);
+Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake);
 
 // The truth of the frame's intruders from geometry and from what compositing changed.
 std::vector<annotation::Intruder> truth_of(const World& world,

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/sensor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "composite/spread.h"
+#include "geometry/transform.h"
+#include "image/colour.h"
+
+namespace airtruth::composite {
+namespace {
+
+constexpr int kBlock = 8;
+using Block = std::array<std::array<float, kBlock>, kBlock>;
+
+// Orthonormal DCT-II (Ahmed, Natarajan and Rao 1974).
+const Block& cosines() {
+  static const Block table = [] {
+    Block t;
+    for (std::size_t k = 0; k < kBlock; ++k)
+      for (std::size_t n = 0; n < kBlock; ++n) {
+        const double scale = k == 0 ? std::sqrt(1.0 / kBlock) : std::sqrt(2.0 / kBlock);
+        t[k][n] = static_cast<float>(scale * std::cos(kPi * (static_cast<double>(n) + 0.5) *
+                                                      static_cast<double>(k) / kBlock));
+      }
+    return t;
+  }();
+  return table;
+}
+
+// rows of a times columns of b; `turned`: of a's transpose.
+Block product(const Block& a, bool turned, const Block& b) {
+  Block result{};
+  for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t k = 0; k < kBlock; ++k) {
+      const float weight = turned ? a[k][i] : a[i][k];
+      for (std::size_t j = 0; j < kBlock; ++j) result[i][j] += weight * b[k][j];
+    }
+  return result;
+}
+
+Block transposed(const Block& a) {
+  Block result;
+  for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t j = 0; j < kBlock; ++j) result[i][j] = a[j][i];
+  return result;
+}
+
+float rounded(float value, float step) {
+  constexpr float kDeadZone = 1.0F / 3;
+  const float levels = std::floor(std::abs(value) / step + kDeadZone);
+  return std::copysign(levels * step, value);
+}
+
+void quantise_block(Block& block, float step) {
+  const Block& c = cosines();
+  Block coefficients = product(c, false, transposed(product(c, false, transposed(block))));
+  for (auto& row : coefficients)
+    for (float& value : row) value = rounded(value, step);
+  block = product(c, true, transposed(product(c, true, transposed(coefficients))));
+}
+
+std::uint64_t mixed(std::uint64_t x) {
+  x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ULL;
+  x ^= x >> 27, x *= 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+// A normal number that belongs to a pixel of a frame: the sum of 8 uniform bytes, twice (Irwin 1927
+// and Hall 1927), which is normal to 3.9 standard deviations.
+float normal_at(std::uint64_t key, int x, int y) {
+  const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
+                              static_cast<std::uint32_t>(y);
+  const std::uint64_t a = mixed(key ^ mixed(place + 0x9e3779b97f4a7c15ULL));
+  const std::uint64_t b = mixed(a + 0x9e3779b97f4a7c15ULL);
+  int sum = 0;
+  for (int i = 0; i < 8; ++i)
+    sum += static_cast<int>(a >> (8 * i) & 255) + static_cast<int>(b >> (8 * i) & 255);
+  constexpr float kMean = 16 * 127.5F;
+  static const float kScale = static_cast<float>(1 / std::sqrt(16 * (256.0 * 256.0 - 1) / 12));
+  return (static_cast<float>(sum) - kMean) * kScale;
+}
+
+}  // namespace
+
+int Sensor::halo_px() const {
+  return sharpening > 0 ? static_cast<int>(gaussian(sharpening_px).size() / 2) : 0;
+}
+
+void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor) {
+  if (!(sensor.sharpening > 0)) return;
+  std::vector<float> soft = change;
+  blur(soft, width, height, gaussian(sensor.sharpening_px));
+  const auto amount = static_cast<float>(sensor.sharpening);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] += amount * (change[i] - soft[i]);
+}
+
+void quantise(std::vector<float>& change, const PixelBox& patch, const Sensor& sensor) {
+  if (!(sensor.codec_step > 0)) return;
+  const auto step = static_cast<float>(sensor.codec_step);
+  const auto first = [](int v) { return v / kBlock * kBlock; };
+  for (int by = first(patch.y); by < patch.bottom(); by += kBlock)
+    for (int bx = first(patch.x); bx < patch.right(); bx += kBlock) {
+      Block block{};
+      bool any = false;
+      const auto each = [&](const auto& visit) {
+        for (int j = std::max(0, patch.y - by); j < std::min(kBlock, patch.bottom() - by); ++j)
+          for (int i = std::max(0, patch.x - bx); i < std::min(kBlock, patch.right() - bx); ++i)
+            visit(block[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)],
+                  change[static_cast<std::size_t>(by + j - patch.y) *
+                             static_cast<std::size_t>(patch.width) +
+                         static_cast<std::size_t>(bx + i - patch.x)]);
+      };
+      each([&](float& in_block, const float& value) {
+        in_block = value;
+        any = any || value != 0;
+      });
+      if (!any) continue;
+      quantise_block(block, step);
+      each([](const float& in_block, float& value) { value = in_block; });
+    }
+}
+
+float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {
+  const float bounded = std::clamp(luma, 0.0F, 1.0F);
+  const float light = image::linear_from_srgb(bounded);
+  // Slope of the coded value over light, by a small difference.
+  constexpr float kStep = 0.004F;
+  const float low = image::linear_from_srgb(std::max(0.0F, bounded - kStep));
+  const float high = image::linear_from_srgb(std::min(1.0F, bounded + kStep));
+  const float width = std::min(1.0F, bounded + kStep) - std::max(0.0F, bounded - kStep);
+  const float slope = width / std::max(high - low, 1e-6F);
+  const double variance = sensor.noise_gain * static_cast<double>(light) + sensor.noise_floor;
+  return codes_per_unit * slope * static_cast<float>(std::sqrt(std::max(0.0, variance)));
+}
+
+std::vector<float> noise_field(const PixelBox& patch,
+                               std::uint64_t seed,
+                               std::int64_t frame,
+                               double correlation_px) {
+  const std::vector<float> kernel = gaussian(correlation_px);
+  const int reach = static_cast<int>(kernel.size()) / 2;
+  const int width = patch.width + 2 * reach;
+  const int height = patch.height + 2 * reach;
+  const std::uint64_t key = mixed(seed ^ mixed(static_cast<std::uint64_t>(frame) + 1));
+  std::vector<float> white(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      white[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(x)] = normal_at(key, patch.x - reach + x, patch.y - reach + y);
+  if (reach == 0) return white;
+  blur(white, width, height, kernel);
+  double power = 0;
+  for (const float weight : kernel)
+    power += static_cast<double>(weight) * static_cast<double>(weight);
+  const auto scale = static_cast<float>(1 / power);  // along both axes: sqrt(power)^2
+  std::vector<float> field;
+  field.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
+  for (int y = 0; y < patch.height; ++y)
+    for (int x = 0; x < patch.width; ++x)
+      field.push_back(scale *
+                      white[static_cast<std::size_t>(y + reach) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(x + reach)]);
+  return field;
+}
+
+}  // namespace airtruth::composite

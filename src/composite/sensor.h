@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/box.h"
+
+// What a camera does to its samples after the light has come: sharpening, noise, the codec's
+// quantiser. All on luma, in code values, on a patch of the frame.
+namespace airtruth::composite {
+
+struct Sensor {
+  // Unsharp mask: y + sharpening (y - G y), G a Gaussian of sharpening_px.
+  double sharpening = 0;
+  double sharpening_px = 1;
+  // Variance of linear light x (0..1): noise_gain x + noise_floor (Foi et al. 2008, "Practical
+  // Poissonian-Gaussian noise modeling", eq. 3), with the spatial correlation of white noise under
+  // a Gaussian of noise_correlation_px.
+  double noise_gain = 0;
+  double noise_floor = 0;
+  double noise_correlation_px = 0;
+  // Step of the quantiser of the codec's transform, in luma code values; 0: none.
+  double codec_step = 0;
+
+  bool has_noise() const { return noise_gain > 0 || noise_floor > 0; }
+  int halo_px() const;  // how far sharpening reaches
+};
+
+// change + sharpening (change - G change). Sharpening is linear, and the background has been
+// sharpened already: what is put over it changes by this.
+void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor);
+
+// Through the 8 x 8 cosine transform of the blocks that the frame has (from its corner), each
+// coefficient rounded to a multiple of the step, with the dead zone of a video encoder (a third of
+// a step rounds to 0 up to two thirds): what an encoder keeps of what has changed.
+void quantise(std::vector<float>& change, const PixelBox& patch, const Sensor& sensor);
+
+// Standard deviation of luma in code values at a luma of 0..1 (coded).
+float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor);
+
+// Unit noise over a patch, the same for a pixel of a frame whatever the patch.
+std::vector<float> noise_field(const PixelBox& patch,
+                               std::uint64_t seed,
+                               std::int64_t frame,
+                               double correlation_px);
+
+}  // namespace airtruth::composite
