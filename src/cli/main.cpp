@@ -99,6 +99,8 @@ int main(int argc, char** argv) {
   cli::add_overlay(app, context);
   cli::add_inspect(app, context);
   cli::add_motion(app, context);
+  cli::add_calibrate(app, context);
+  cli::add_mask(app, context);
   cli::add_aircraft(app, context);
   cli::add_synth(app, context);
   cli::add_dataset(app, context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "image/picture.h"
 
@@ -14,6 +15,7 @@ struct Frame {
   std::int64_t pts = 0;    // in StreamInfo::time_base, as in the stream
   double time_s = 0;       // seconds from the first frame that the reader hands out
   bool damaged = false;    // the decoder said that its data was corrupt, or concealed errors in it
+  std::optional<double> quantiser;  // mean of H.264's QP over its blocks; where it was asked for
   image::Picture picture;
 };
 

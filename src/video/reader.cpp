@@ -117,6 +117,7 @@ void Reader::State::open_codec() {
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
   codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+  if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
   codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
   if (const int opened = avcodec_open2(codec.get(), decoder, nullptr); opened < 0)
     fail(std::string("cannot be decoded (") + decoder->name + "): " + reason(opened));
@@ -210,6 +211,21 @@ bool Reader::State::decode_one() {
   }
 }
 
+namespace {
+
+std::optional<double> quantiser_of(const AVFrame& frame) {
+  const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
+  if (data == nullptr) return std::nullopt;
+  auto* parameters = reinterpret_cast<AVVideoEncParams*>(data->data);
+  if (parameters->type != AV_VIDEO_ENC_PARAMS_H264) return std::nullopt;
+  double sum = 0;
+  for (unsigned i = 0; i < parameters->nb_blocks; ++i)
+    sum += parameters->qp + av_video_enc_params_block(parameters, i)->delta_qp;
+  return parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp;
+}
+
+}  // namespace
+
 Frame Reader::State::to_frame() {
   Frame result;
   const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
@@ -224,6 +240,7 @@ Frame Reader::State::to_frame() {
   if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
   last_pts = pts;
   result.pts = pts;
+  result.quantiser = quantiser_of(*frame);
   return result;
 }
 

@@ -43,6 +43,7 @@ struct ReaderOptions {
   std::int64_t first_frame = 0;             // frames before it are decoded and dropped
   std::optional<std::int64_t> frame_count;  // else to the end
   int threads = 0;                          // 0 = one per core
+  bool with_quantiser = false;              // Frame::quantiser, where the decoder tells it
 };
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "calibration/air.h"
+#include "calibration/calibration.h"
+#include "calibration/edges.h"
+#include "calibration/horizon.h"
+#include "calibration/noise.h"
+#include "calibration/readout.h"
+#include "motion/motion.h"
+#include "video/reader.h"
+
+namespace airtruth::calibration {
+namespace {
+
+constexpr std::int64_t kSampledFrames = 40;
+constexpr std::int64_t kFewestFrames = 8;
+constexpr double kAssumedFovDeg = 60;  // where no lens is given, to look for the horizon
+
+// A frame that is looked at closely.
+struct Sampled {
+  image::Picture picture;
+  std::int64_t frame = 0;
+  Quaternion cam_from_first = Quaternion::Identity();
+  bool turn_known = false;
+};
+
+bool is_measured(const motion::FrameMotion& motion) {
+  return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
+}
+
+class Session {
+ public:
+  Session(const fs::path& video, const Options& options)
+      : options_(options),
+        reader_(video, {options.first_frame, options.frame_count, 0, true}, options.warn),
+        noise_(options.own_aircraft),
+        edges_(options.own_aircraft),
+        planar_(reader_.info().width, reader_.info().height, {}, options.own_aircraft) {
+    const video::StreamInfo& info = reader_.info();
+    result_.video = video;
+    result_.width = info.width;
+    result_.height = info.height;
+    result_.frame_rate_hz = info.frame_rate.value();
+    if (options.lens) {
+      result_.lens = lens_words(*options.lens);
+      turning_.emplace(*options.lens, motion::Options{}, options.own_aircraft);
+    }
+    total_ = options.frame_count.value_or(
+        std::max<std::int64_t>(0, info.frame_count_estimate - options.first_frame));
+    every_ = std::max<std::int64_t>(2, total_ / kSampledFrames);
+  }
+
+  Calibration run() {
+    read_all();
+    if (result_.frames < kFewestFrames)
+      options_.warn ? options_.warn(fmt::format("{}: holds {} frames; most values take {}",
+                                                result_.video.string(),
+                                                result_.frames,
+                                                kFewestFrames))
+                    : void();
+    take_noise();
+    take_codec();
+    take_edges();
+    take_shutter();
+    take_sky();
+    return std::move(result_);
+  }
+
+ private:
+  void read_all() {
+    std::optional<image::Picture> before;
+    std::optional<Homography> last;
+    while (auto frame = reader_.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const motion::FrameMotion moved = planar_.next(frame->picture, frame->time_s, frame->damaged);
+      std::optional<Homography> step;
+      if (moved.state == motion::State::kMeasured && last)
+        step = moved.frame_from_reference * last->inverse();
+      last = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
+      steps_.push_back(step);
+      std::optional<motion::FrameMotion> turned;
+      if (turning_) turned = turning_->next(frame->picture, frame->time_s, frame->damaged);
+      if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
+      if (frame->index % every_ == 1 && before) {
+        noise_.add(*before, frame->picture);
+        edges_.add(frame->picture, step);
+        if (static_cast<std::int64_t>(sampled_.size()) < 2 * kSampledFrames)
+          sampled_.push_back({frame->picture.clone(),
+                              frame->index,
+                              turned ? *turned->rotation : Quaternion::Identity(),
+                              turned && is_measured(*turned)});
+      }
+      // The next sampled frame needs the one before it.
+      before = std::move(frame->picture);
+      ++result_.frames;
+      if (options_.progress) options_.progress(result_.frames, total_);
+    }
+  }
+
+  void put(const std::string& key, const std::vector<Estimate>& values) {
+    result_.values[key] = values;
+  }
+  void lack(const std::string& key, const std::string& why) { result_.missing[key] = why; }
+
+  void take_noise() {
+    std::string why;
+    result_.noise = noise_.points();
+    if (const auto found = noise_.result(why)) {
+      put("sensor.noise_gain", {found->gain});
+      put("sensor.noise_floor", {found->floor});
+      put("sensor.noise_correlation_px", {found->correlation_px});
+    } else {
+      for (const char* key :
+           {"sensor.noise_gain", "sensor.noise_floor", "sensor.noise_correlation_px"})
+        lack(key, why);
+    }
+  }
+
+  // H.264's quantiser: the step doubles with every 6 (ITU-T H.264, 8.5.9).
+  void take_codec() {
+    if (quantisers_.empty()) {
+      lack("sensor.codec_step",
+           "the decoder of '" + reader_.info().codec + "' does not tell its quantiser");
+      return;
+    }
+    std::vector<double> steps;
+    for (const double q : quantisers_) steps.push_back(0.625 * std::pow(2.0, q / 6));
+    std::sort(steps.begin(), steps.end());
+    const std::size_t n = steps.size();
+    put("sensor.codec_step", {{steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}});
+  }
+
+  void take_edges() {
+    std::string why;
+    if (const auto found = edges_.result(why)) {
+      put("optics.point_spread_px", {found->point_spread_px});
+      put("optics.sharpening", {found->sharpening});
+      put("optics.sharpening_px", {found->sharpening_px});
+      result_.edge = edges_.profile();
+    } else {
+      for (const char* key :
+           {"optics.point_spread_px", "optics.sharpening", "optics.sharpening_px"})
+        lack(key, why);
+    }
+  }
+
+  void take_shutter() {
+    std::string why;
+    const double interval_s = result_.frame_rate_hz > 0 ? 1 / result_.frame_rate_hz : 0;
+    if (const auto share = edges_.exposure_share(why); share && interval_s > 0)
+      put("shutter.exposure_s", {{share->value * interval_s, share->sigma * interval_s}});
+    else
+      lack("shutter.exposure_s", why.empty() ? "the video has no frame rate" : why);
+    why.clear();
+    const auto share = readout_share(steps_, result_.width, result_.height, why);
+    if (!share || !(interval_s > 0)) {
+      lack("shutter.readout_s", why.empty() ? "the video has no frame rate" : why);
+      return;
+    }
+    // Below twice its error it is no sign of a rolling shutter.
+    const bool rolls = std::abs(share->value) > 2 * share->sigma;
+    put("shutter.readout_s",
+        {{rolls ? std::abs(share->value) * interval_s : 0, share->sigma * interval_s}});
+    result_.notes["shutter.readout"] = rolls && share->value < 0 ? "up" : "down";
+  }
+
+  void take_sky() {
+    const lens::ImageSize size{result_.width, result_.height};
+    const lens::Lens lens =
+        options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
+    const HorizonFinder finder(lens, options_.own_aircraft);
+    std::vector<std::optional<HorizonFinder::Found>> found;
+    std::vector<Vector3> ups;  // in the first frame's camera
+    for (const Sampled& sampled : sampled_) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      found.push_back(finder.find(sampled.picture));
+      if (!found.back()) continue;
+      const YawPitchRoll attitude = attitude_from_up(found.back()->up_in_cam);
+      result_.horizons.push_back(
+          {sampled.frame, attitude.pitch_deg, attitude.roll_deg, found.back()->separation});
+      if (sampled.turn_known)
+        ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
+    }
+    tint_sky(lens, found);
+    AirMeter air(lens, options_.own_aircraft, options_.lens ? options_.altitude_m : std::nullopt);
+    const auto first_from_level = levelled(ups);
+    for (std::size_t i = 0; i < sampled_.size(); ++i) {
+      // With a lens all frames share one attitude; without, each has its own horizon.
+      if (first_from_level && sampled_[i].turn_known)
+        air.add(sampled_[i].picture, sampled_[i].cam_from_first * *first_from_level);
+      else if (!options_.lens && found[i])
+        air.add(sampled_[i].picture, cam_from_level(found[i]->up_in_cam));
+    }
+    std::string why;
+    if (const auto colour = air.airlight(why))
+      put("air.airlight", {colour->begin(), colour->end()});
+    else
+      lack("air.airlight", why);
+    take_extinction(air);
+    take_sun(air, first_from_level.has_value());
+  }
+
+  // cam_from_world of the first frame, by the median of what its horizons say.
+  std::optional<Quaternion> levelled(const std::vector<Vector3>& ups) const {
+    if (ups.empty()) return std::nullopt;
+    Vector3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (const Vector3& up : ups) values.push_back(up[axis]);
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), at, values.end());
+      middle[axis] = *at;
+    }
+    const Quaternion cam_from_heading = cam_from_level(middle.normalized());
+    const Quaternion heading(Eigen::AngleAxisd(-radians(options_.heading_deg), Vector3::UnitZ()));
+    return cam_from_heading * heading;
+  }
+
+  void take_extinction(const AirMeter& air) {
+    std::string why;
+    if (const auto extinction = air.extinction_per_km(why)) {
+      put("air.extinction_per_km", {extinction->begin(), extinction->end()});
+      return;
+    }
+    // A stated prior: the "standard clear" meteorological range of 23 km (Koschmieder's 3.912 over
+    // it at 550 nm), falling with wavelength as haze does (Angstrom 1929, exponent 1.3).
+    constexpr double kRangeKm = 23;
+    std::vector<Estimate> prior;
+    for (const double wavelength_nm : {610.0, 550.0, 465.0}) {
+      const double value = 3.912 / kRangeKm * std::pow(550 / wavelength_nm, 1.3);
+      prior.push_back({value, value});
+    }
+    put("air.extinction_per_km", prior);
+    result_.notes["air.extinction_per_km"] =
+        "a prior, not measured (standard clear air, visibility 23 km): " + why;
+  }
+
+  void take_sun(const AirMeter& air, bool level_known) {
+    std::string why = "its direction takes a lens (--lens) and a horizon";
+    std::optional<AirMeter::Sun> sun;
+    if (options_.lens && level_known) sun = air.sun(why);
+    if (sun) {
+      put("light.sun_azimuth_deg", {sun->azimuth_deg});
+      put("light.sun_elevation_deg", {sun->elevation_deg});
+    } else {
+      lack("light.sun_azimuth_deg", why);
+      lack("light.sun_elevation_deg", why);
+    }
+  }
+
+  // The sampled frame in the middle of those with a horizon, sky tinted.
+  void tint_sky(const lens::Lens& lens,
+                const std::vector<std::optional<HorizonFinder::Found>>& found) {
+    std::vector<std::size_t> with;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (found[i]) with.push_back(i);
+    if (with.empty()) return;
+    const std::size_t i = with[with.size() / 2];
+    image::Rgb8 picture = image::rgb8_from_picture(sampled_[i].picture);
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
+        if (!ray || ray->dot(found[i]->up_in_cam) <= 0) continue;
+        std::uint8_t* p = picture.at(x, y);
+        p[0] = static_cast<std::uint8_t>(p[0] * 3 / 4 + 60);
+      }
+    result_.sky_picture = std::move(picture);
+  }
+
+  Options options_;
+  video::Reader reader_;
+  Calibration result_;
+  NoiseMeter noise_;
+  EdgeMeter edges_;
+  motion::Estimator planar_;
+  std::optional<motion::Estimator> turning_;
+  std::vector<std::optional<Homography>> steps_;
+  std::vector<double> quantisers_;
+  std::vector<Sampled> sampled_;
+  std::int64_t total_ = 0;
+  std::int64_t every_ = 2;
+};
+
+}  // namespace
+
+Calibration calibrate(const fs::path& video, const Options& options) {
+  return Session(video, options).run();
+}
+
+std::string lens_words(const lens::Lens& lens) {
+  return fmt::format("{} {:.1f} px", lens.name(), lens.focal_px());
+}
+
+}  // namespace airtruth::calibration

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "image/layer.h"
+#include "image/picture.h"
+#include "lens/lens.h"
+#include "scene/scene.h"
+
+// What a camera and its air do to light, measured from a clip alone: the values of
+// scene::CameraModel, each with how sure it is, or why it cannot be had.
+namespace airtruth::calibration {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::optional<lens::Lens> lens;  // for sun, horizon and extinction
+  const image::Mask* own_aircraft = nullptr;
+  std::optional<double> altitude_m;  // above the ground: with it terrain tells the extinction
+  double heading_deg = 0;            // of the camera in the first frame, for the sun's azimuth
+  std::int64_t first_frame = 0;
+  std::optional<std::int64_t> frame_count;
+  Warn warn;
+  std::stop_token stop;
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+
+// A value and its standard error.
+struct Estimate {
+  double value = 0;
+  double sigma = 0;
+};
+
+// Noise of the luma at one brightness: what the noise curve is fitted to.
+struct NoisePoint {
+  double luma = 0;         // 0..1, coded
+  double sigma_codes = 0;  // standard deviation of luma, code values
+  int blocks = 0;
+};
+
+// The profile of a step across the sharpest edges, from 0 to 1, at places in pixels.
+struct EdgeProfile {
+  std::vector<double> place_px;
+  std::vector<double> height;
+  std::vector<double> fitted;
+  int edges = 0;
+};
+
+struct Horizon {
+  std::int64_t frame = 0;
+  double pitch_deg = 0;   // of the camera: up positive
+  double roll_deg = 0;    // right wing down positive
+  double separation = 0;  // how far apart sky and ground are, in their own standard deviations
+};
+
+struct Calibration {
+  fs::path video;
+  int width = 0;
+  int height = 0;
+  std::int64_t frames = 0;
+  double frame_rate_hz = 0;
+  std::string lens;
+  // By key, as in a scene: "sensor.noise_gain", "air.extinction_per_km" (three), ...
+  std::map<std::string, std::vector<Estimate>> values;
+  std::map<std::string, std::string> missing;  // key: why not
+  std::map<std::string, std::string> notes;    // key: what to know about the value
+  std::vector<NoisePoint> noise;
+  EdgeProfile edge;
+  std::vector<Horizon> horizons;
+  std::optional<image::Rgb8> sky_picture;  // a frame with its sky tinted, for the plots
+};
+
+// Reads the clip once. Error for what is no video; a clip too short or too still gives what it
+// holds.
+Calibration calibrate(const fs::path& video, const Options& options);
+
+// camera.toml: values, and as comments their errors and what is missing.
+std::string toml_from(const Calibration& calibration);
+scene::CameraModel model_of(const Calibration& calibration);
+
+// Noise curve, edge profile, horizon over time, segmentation: one picture to look at.
+image::Rgb8 plot(const Calibration& calibration);
+
+// "fisheye 562.7 x 563.1 px" and the like: tells lenses apart in messages and files.
+std::string lens_words(const lens::Lens& lens);
+
+}  // namespace airtruth::calibration

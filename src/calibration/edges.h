@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calibration/calibration.h"
+#include "geometry/transform.h"
+
+namespace airtruth::calibration {
+
+// The camera's step response from the sharpest straight edges of a clip: profiles across them,
+// laid over one another to a tenth of a pixel (the slanted edge of ISO 12233). What is left of
+// sharpness there is the lens's point spread, pixels and codec together; a bump beside the step is
+// sharpening.
+class EdgeMeter {
+ public:
+  explicit EdgeMeter(const image::Mask* own_aircraft) : own_aircraft_(own_aircraft) {}
+  // flow: how far the picture moved to this frame at the edge, px; empty: not known.
+  void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
+
+  struct Result {
+    Estimate point_spread_px, sharpening, sharpening_px;
+  };
+  std::optional<Result> result(std::string& why);
+  // Exposure as a share of the frame interval, from how much edges that move across themselves are
+  // wider than others.
+  std::optional<Estimate> exposure_share(std::string& why) const;
+  const EdgeProfile& profile() const { return profile_; }
+
+ private:
+  struct Edge {
+    double width_px = 0;  // standard deviation of its derivative
+    double moved_px = 0;  // across itself, since the frame before; NaN: not known
+    double overshoot = 0;
+    std::vector<std::pair<double, double>> samples;  // place px, height 0..1
+  };
+  const image::Mask* own_aircraft_;
+  std::vector<Edge> edges_;
+  EdgeProfile profile_;
+};
+
+}  // namespace airtruth::calibration

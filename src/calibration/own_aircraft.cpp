@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/own_aircraft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "image/colour.h"
+#include "motion/motion.h"
+#include "video/reader.h"
+
+namespace airtruth::calibration {
+namespace {
+
+constexpr int kLongSide = 640;  // pixels that it is worked on
+constexpr std::size_t kMostFrames = 48;
+constexpr std::size_t kFewestFrames = 6;
+constexpr double kLeastMotionPx = 2;  // at the working size, between frames that are compared
+constexpr float kBlack = 10;          // code values
+
+struct Kept {
+  cv::Mat rgb;                                         // 8-bit, small
+  cv::Mat grey;                                        // float, small, a little soft
+  Homography from_reference = Homography::Identity();  // of the full-size picture
+};
+
+// The reader of the pass: every n-th frame, small, with the world's motion.
+std::vector<Kept> keep_frames(video::Reader& reader, const MaskOptions& options, double scale) {
+  const video::StreamInfo& info = reader.info();
+  motion::Estimator estimator(info.width, info.height, {});
+  const std::int64_t every =
+      std::max<std::int64_t>(1, info.frame_count_estimate / static_cast<std::int64_t>(kMostFrames));
+  std::vector<Kept> kept;
+  while (const auto frame = reader.next()) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    const auto motion = estimator.next(frame->picture, frame->time_s, frame->damaged);
+    if (options.progress) options.progress(frame->index + 1, info.frame_count_estimate);
+    if (frame->index % every != 0 || frame->damaged || kept.size() >= 2 * kMostFrames) continue;
+    image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
+    const cv::Mat whole(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+    Kept one;
+    cv::resize(whole, one.rgb, {}, scale, scale, cv::INTER_AREA);
+    cv::cvtColor(one.rgb, one.grey, cv::COLOR_RGB2GRAY);
+    one.grey.convertTo(one.grey, CV_32F);
+    cv::GaussianBlur(one.grey, one.grey, {}, 0.8);
+    one.from_reference = motion.frame_from_reference;
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+// H between two kept frames, at the working size in OpenCV's integer-centred pixels.
+cv::Matx33d small_step(const Kept& to, const Kept& from, double scale) {
+  Homography down = Homography::Identity();
+  down(0, 0) = down(1, 1) = scale;
+  down(0, 2) = down(1, 2) = -0.5;
+  const Homography h = down * to.from_reference * from.from_reference.inverse() * down.inverse();
+  return {h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1), h(2, 2)};
+}
+
+double mean_motion_px(const cv::Matx33d& h, const cv::Size& size) {
+  double sum = 0;
+  int count = 0;
+  for (int y = 1; y < 4; ++y)
+    for (int x = 1; x < 4; ++x) {
+      const cv::Vec3d p(size.width * x / 4.0, size.height * y / 4.0, 1);
+      const cv::Vec3d q = h * p;
+      sum += std::hypot(q[0] / q[2] - p[0], q[1] / q[2] - p[1]);
+      ++count;
+    }
+  return sum / count;
+}
+
+struct Evidence {
+  cv::Mat still;    // mean difference at the same place
+  cv::Mat moving;   // and where the world went
+  cv::Mat texture;  // of the mean picture: what stays sharp there stays still
+  cv::Mat mean;     // rgb
+  cv::Mat brightest;
+  int pairs = 0;
+};
+
+Evidence gather(const std::vector<Kept>& kept, double scale) {
+  Evidence e;
+  const cv::Size size = kept[0].grey.size();
+  e.still = cv::Mat::zeros(size, CV_32F);
+  e.moving = cv::Mat::zeros(size, CV_32F);
+  e.brightest = cv::Mat::zeros(size, CV_32F);
+  cv::Mat sum = cv::Mat::zeros(size, CV_32FC3);
+  cv::Mat count = cv::Mat::zeros(size, CV_32F);
+  for (const Kept& k : kept) {
+    cv::Mat rgb;
+    k.rgb.convertTo(rgb, CV_32FC3);
+    sum += rgb;
+    cv::max(e.brightest, k.grey, e.brightest);
+  }
+  sum.convertTo(e.mean, CV_8UC3, 1.0 / static_cast<double>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (const std::size_t step : {std::size_t{1}, std::size_t{3}, std::size_t{7}}) {
+      if (i + step >= kept.size()) continue;
+      const cv::Matx33d h = small_step(kept[i + step], kept[i], scale);
+      const double moved = mean_motion_px(h, size);
+      if (moved < kLeastMotionPx || moved > 0.25 * size.width) continue;
+      cv::Mat there, inside;
+      cv::warpPerspective(
+          kept[i + step].grey, there, h, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
+      cv::warpPerspective(
+          cv::Mat::ones(size, CV_32F), inside, h, size, cv::INTER_NEAREST | cv::WARP_INVERSE_MAP);
+      cv::Mat still, moving;
+      cv::absdiff(kept[i + step].grey, kept[i].grey, still);
+      cv::absdiff(there, kept[i].grey, moving);
+      cv::min(still, 40, still);
+      cv::min(moving, 40, moving);
+      e.still += still.mul(inside);
+      e.moving += moving.mul(inside);
+      count += inside;
+      ++e.pairs;
+    }
+  cv::max(count, 1e-3, count);
+  e.still /= count;
+  e.moving /= count;
+  return e;
+}
+
+image::Mask mask_of(const cv::Mat& aircraft, int width, int height) {
+  cv::Mat soft;
+  aircraft.convertTo(soft, CV_32F);
+  cv::resize(soft, soft, {width, height}, 0, 0, cv::INTER_LINEAR);
+  image::Mask mask{width, height, {}};
+  mask.free.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      mask.free[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                static_cast<std::size_t>(x)] = soft.at<float>(y, x) >= 0.5F ? 0 : 255;
+  return mask;
+}
+
+// Regions that never reach the picture's border are no part of the aircraft that carries the
+// camera.
+void keep_what_reaches_the_border(cv::Mat& aircraft) {
+  cv::Mat labels, statistics, centres;
+  const int count = cv::connectedComponentsWithStats(aircraft, labels, statistics, centres, 8);
+  const int least = aircraft.cols * aircraft.rows / 2000;
+  for (int i = 1; i < count; ++i) {
+    const int* s = statistics.ptr<int>(i);
+    const bool at_border = s[cv::CC_STAT_LEFT] <= 1 || s[cv::CC_STAT_TOP] <= 1 ||
+                           s[cv::CC_STAT_LEFT] + s[cv::CC_STAT_WIDTH] >= aircraft.cols - 1 ||
+                           s[cv::CC_STAT_TOP] + s[cv::CC_STAT_HEIGHT] >= aircraft.rows - 1;
+    if (!at_border || s[cv::CC_STAT_AREA] < least) aircraft.setTo(0, labels == i);
+  }
+  // And holes in it are part of it.
+  cv::Mat free = aircraft == 0;
+  const int holes = cv::connectedComponentsWithStats(free, labels, statistics, centres, 4);
+  for (int i = 1; i < holes; ++i)
+    if (statistics.at<int>(i, cv::CC_STAT_AREA) < least) aircraft.setTo(1, labels == i);
+}
+
+}  // namespace
+
+image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options) {
+  video::Reader reader(video, {}, options.warn);
+  const int width = reader.info().width;
+  const int height = reader.info().height;
+  const double scale = std::min(1.0, double(kLongSide) / std::max(width, height));
+  const std::vector<Kept> kept = keep_frames(reader, options, scale);
+  if (kept.size() < kFewestFrames)
+    throw Error("is too short to tell the own aircraft from the world; expected " +
+                    std::to_string(kFewestFrames) + " frames or more",
+                {video.string()});
+  const Evidence e = gather(kept, scale);
+  if (e.pairs < 3)
+    throw Error(
+        "is too still to tell the own aircraft from the world: the picture moves less than " +
+            std::to_string(static_cast<int>(kLeastMotionPx / scale)) + " px",
+        {video.string()});
+  // What differs at the same place by less than where the world went, in units of the clip's noise.
+  std::vector<float> values(e.still.begin<float>(), e.still.end<float>());
+  std::nth_element(values.begin(),
+                   values.begin() + static_cast<std::ptrdiff_t>(values.size() / 10),
+                   values.end());
+  const float noise = std::max(0.6F, values[values.size() / 10]);
+  cv::Mat labels(e.still.size(), CV_8UC1, cv::Scalar(cv::GC_PR_BGD));
+  cv::Mat still, moving;
+  cv::GaussianBlur(e.still, still, {}, 1.0);
+  cv::GaussianBlur(e.moving, moving, {}, 1.0);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      const float s = still.at<float>(y, x);
+      const float m = moving.at<float>(y, x);
+      unsigned char& label = labels.at<unsigned char>(y, x);
+      if (e.brightest.at<float>(y, x) < kBlack)
+        label = cv::GC_FGD;
+      else if (m > 1.8F * s + noise)
+        label = cv::GC_FGD;
+      else if (s > 1.3F * m + noise)
+        label = cv::GC_BGD;
+      else if (m > 1.2F * s + 0.3F * noise)
+        label = cv::GC_PR_FGD;
+    }
+  cv::Mat sure = labels == cv::GC_FGD;
+  if (cv::countNonZero(sure) < labels.rows * labels.cols / 1000)
+    return mask_of(cv::Mat::zeros(labels.size(), CV_8UC1), width, height);
+  cv::Mat background_model, foreground_model, bgr;
+  cv::cvtColor(e.mean, bgr, cv::COLOR_RGB2BGR);
+  cv::setRNGSeed(1);
+  cv::grabCut(bgr, labels, {}, background_model, foreground_model, 6, cv::GC_INIT_WITH_MASK);
+  cv::Mat aircraft = (labels & 1);
+  keep_what_reaches_the_border(aircraft);
+  return mask_of(aircraft, width, height);
+}
+
+}  // namespace airtruth::calibration

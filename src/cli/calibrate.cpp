@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "calibration/calibration.h"
+#include "calibration/own_aircraft.h"
+#include "cli/commands.h"
+#include "lens/calibration_file.h"
+#include "sequence/mask_picture.h"
+#include "video/reader.h"
+#include "video/still.h"
+
+namespace airtruth::cli {
+namespace {
+
+void refuse_existing(const std::string& file, bool overwrite) {
+  if (!file.empty() && fs::exists(file) && !overwrite)
+    throw Error("exists already; give --overwrite to replace it", {file});
+}
+
+struct CalibrateArguments {
+  std::string video;
+  std::string out;
+  std::string lens;
+  std::string mask;
+  std::string plot;
+  std::optional<double> altitude_m;
+  double heading_deg = 0;
+  bool overwrite = false;
+};
+
+void calibrate(const CalibrateArguments& arguments, Context& context) {
+  refuse_existing(arguments.out, arguments.overwrite);
+  refuse_existing(arguments.plot, arguments.overwrite);
+  Console& console = context.console();
+  const video::StreamInfo info = video::Reader(arguments.video, {.threads = 1}).info();
+  std::optional<image::Mask> mask;
+  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
+  calibration::Options options;
+  if (!arguments.lens.empty())
+    options.lens = lens::read_calibration(arguments.lens, {info.width, info.height});
+  options.own_aircraft = mask ? &*mask : nullptr;
+  options.altitude_m = arguments.altitude_m;
+  options.heading_deg = arguments.heading_deg;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    console.progress("measuring", done, total);
+  };
+  const calibration::Calibration found = calibration::calibrate(arguments.video, options);
+  console.end_progress();
+  write_file(arguments.out, calibration::toml_from(found));
+  if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
+  for (const auto& [key, why] : found.missing) console.warning(key + " cannot be had: " + why);
+  console.result(fmt::format(
+      "{}: {} values from {} frames", arguments.out, found.values.size(), found.frames));
+}
+
+struct MaskArguments {
+  std::string video;
+  std::string out;
+  bool overwrite = false;
+};
+
+void find_mask(const MaskArguments& arguments, Context& context) {
+  refuse_existing(arguments.out, arguments.overwrite);
+  Console& console = context.console();
+  calibration::MaskOptions options;
+  options.stop = context.stop;
+  options.warn = console.warn();
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    console.progress("looking", done, total);
+  };
+  const image::Mask mask = calibration::find_own_aircraft(arguments.video, options);
+  console.end_progress();
+  video::write_still(arguments.out, sequence::picture_of(mask));
+  const auto own = std::count(mask.free.begin(), mask.free.end(), 0);
+  console.result(fmt::format("{}: the own aircraft covers {:.1f} % of the picture",
+                             arguments.out,
+                             100.0 * double(own) / double(mask.free.size())));
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Context& context) {
+  auto* command =
+      app.add_subcommand("calibrate", "Measure what a clip's camera and air do to light");
+  auto arguments = std::make_shared<CalibrateArguments>();
+  command->add_option("VIDEO", arguments->video, "The video")->required();
+  command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
+  command->add_option(
+      "--lens", arguments->lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
+  command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
+  command
+      ->add_option("--altitude",
+                   arguments->altitude_m,
+                   "Height of the camera above the ground, m: for the extinction")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--heading",
+                   arguments->heading_deg,
+                   "Where the camera looks in the first frame, degrees from north: for the sun")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  command->add_option("--plot", arguments->plot, "Draw what was measured here (.png)");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
+  command->callback([arguments, &context] { calibrate(*arguments, context); });
+}
+
+void add_mask(CLI::App& app, Context& context) {
+  auto* command =
+      app.add_subcommand("mask", "Find the own aircraft: what stays still while the world moves");
+  auto arguments = std::make_shared<MaskArguments>();
+  command->add_option("VIDEO", arguments->video, "The video")->required();
+  command->add_option("-o,--out", arguments->out, "Mask to write: black = own aircraft (.png)")
+      ->required();
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
+  command->callback([arguments, &context] { find_mask(*arguments, context); });
+}
+
+}  // namespace airtruth::cli
