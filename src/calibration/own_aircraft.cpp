@@ -22,13 +22,60 @@ constexpr double kLeastMotionPx = 2;  // at the working size, between frames tha
 constexpr float kBlack = 10;          // code values
 
 struct Kept {
-  cv::Mat rgb;                                         // 8-bit, small
   cv::Mat grey;                                        // float, small, a little soft
   Homography from_reference = Homography::Identity();  // of the full-size picture
 };
 
+// What every kept frame adds up to, at full size.
+struct Sums {
+  cv::Mat rgb, squares;  // float; squares of grey
+  int count = 0;
+
+  void add(const cv::Mat& frame) {
+    cv::Mat value, grey;
+    frame.convertTo(value, CV_32FC3);
+    cv::cvtColor(value, grey, cv::COLOR_RGB2GRAY);
+    if (count++ == 0) {
+      rgb = value;
+      squares = grey.mul(grey);
+    } else {
+      rgb += value;
+      squares += grey.mul(grey);
+    }
+  }
+
+  // Standard deviation of grey over time.
+  cv::Mat spread() const {
+    cv::Mat grey, result;
+    cv::cvtColor(rgb / double(count), grey, cv::COLOR_RGB2GRAY);
+    result = squares / double(count) - grey.mul(grey);
+    cv::max(result, 0, result);
+    cv::sqrt(result, result);
+    return result;
+  }
+
+  // Grey, how much it changes over time, and blue against red, as a picture for GrabCut.
+  cv::Mat features() const {
+    const cv::Mat mean = rgb / double(count);
+    cv::Mat grey, planes[3];
+    cv::cvtColor(mean, grey, cv::COLOR_RGB2GRAY);
+    cv::split(mean, planes);
+    cv::Mat spread = this->spread();
+    constexpr double kSpreadGain = 5;
+    spread *= kSpreadGain;
+    const cv::Mat colour = (planes[2] - planes[0]) * 0.7 + 128;
+    cv::Mat result;
+    cv::merge(std::vector<cv::Mat>{grey, spread, colour}, result);
+    result.convertTo(result, CV_8UC3);
+    return result;
+  }
+};
+
 // The reader of the pass: every n-th frame, small, with the world's motion.
-std::vector<Kept> keep_frames(video::Reader& reader, const MaskOptions& options, double scale) {
+std::vector<Kept> keep_frames(video::Reader& reader,
+                              const MaskOptions& options,
+                              double scale,
+                              Sums& sums) {
   const video::StreamInfo& info = reader.info();
   motion::Estimator estimator(info.width, info.height, {});
   const std::int64_t every =
@@ -41,9 +88,11 @@ std::vector<Kept> keep_frames(video::Reader& reader, const MaskOptions& options,
     if (frame->index % every != 0 || frame->damaged || kept.size() >= 2 * kMostFrames) continue;
     image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
     const cv::Mat whole(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+    sums.add(whole);
     Kept one;
-    cv::resize(whole, one.rgb, {}, scale, scale, cv::INTER_AREA);
-    cv::cvtColor(one.rgb, one.grey, cv::COLOR_RGB2GRAY);
+    cv::Mat small;
+    cv::resize(whole, small, {}, scale, scale, cv::INTER_AREA);
+    cv::cvtColor(small, one.grey, cv::COLOR_RGB2GRAY);
     one.grey.convertTo(one.grey, CV_32F);
     cv::GaussianBlur(one.grey, one.grey, {}, 0.8);
     one.from_reference = motion.frame_from_reference;
@@ -75,10 +124,8 @@ double mean_motion_px(const cv::Matx33d& h, const cv::Size& size) {
 }
 
 struct Evidence {
-  cv::Mat still;    // mean difference at the same place
-  cv::Mat moving;   // and where the world went
-  cv::Mat texture;  // of the mean picture: what stays sharp there stays still
-  cv::Mat mean;     // rgb
+  cv::Mat still;   // mean difference at the same place
+  cv::Mat moving;  // and where the world went
   cv::Mat brightest;
   int pairs = 0;
 };
@@ -89,15 +136,8 @@ Evidence gather(const std::vector<Kept>& kept, double scale) {
   e.still = cv::Mat::zeros(size, CV_32F);
   e.moving = cv::Mat::zeros(size, CV_32F);
   e.brightest = cv::Mat::zeros(size, CV_32F);
-  cv::Mat sum = cv::Mat::zeros(size, CV_32FC3);
   cv::Mat count = cv::Mat::zeros(size, CV_32F);
-  for (const Kept& k : kept) {
-    cv::Mat rgb;
-    k.rgb.convertTo(rgb, CV_32FC3);
-    sum += rgb;
-    cv::max(e.brightest, k.grey, e.brightest);
-  }
-  sum.convertTo(e.mean, CV_8UC3, 1.0 / static_cast<double>(kept.size()));
+  for (const Kept& k : kept) cv::max(e.brightest, k.grey, e.brightest);
   for (std::size_t i = 0; i < kept.size(); ++i)
     for (const std::size_t step : {std::size_t{1}, std::size_t{3}, std::size_t{7}}) {
       if (i + step >= kept.size()) continue;
@@ -125,37 +165,86 @@ Evidence gather(const std::vector<Kept>& kept, double scale) {
   return e;
 }
 
-image::Mask mask_of(const cv::Mat& aircraft, int width, int height) {
-  cv::Mat soft;
-  aircraft.convertTo(soft, CV_32F);
-  cv::resize(soft, soft, {width, height}, 0, 0, cv::INTER_LINEAR);
-  image::Mask mask{width, height, {}};
-  mask.free.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      mask.free[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                static_cast<std::size_t>(x)] = soft.at<float>(y, x) >= 0.5F ? 0 : 255;
+image::Mask mask_of(const cv::Mat& aircraft) {
+  image::Mask mask{aircraft.cols, aircraft.rows, {}};
+  mask.free.resize(aircraft.total());
+  for (int y = 0; y < aircraft.rows; ++y)
+    for (int x = 0; x < aircraft.cols; ++x)
+      mask.free[static_cast<std::size_t>(y) * static_cast<std::size_t>(aircraft.cols) +
+                static_cast<std::size_t>(x)] = aircraft.at<unsigned char>(y, x) != 0 ? 0 : 255;
   return mask;
 }
 
-// Regions that never reach the picture's border are no part of the aircraft that carries the
-// camera.
-void keep_what_reaches_the_border(cv::Mat& aircraft) {
+// A region is kept where it reaches the picture's border (it carries the camera) and enough of it
+// was seen to stay while the world moved.
+void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure) {
   cv::Mat labels, statistics, centres;
   const int count = cv::connectedComponentsWithStats(aircraft, labels, statistics, centres, 8);
   const int least = aircraft.cols * aircraft.rows / 2000;
+  int largest = 0;
+  for (int i = 1; i < count; ++i)
+    largest = std::max(largest, statistics.at<int>(i, cv::CC_STAT_AREA));
+  constexpr int kOfLargest = 20;  // a smaller share of it is a corner of sky
+  constexpr double kSeenShare = 0.25;
   for (int i = 1; i < count; ++i) {
     const int* s = statistics.ptr<int>(i);
     const bool at_border = s[cv::CC_STAT_LEFT] <= 1 || s[cv::CC_STAT_TOP] <= 1 ||
                            s[cv::CC_STAT_LEFT] + s[cv::CC_STAT_WIDTH] >= aircraft.cols - 1 ||
                            s[cv::CC_STAT_TOP] + s[cv::CC_STAT_HEIGHT] >= aircraft.rows - 1;
-    if (!at_border || s[cv::CC_STAT_AREA] < least) aircraft.setTo(0, labels == i);
+    const cv::Mat here = labels == i;
+    const bool seen = cv::countNonZero(here & sure) > kSeenShare * s[cv::CC_STAT_AREA];
+    if (!at_border || s[cv::CC_STAT_AREA] < std::max(least, largest / kOfLargest) || !seen)
+      aircraft.setTo(0, here);
   }
-  // And holes in it are part of it.
-  cv::Mat free = aircraft == 0;
+  // And small holes in it are part of it.
+  const cv::Mat free = aircraft == 0;
   const int holes = cv::connectedComponentsWithStats(free, labels, statistics, centres, 4);
   for (int i = 1; i < holes; ++i)
     if (statistics.at<int>(i, cv::CC_STAT_AREA) < least) aircraft.setTo(1, labels == i);
+}
+
+// More change over time than this, and it is not the aircraft: some times what most of what looks
+// like it shows.
+float steady_limit(const cv::Mat& spread, const cv::Mat& candidates) {
+  std::vector<float> values;
+  for (int y = 0; y < spread.rows; ++y)
+    for (int x = 0; x < spread.cols; ++x)
+      if (candidates.at<unsigned char>(y, x) != 0) values.push_back(spread.at<float>(y, x));
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return std::max(5.0F, 3 * *middle);
+}
+
+cv::Mat cut(const cv::Mat& features, cv::Mat labels) {
+  cv::Mat background_model, foreground_model;
+  cv::setRNGSeed(1);
+  cv::grabCut(features, labels, {}, background_model, foreground_model, 5, cv::GC_INIT_WITH_MASK);
+  return labels & 1;
+}
+
+// The border to the pixel: what was found at the working size decides all but a band along it.
+cv::Mat refined(const cv::Mat& coarse,
+                const cv::Mat& features,
+                const cv::Mat& spread,
+                float steady) {
+  cv::Mat large;
+  cv::resize(coarse, large, features.size(), 0, 0, cv::INTER_NEAREST);
+  const int reach = 2 + 3 * features.cols / coarse.cols;
+  const cv::Mat kernel =
+      cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1});
+  cv::Mat inner, outer;
+  cv::erode(large, inner, kernel);
+  cv::dilate(large, outer, kernel);
+  cv::Mat labels(large.size(), CV_8UC1, cv::Scalar(cv::GC_BGD));
+  labels.setTo(cv::GC_PR_BGD, outer);
+  labels.setTo(cv::GC_PR_FGD, large);
+  labels.setTo(cv::GC_BGD, spread > 2 * steady);
+  labels.setTo(cv::GC_FGD, inner);
+  cv::Mat found = cv::countNonZero(inner) > 0 ? cut(features, labels) : large;
+  // The border's own pixels are part aircraft: nothing clean is seen through them.
+  cv::dilate(found, found, cv::getStructuringElement(cv::MORPH_CROSS, {3, 3}));
+  return found;
 }
 
 }  // namespace
@@ -165,7 +254,8 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
   const int width = reader.info().width;
   const int height = reader.info().height;
   const double scale = std::min(1.0, double(kLongSide) / std::max(width, height));
-  const std::vector<Kept> kept = keep_frames(reader, options, scale);
+  Sums sums;
+  const std::vector<Kept> kept = keep_frames(reader, options, scale, sums);
   if (kept.size() < kFewestFrames)
     throw Error("is too short to tell the own aircraft from the world; expected " +
                     std::to_string(kFewestFrames) + " frames or more",
@@ -200,16 +290,23 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
       else if (m > 1.2F * s + 0.3F * noise)
         label = cv::GC_PR_FGD;
     }
-  cv::Mat sure = labels == cv::GC_FGD;
+  // Where the world's place was hidden by the aircraft in the other frame, the world fits badly
+  // too; but the world changes over the whole clip, and the aircraft does not.
+  cv::Mat spread;
+  cv::resize(sums.spread(), spread, labels.size(), 0, 0, cv::INTER_AREA);
+  const float steady = steady_limit(spread, labels == cv::GC_FGD);
+  labels.setTo(cv::GC_PR_BGD, (labels == cv::GC_FGD) & (spread > steady));
+  labels.setTo(cv::GC_PR_BGD, (labels == cv::GC_PR_FGD) & (spread > steady));
+  labels.setTo(cv::GC_BGD, spread > 2 * steady);
+  const cv::Mat sure = labels == cv::GC_FGD;
   if (cv::countNonZero(sure) < labels.rows * labels.cols / 1000)
-    return mask_of(cv::Mat::zeros(labels.size(), CV_8UC1), width, height);
-  cv::Mat background_model, foreground_model, bgr;
-  cv::cvtColor(e.mean, bgr, cv::COLOR_RGB2BGR);
-  cv::setRNGSeed(1);
-  cv::grabCut(bgr, labels, {}, background_model, foreground_model, 6, cv::GC_INIT_WITH_MASK);
-  cv::Mat aircraft = (labels & 1);
-  keep_what_reaches_the_border(aircraft);
-  return mask_of(aircraft, width, height);
+    return mask_of(cv::Mat::zeros(height, width, CV_8UC1));
+  const cv::Mat features = sums.features();
+  cv::Mat small;
+  cv::resize(features, small, labels.size(), 0, 0, cv::INTER_AREA);
+  cv::Mat aircraft = cut(small, labels);
+  keep_what_was_seen(aircraft, sure);
+  return mask_of(refined(aircraft, features, sums.spread(), steady));
 }
 
 }  // namespace airtruth::calibration

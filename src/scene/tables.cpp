@@ -211,6 +211,7 @@ Light light_in(const TableReader& parent) {
   light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);
   light.sun_elevation_deg =
       table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
+  light.sun_is_stated = table.has("sun_azimuth_deg") || table.has("sun_elevation_deg");
   light.exposure = table.number("exposure", kAboveZero);
   light.sky_colour = colour_from(table, "sky_colour");
   light.ground_colour = colour_from(table, "ground_colour");

@@ -1,21 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/resolve.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "base/error.h"
+#include "calibration/calibration.h"
+#include "sequence/world.h"
 
 namespace airtruth::sequence {
+namespace {
 
-scene::Scene resolved(const scene::Scene& scene, const video::StreamInfo& info) {
+// visit(key, member of scene, member of file, member of measured) for every key that a clip or a
+// file can tell.
+template <typename Visit>
+void each_key(scene::CameraModel& s,
+              const scene::CameraModel& f,
+              const scene::CameraModel& m,
+              const Visit& visit) {
+  visit("shutter.exposure_s", s.exposure_s, f.exposure_s, m.exposure_s);
+  visit("shutter.readout_s", s.readout_s, f.readout_s, m.readout_s);
+  visit("air.extinction_per_km", s.extinction_per_km, f.extinction_per_km, m.extinction_per_km);
+  visit("air.airlight", s.airlight, f.airlight, m.airlight);
+  visit("optics.point_spread_px", s.point_spread_px, f.point_spread_px, m.point_spread_px);
+  visit("optics.sharpening", s.sharpening, f.sharpening, m.sharpening);
+  visit("optics.sharpening_px", s.sharpening_px, f.sharpening_px, m.sharpening_px);
+  visit("sensor.noise_gain", s.noise_gain, f.noise_gain, m.noise_gain);
+  visit("sensor.noise_floor", s.noise_floor, f.noise_floor, m.noise_floor);
+  visit("sensor.noise_correlation_px",
+        s.noise_correlation_px,
+        f.noise_correlation_px,
+        m.noise_correlation_px);
+  visit("sensor.codec_step", s.codec_step, f.codec_step, m.codec_step);
+}
+
+scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size) {
+  const fs::path& path = *scene.realism.file;
+  const scene::CameraFile file = scene::read_camera_file(path);
+  if (file.width != size.width || file.height != size.height)
+    throw Error(fmt::format("was measured on a clip of {} x {} px; the background is {} x {}",
+                            file.width,
+                            file.height,
+                            size.width,
+                            size.height),
+                {path.string()});
+  const std::string lens = calibration::lens_words(lens_of(scene.lens, size));
+  if (!file.lens.empty() && file.lens != lens)
+    throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
+                {path.string()});
+  return file;
+}
+
+calibration::Calibration measured_on(const scene::Scene& scene,
+                                     const lens::ImageSize& size,
+                                     const image::Mask* mask,
+                                     const Options& options) {
+  calibration::Options how;
+  how.lens = lens_of(scene.lens, size);
+  how.own_aircraft = mask;
+  if (!scene.camera.path_file && scene.camera.position_ned_m.z() < 0)
+    how.altitude_m = -scene.camera.position_ned_m.z();
+  how.heading_deg = scene.camera.attitude_yaw_pitch_roll_deg.yaw_deg;
+  how.first_frame = scene.background.first_frame;
+  how.frame_count = scene.background.frame_count;
+  how.stop = options.stop;
+  how.warn = options.warn;
+  return calibration::calibrate(scene.background.video, how);
+}
+
+void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
+  scene::CameraModel& model = scene.camera_model;
+  if (!model.angle_deg) return;
+  const double rate_hz = info.frame_rate.value();
+  if (!(rate_hz > 0))
+    throw Error("has no frame rate, which shutter.angle_deg is a share of; expected exposure_s",
+                {scene.background.video.string()});
+  model.exposure_s = *model.angle_deg / 360 / rate_hz;
+  model.angle_deg.reset();
+}
+
+}  // namespace
+
+scene::Scene resolved(const scene::Scene& scene,
+                      const video::StreamInfo& info,
+                      const image::Mask* mask,
+                      const Options& options) {
   scene::Scene result = scene;
   scene::CameraModel& model = result.camera_model;
-  if (model.angle_deg) {
-    const double rate_hz = info.frame_rate.value();
-    if (!(rate_hz > 0))
-      throw Error("has no frame rate, which shutter.angle_deg is a share of; expected exposure_s",
-                  {scene.background.video.string()});
-    model.exposure_s = *model.angle_deg / 360 / rate_hz;
-    model.angle_deg.reset();
+  take_angle(result, info);
+  const lens::ImageSize size{info.width, info.height};
+  scene::CameraFile file;
+  if (scene.realism.file) file = file_of(scene, size);
+  const auto wanted = [&](const std::string& key) {
+    const auto& named = model.automatic;
+    return scene.realism.automatic || std::find(named.begin(), named.end(), key) != named.end();
+  };
+  bool measure = false;
+  each_key(
+      model, file.model, {}, [&](const char* key, auto& stated, const auto& filed, const auto&) {
+        if (!stated) stated = filed;
+        measure = measure || (!stated && wanted(key));
+      });
+  if (!model.readout) model.readout = file.model.readout;
+  std::optional<double> azimuth = file.sun_azimuth_deg;
+  std::optional<double> elevation = file.sun_elevation_deg;
+  if (measure) {
+    const calibration::Calibration found = measured_on(scene, size, mask, options);
+    const scene::CameraModel from_clip = calibration::model_of(found);
+    each_key(
+        model, {}, from_clip, [&](const char* key, auto& stated, const auto&, const auto& seen) {
+          if (stated || !wanted(key)) return;
+          stated = seen;
+          if (stated) return;
+          const std::string what =
+              fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
+          if (!scene.realism.fallback)
+            throw Error(
+                what + "; state it, or set fallback = true in [realism] to leave it out",
+                scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
+          warn(options.warn, what + "; it is left out");
+        });
+    if (!model.readout) model.readout = from_clip.readout;
+    if (!azimuth && found.values.contains("light.sun_azimuth_deg")) {
+      azimuth = found.values.at("light.sun_azimuth_deg")[0].value;
+      elevation = found.values.at("light.sun_elevation_deg")[0].value;
+    }
   }
+  if (!scene.light.sun_is_stated && azimuth && elevation) {
+    result.light.sun_azimuth_deg = *azimuth;
+    result.light.sun_elevation_deg = *elevation;
+  }
+  model.automatic.clear();
+  result.realism = {};
   return result;
 }
 

@@ -54,10 +54,11 @@ class Run {
  public:
   Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
       : options_(options),
+        camera_file_(scene.realism.file),
         reader_(open(scene, options)),
-        scene_(resolved(scene, reader_.info())),
         size_{reader_.info().width, reader_.info().height},
         mask_(read_mask(scene, size_)),
+        scene_(resolved(scene, reader_.info(), mask_ptr(), options)),
         world_(load_world(scene_, size_, options.warn)),
         video_sha256_(sha256_of_video(scene.background.video)),
         motion_(scene_,
@@ -66,8 +67,8 @@ class Run {
                 video_sha256_,
                 mask_ptr(),
                 cache_of(options)),
-        ambient_(scene.light, mask_ptr()),
-        painter_(make_painter(scene, world_, mask_ptr(), options)),
+        ambient_(scene_.light, mask_ptr()),
+        painter_(make_painter(scene_, world_, mask_ptr(), options)),
         staged_(folder, options.overwrite) {
     scene_.motion.model = motion_model(scene_, world_.lens);
     outputs_.emplace(staged_.path(), scene_, world_.lens, stream_info(), options_.threads);
@@ -248,6 +249,7 @@ class Run {
       result.push_back({file.string(), sha256_of_file(file)});
     };
     if (scene_.background.mask) add(*scene_.background.mask);
+    if (camera_file_) add(*camera_file_);
     if (scene_.lens.file) add(*scene_.lens.file);
     if (scene_.camera.path_file) add(*scene_.camera.path_file);
     for (const scene::Intruder& intruder : scene_.intruders)
@@ -262,10 +264,11 @@ class Run {
   }
 
   Options options_;
+  std::optional<fs::path> camera_file_;
   video::Reader reader_;
-  scene::Scene scene_;
   lens::ImageSize size_;
   std::optional<image::Mask> mask_;
+  scene::Scene scene_;
   World world_;
   std::string video_sha256_;
   MotionSource motion_;
