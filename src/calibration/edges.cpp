@@ -20,7 +20,7 @@ constexpr double kStraight = 0.35;  // px that the edge's places along it may st
 constexpr int kMostPerFrame = 60;
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kFewestEdges = 12;
-constexpr double kSharpestShare = 0.12;
+constexpr double kSharpestShare = 0.04;
 constexpr double kBin = 0.2;  // px
 
 struct Found {

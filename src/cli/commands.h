@@ -32,6 +32,8 @@ void add_dataset(CLI::App& app, Context& context);
 void add_dataset_exchange(CLI::App& group, Context& context);  // `dataset export` and `import`
 void add_track(CLI::App& app, Context& context);
 void add_evaluate(CLI::App& app, Context& context);
+void add_compare(CLI::App& app, Context& context);
+void add_judge(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli

@@ -106,6 +106,8 @@ int main(int argc, char** argv) {
   cli::add_dataset(app, context);
   cli::add_track(app, context);
   cli::add_evaluate(app, context);
+  cli::add_compare(app, context);
+  cli::add_judge(app, context);
   cli::add_evision(app, context);
   const int code = run(app, argc, argv, options, console);
   return code != 0 ? code : context.exit_code;

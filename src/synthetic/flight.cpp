@@ -86,7 +86,7 @@ struct Flight::Impl {
                               o.own_aircraft)),
         view(lens),
         panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
-        sensor(o.width, o.height, o.noise, stream(o, "sensor")),
+        sensor(o.width, o.height, o.noise, o.ideal_sensor, stream(o, "sensor")),
         clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
         ground(make_world()) {}
 

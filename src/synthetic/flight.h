@@ -39,6 +39,7 @@ struct FlightOptions {
   double roll_deg = 3;       // amplitude of the slow rolling of the flight
   bool own_aircraft = true;  // nose and wing tips in view
   double noise = 1.0;        // sensor noise: 1 = a cheap camera; 0 none
+  bool ideal_sensor = false;  // no lens blur, no sharpening, no noise (for the calibration's tests)
   double clutter =
       0;  // share of the image's texture that moves on its own (for the motion tests), 0..1
   bool translate = true;  // false: the camera only rotates, so that a homography is exact

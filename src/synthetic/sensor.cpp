@@ -34,10 +34,11 @@ std::uint8_t code(float value) {
 
 }  // namespace
 
-Sensor::Sensor(int width, int height, double noise, std::uint32_t seed)
+Sensor::Sensor(int width, int height, double noise, bool ideal, std::uint32_t seed)
     : width_(width),
       height_(height),
-      noise_(static_cast<float>(noise)),
+      noise_(ideal ? 0 : static_cast<float>(noise)),
+      ideal_(ideal),
       seed_(seed),
       curve_(tone_curve()),
       grain_(std::size_t{kGrain} * kGrain) {
@@ -115,6 +116,10 @@ void Sensor::sharpen(const Exposure& exposure, int y, image::Picture& picture) c
   const std::uint16_t* far_above = row(y - 2);
   const std::uint16_t* far_below = row(y + 2);
   std::uint8_t* out = picture.planes[0].row(y);
+  if (ideal_) {
+    for (int x = 0; x < width_; ++x) out[x] = code(static_cast<float>(here[x]) / 64);
+    return;
+  }
   for (int x = 0; x < width_; ++x) {
     const int l = std::max(x - 1, 0);
     const int r = std::min(x + 1, width_ - 1);

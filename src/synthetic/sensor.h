@@ -13,7 +13,8 @@ namespace airtruth::synthetic {
 // sharpening, 4:2:0.
 class Sensor {
  public:
-  Sensor(int width, int height, double noise, std::uint32_t seed);
+  // ideal: no noise, no blur, no sharpening; light is coded as it falls.
+  Sensor(int width, int height, double noise, bool ideal, std::uint32_t seed);
 
   // Luma before sharpening, in 1/64 code values.
   struct Exposure {
@@ -40,6 +41,7 @@ class Sensor {
   int width_;
   int height_;
   float noise_;
+  bool ideal_;
   std::uint32_t seed_;
   std::vector<float> curve_;
   std::vector<Light> grain_;

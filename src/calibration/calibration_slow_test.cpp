@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "base/files.h"
+#include "calibration/calibration.h"
+#include "calibration/own_aircraft.h"
+#include "composite/sensor.h"
+#include "composite/spread.h"
+#include "image/colour.h"
+#include "synthetic/flight.h"
+#include "video/writer.h"
+
+// What is put into a virtual flight is measured out of it again.
+namespace airtruth::calibration {
+namespace {
+
+struct Injected {
+  double point_spread_px = 0;
+  composite::Sensor sensor;
+};
+
+// Blur in linear light, then what a sensor does, over the whole luma plane.
+void inject(image::Picture& picture, const Injected& what, std::int64_t frame) {
+  const int width = picture.width;
+  const int height = picture.height;
+  const image::ColourCode code(picture.colour);
+  const float dark = code.ycc_from_rgb({0, 0, 0}).y;
+  const float unit = code.ycc_from_rgb({1, 1, 1}).y - dark;
+  std::vector<float> luma;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) luma.push_back((picture.planes[0].row(y)[x] - dark) / unit);
+  if (what.point_spread_px > 0) {
+    for (float& v : luma) v = image::linear_from_srgb(v);
+    composite::blur(luma, width, height, composite::gaussian(what.point_spread_px));
+    for (float& v : luma) v = image::srgb_from_linear(v);
+  }
+  for (float& v : luma) v *= unit;
+  composite::sharpen(luma, width, height, what.sensor);
+  const auto noise =
+      composite::noise_field({0, 0, width, height}, 7, frame, what.sensor.noise_correlation_px);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x);
+      const float sigma =
+          what.sensor.has_noise() ? composite::noise_sigma(luma[i] / unit, unit, what.sensor) : 0;
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
+          std::clamp(luma[i] + dark + sigma * noise[i] + 0.5F, 0.0F, 255.0F));
+    }
+}
+
+class Clip {
+ public:
+  Clip()
+      : path_(fs::temp_directory_path() / ("calibration_" + std::to_string(::getpid()) + ".mkv")) {}
+  ~Clip() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+  void write(const synthetic::Flight& flight,
+             const std::function<image::Picture(int)>& frame,
+             int count,
+             video::Format format = video::Format::kMkv,
+             int quality = 18) {
+    const synthetic::FlightOptions& o = flight.options();
+    video::StreamInfo info;
+    info.width = o.width;
+    info.height = o.height;
+    info.frame_rate = {static_cast<int>(std::lround(1000 * o.frame_rate_hz)), 1000};
+    info.time_base = {1, 90000};
+    video::WriterOptions options;
+    options.format = format;
+    options.quality = quality;
+    fs::remove(path_);
+    path_.replace_extension(video::extension(format));
+    video::Writer writer(path_, info, options);
+    for (int k = 0; k < count; ++k) {
+      video::Frame one;
+      one.index = k;
+      one.time_s = k / o.frame_rate_hz;
+      one.pts = std::lround(one.time_s * 90000);
+      one.picture = frame(k);
+      writer.write(one);
+    }
+    writer.finish();
+  }
+
+ private:
+  fs::path path_;
+};
+
+synthetic::FlightOptions ideal(std::uint64_t seed) {
+  synthetic::FlightOptions o;
+  o.seed = seed;
+  o.width = 960;
+  o.height = 720;
+  o.frame_count = 60;
+  o.vertical_fov_deg = 60;
+  o.ideal_sensor = true;
+  return o;
+}
+
+void expect_within(const Calibration& c, const std::string& key, double truth, double share) {
+  ASSERT_TRUE(c.values.contains(key))
+      << key << ": " << (c.missing.contains(key) ? c.missing.at(key) : "");
+  const double value = c.values.at(key)[0].value;
+  std::printf("%s: %.4g, put in %.4g\n", key.c_str(), value, truth);
+  EXPECT_NEAR(value, truth, share * truth) << key;
+}
+
+TEST(Calibrate, MeasuresTheLensAndSensorThatWereInjected) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    const synthetic::Flight flight(ideal(seed));
+    Injected what;
+    what.point_spread_px = seed == 1 ? 0.9 : 1.3;
+    what.sensor.noise_gain = 4e-4;
+    what.sensor.noise_floor = 3e-5;
+    what.sensor.noise_correlation_px = seed == 1 ? 0.5 : 0.7;
+    Clip clip;
+    clip.write(
+        flight,
+        [&](int k) {
+          image::Picture picture = flight.frame(k);
+          inject(picture, what, k);
+          return picture;
+        },
+        flight.options().frame_count);
+    const Calibration c = calibrate(clip.path(), {});
+    expect_within(c, "optics.point_spread_px", what.point_spread_px, 0.1);
+    expect_within(c, "sensor.noise_correlation_px", what.sensor.noise_correlation_px, 0.1);
+    // The curve as a whole: gain and floor trade against one another where little is dark.
+    for (const NoisePoint& p : c.noise) {
+      composite::Sensor fitted = what.sensor;
+      fitted.noise_gain = c.values.at("sensor.noise_gain")[0].value;
+      fitted.noise_floor = c.values.at("sensor.noise_floor")[0].value;
+      const double truth =
+          double(composite::noise_sigma(static_cast<float>(p.luma), 219, what.sensor));
+      const double found = double(composite::noise_sigma(static_cast<float>(p.luma), 219, fitted));
+      std::printf("noise at %.2f: point %.3f, fitted %.3f, put in %.3f\n",
+                  p.luma,
+                  p.sigma_codes,
+                  found,
+                  truth);
+      EXPECT_NEAR(found, truth, 0.1 * truth) << "at luma " << p.luma;
+    }
+  }
+}
+
+TEST(Calibrate, MeasuresSharpening) {
+  const synthetic::Flight flight(ideal(3));
+  Injected what;
+  what.point_spread_px = 0.8;
+  what.sensor.sharpening = 0.8;
+  what.sensor.sharpening_px = 1.2;
+  Clip clip;
+  clip.write(
+      flight,
+      [&](int k) {
+        image::Picture picture = flight.frame(k);
+        inject(picture, what, k);
+        return picture;
+      },
+      flight.options().frame_count);
+  const Calibration c = calibrate(clip.path(), {});
+  expect_within(c, "optics.point_spread_px", 0.8, 0.1);
+  expect_within(c, "optics.sharpening", 0.8, 0.1);
+  expect_within(c, "optics.sharpening_px", 1.2, 0.1);
+}
+
+TEST(Calibrate, ReadsTheCodecsStep) {
+  synthetic::FlightOptions o = ideal(4);
+  o.width = 320, o.height = 240, o.frame_count = 24;
+  const synthetic::Flight flight(o);
+  Clip clip;
+  clip.write(
+      flight, [&](int k) { return flight.frame(k); }, 24, video::Format::kMp4, 30);
+  const Calibration c = calibrate(clip.path(), {});
+  ASSERT_TRUE(c.values.contains("sensor.codec_step"));
+  // CRF 30 is about a quantiser of 30 +- 5.
+  EXPECT_GT(c.values.at("sensor.codec_step")[0].value, 0.625 * std::pow(2, 25 / 6.0));
+  EXPECT_LT(c.values.at("sensor.codec_step")[0].value, 0.625 * std::pow(2, 35 / 6.0));
+}
+
+TEST(Calibrate, MeasuresExposureFromBlur) {
+  synthetic::FlightOptions o = ideal(5);
+  constexpr int kPerFrame = 16;
+  constexpr int kOpen = 8;  // of 16: half of the interval
+  o.width = 640, o.height = 480;
+  o.shake_deg = 0.6;
+  o.frame_rate_hz = 30 * kPerFrame;
+  o.frame_count = 50 * kPerFrame;
+  const synthetic::Flight flight(o);
+  synthetic::FlightOptions slow = o;
+  slow.frame_rate_hz = 30;
+  slow.frame_count = 50;
+  const synthetic::Flight stated(slow);
+  Clip clip;
+  clip.write(
+      stated,
+      [&](int k) {
+        std::vector<float> sum(
+            static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height), 0.0F);
+        image::Picture picture;
+        for (int i = 0; i < kOpen; ++i) {
+          picture = flight.frame(k * kPerFrame + i);
+          for (int y = 0; y < o.height; ++y)
+            for (int x = 0; x < o.width; ++x)
+              sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
+                  static_cast<std::size_t>(x)] +=
+                  image::linear_from_srgb((picture.planes[0].row(y)[x] - 16) / 219.0F);
+        }
+        for (int y = 0; y < o.height; ++y)
+          for (int x = 0; x < o.width; ++x)
+            picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
+                16.5F +
+                219 * image::srgb_from_linear(
+                          sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
+                              static_cast<std::size_t>(x)] /
+                          kOpen));
+        return picture;
+      },
+      50);
+  const Calibration c = calibrate(clip.path(), {});
+  expect_within(c, "shutter.exposure_s", 0.5 / 30, 0.1);
+}
+
+TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
+  synthetic::FlightOptions o = ideal(6);
+  constexpr int kBands = 24;
+  o.width = 480, o.height = 360;
+  o.own_aircraft = false;
+  o.frame_rate_hz = 30 * kBands;
+  o.frame_count = 80 * kBands;
+  o.shake_deg = 0.5;
+  const synthetic::Flight flight(o);
+  synthetic::FlightOptions slow = o;
+  slow.frame_rate_hz = 30;
+  slow.frame_count = 80;
+  const synthetic::Flight stated(slow);
+  Clip clip;
+  constexpr int kUsed = 18;  // of 24: the readout takes three quarters of the interval
+  clip.write(
+      stated,
+      [&](int k) {
+        image::Picture picture = flight.frame(k * kBands);
+        for (int band = 1; band < kUsed; ++band) {
+          const image::Picture then = flight.frame(k * kBands + band);
+          for (int p = 0; p < 3; ++p) {
+            image::Plane& to = picture.planes[static_cast<std::size_t>(p)];
+            for (int y = to.height * band / kUsed; y < to.height * (band + 1) / kUsed; ++y)
+              std::copy_n(then.planes[static_cast<std::size_t>(p)].row(y), to.width, to.row(y));
+          }
+        }
+        return picture;
+      },
+      80);
+  const Calibration c = calibrate(clip.path(), {});
+  expect_within(c, "shutter.readout_s", 0.75 / 30, 0.1);
+  EXPECT_EQ(c.notes.at("shutter.readout"), "down");
+}
+
+TEST(Calibrate, FindsSunAirlightAndExtinction) {
+  for (const auto& [azimuth, elevation] : {std::pair(20.0, 25.0), std::pair(-35.0, 40.0)}) {
+    synthetic::FlightOptions o = ideal(8);
+    o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
+    o.sun_azimuth_deg = azimuth;
+    o.sun_elevation_deg = elevation;
+    o.cloud_cover = 0.3;
+    o.own_aircraft = false;
+    o.frame_count = 40;
+    const synthetic::Flight flight(o);
+    Clip clip;
+    clip.write(
+        flight, [&](int k) { return flight.frame(k); }, o.frame_count);
+    Options options;
+    options.lens = o.lens;
+    options.altitude_m = o.altitude_m;
+    const Calibration c = calibrate(clip.path(), options);
+    std::printf("%s\n", toml_from(c).c_str());
+    ASSERT_TRUE(c.values.contains("light.sun_azimuth_deg"))
+        << c.missing.at("light.sun_azimuth_deg");
+    const auto direction = [](double a, double e) {
+      return Vector3(std::cos(radians(e)) * std::cos(radians(a)),
+                     std::cos(radians(e)) * std::sin(radians(a)),
+                     std::sin(radians(e)));
+    };
+    const double off = degrees(std::acos(direction(c.values.at("light.sun_azimuth_deg")[0].value,
+                                                   c.values.at("light.sun_elevation_deg")[0].value)
+                                             .dot(direction(azimuth, elevation))));
+    std::printf("sun off by %.1f degrees\n", off);
+    EXPECT_LT(off, 10);
+  }
+}
+
+double overlap(const image::Mask& a, const image::Mask& b) {
+  double both = 0, either = 0;
+  for (std::size_t i = 0; i < a.free.size(); ++i) {
+    const bool x = a.free[i] < 128, y = b.free[i] < 128;
+    both += x && y ? 1 : 0;
+    either += x || y ? 1 : 0;
+  }
+  return both / either;
+}
+
+TEST(OwnAircraft, IsFoundToTheBorder) {
+  for (const std::uint64_t seed : {1u, 4u}) {
+    synthetic::FlightOptions o;
+    o.seed = seed;
+    o.frame_count = 240;
+    o.width = 960, o.height = 720;
+    const synthetic::Flight flight(o);
+    Clip clip;
+    clip.write(
+        flight, [&](int k) { return flight.frame(k); }, o.frame_count, video::Format::kMp4);
+    const double iou = overlap(find_own_aircraft(clip.path(), {}), flight.own_aircraft());
+    std::printf("own aircraft, flight %d: IoU %.3f\n", static_cast<int>(seed), iou);
+    EXPECT_GE(iou, 0.95) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::calibration

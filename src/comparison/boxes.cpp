@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "comparison/comparison.h"
+
+namespace airtruth::comparison {
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) {
+    while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.pop_back();
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+double number(const std::string& cell, const Where& where) {
+  double value = 0;
+  const auto [rest, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (failed != std::errc() || rest != cell.data() + cell.size() || !std::isfinite(value))
+    throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
+  return value;
+}
+
+}  // namespace
+
+RealBoxes read_boxes(const fs::path& file, double origin_px) {
+  std::istringstream lines(read_file(file));
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> header = cells_of(line);
+  const std::vector<std::string> expected = {"frame", "x", "y", "width", "height"};
+  const std::vector<std::string> brief = {"frame", "x", "y", "w", "h"};
+  if (header != expected && header != brief)
+    throw Error("does not begin with frame,x,y,width,height", {file.string(), 1});
+  RealBoxes boxes;
+  for (int row = 2; std::getline(lines, line); ++row) {
+    const Where where{file.string(), row};
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != 5)
+      throw Error(fmt::format("has {} cells; expected 5", cells.size()), where);
+    const double frame = number(cells[0], where);
+    if (!(frame >= 0 && frame < 1e9) || frame != std::floor(frame))
+      throw Error("'" + cells[0] + "' is no frame; expected a whole number from 0", where);
+    const Box box{number(cells[1], where) - origin_px,
+                  number(cells[2], where) - origin_px,
+                  number(cells[3], where),
+                  number(cells[4], where)};
+    if (!(box.width > 0 && box.height > 0))
+      throw Error("has a box without a size; expected width and height above 0", where);
+    if (!boxes.emplace(static_cast<std::int64_t>(frame), box).second)
+      throw Error("is the second box of frame " + cells[0], where);
+  }
+  if (boxes.size() < 2) throw Error("holds fewer than two boxes", {file.string()});
+  return boxes;
+}
+
+}  // namespace airtruth::comparison

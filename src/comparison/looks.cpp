@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison/looks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "geometry/transform.h"
+#include "image/colour.h"
+
+namespace airtruth::comparison {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<double> values_where(const cv::Mat& values, const cv::Mat& mask) {
+  std::vector<double> result;
+  for (int y = 0; y < values.rows; ++y)
+    for (int x = 0; x < values.cols; ++x)
+      if (mask.at<unsigned char>(y, x) != 0) result.push_back(double(values.at<float>(y, x)));
+  return result;
+}
+
+// What differs from the plane through the patch's rim by more than its noise; the part nearest the
+// middle.
+cv::Mat silhouette_of(const cv::Mat& grey) {
+  const int rim = std::max(2, grey.cols / 8);
+  std::vector<double> around;
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (x < rim || y < rim || x >= grey.cols - rim || y >= grey.rows - rim)
+        around.push_back(double(grey.at<float>(y, x)));
+  const double level = median(around);
+  std::vector<double> off;
+  for (const double v : around) off.push_back(std::abs(v - level));
+  const double limit = std::max(5.0, 3.5 * 1.4826 * median(off));
+  cv::Mat mask(grey.size(), CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (std::abs(double(grey.at<float>(y, x)) - level) > limit)
+        mask.at<unsigned char>(y, x) = 255;
+  cv::Mat labels, statistics, centres;
+  const int count = cv::connectedComponentsWithStats(mask, labels, statistics, centres, 8);
+  int best = 0;
+  double least = 1e300;
+  const double reach = 0.35 * grey.cols;
+  for (int i = 1; i < count; ++i) {
+    const double away = std::hypot(centres.at<double>(i, 0) - grey.cols / 2.0,
+                                   centres.at<double>(i, 1) - grey.rows / 2.0);
+    const int area = statistics.at<int>(i, cv::CC_STAT_AREA);
+    if (area < 4 || away > reach) continue;
+    const double cost = away - 0.02 * area;
+    if (cost < least) least = cost, best = i;
+  }
+  cv::Mat silhouette = labels == best;
+  if (best == 0) silhouette.setTo(0);
+  return silhouette;
+}
+
+float at(const cv::Mat& grey, double x, double y) {
+  cv::Mat sample;
+  cv::getRectSubPix(grey, {1, 1}, {static_cast<float>(x), static_cast<float>(y)}, sample);
+  return sample.at<float>(0, 0);
+}
+
+// From 10 to 90 % of the step along the outline's own direction, where the step is clear.
+double edge_width(const cv::Mat& grey, const cv::Mat& silhouette) {
+  cv::Mat soft, gx, gy, rim;
+  cv::GaussianBlur(grey, soft, {}, 0.7);
+  cv::Sobel(soft, gx, CV_32F, 1, 0);
+  cv::Sobel(soft, gy, CV_32F, 0, 1);
+  cv::morphologyEx(
+      silhouette, rim, cv::MORPH_GRADIENT, cv::getStructuringElement(cv::MORPH_CROSS, {3, 3}));
+  std::vector<double> widths;
+  constexpr double kReach = 4;
+  constexpr double kStep = 0.25;
+  for (int y = 5; y + 5 < grey.rows; ++y)
+    for (int x = 5; x + 5 < grey.cols; ++x) {
+      if (rim.at<unsigned char>(y, x) == 0) continue;
+      const double dx = double(gx.at<float>(y, x)), dy = double(gy.at<float>(y, x));
+      const double slope = std::hypot(dx, dy);
+      if (slope < 24) continue;
+      std::vector<double> profile;
+      for (double p = -kReach; p <= kReach; p += kStep)
+        profile.push_back(double(at(grey, x + p * dx / slope, y + p * dy / slope)));
+      // The rise through the middle, up to its own turning points.
+      std::size_t low = profile.size() / 2, high = low;
+      while (low > 0 && profile[low - 1] < profile[low]) --low;
+      while (high + 1 < profile.size() && profile[high + 1] > profile[high]) ++high;
+      const double step = profile[high] - profile[low];
+      if (step < 12) continue;
+      const auto crossing = [&](double share) {
+        const double level = profile[low] + share * step;
+        std::size_t i = low;
+        while (i < high && profile[i + 1] < level) ++i;
+        return double(i) + (level - profile[i]) / std::max(1e-9, profile[i + 1] - profile[i]);
+      };
+      widths.push_back(kStep * (crossing(0.9) - crossing(0.1)));
+    }
+  return median(widths);
+}
+
+double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
+  cv::Mat laplacian;
+  const cv::Mat kernel = (cv::Mat_<float>(3, 3) << 1, -2, 1, -2, 4, -2, 1, -2, 1);
+  cv::filter2D(grey, laplacian, CV_32F, kernel);
+  std::vector<double> values = values_where(laplacian, mask);
+  for (double& v : values) v = std::abs(v);
+  return 1.4826 * median(values) / 6;  // of unit white noise: 1 (Immerkaer 1996)
+}
+
+double fine_share(const cv::Mat& grey) {
+  const int side = std::min(grey.rows, grey.cols) / 2 * 2;
+  cv::Mat window, spectrum;
+  cv::createHanningWindow(window, {side, side}, CV_32F);
+  const cv::Mat square = grey(cv::Rect(0, 0, side, side));
+  cv::Mat centred = square - cv::mean(square)[0];
+  cv::dft(centred.mul(window), spectrum, cv::DFT_COMPLEX_OUTPUT);
+  double fine = 0, all = 1e-9;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const double fy = double(std::min(y, side - y)) / side;
+      const double fx = double(std::min(x, side - x)) / side;
+      const auto v = spectrum.at<cv::Vec2f>(y, x);
+      const double power = double(v[0]) * double(v[0]) + double(v[1]) * double(v[1]);
+      all += power;
+      if (std::hypot(fx, fy) > 0.25) fine += power;
+    }
+  return fine / all;
+}
+
+double blockiness(const cv::Mat& grey, int x0, int y0) {
+  double on = 0, off = 0;
+  int on_count = 0, off_count = 0;
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x + 1 < grey.cols; ++x) {
+      const double d = std::abs(double(grey.at<float>(y, x + 1)) - double(grey.at<float>(y, x)));
+      if ((x0 + x + 1) % 8 == 0)
+        on += d, ++on_count;
+      else
+        off += d, ++off_count;
+    }
+  (void)y0;
+  return (on / std::max(1, on_count) + 0.1) / (off / std::max(1, off_count) + 0.1);
+}
+
+}  // namespace
+
+std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
+  const double half = std::max(8.0, std::max(box.width, box.height));
+  const int side = 2 * static_cast<int>(std::ceil(half));
+  const int x = static_cast<int>(std::lround(box.x + box.width / 2)) - side / 2;
+  const int y = static_cast<int>(std::lround(box.y + box.height / 2)) - side / 2;
+  if (x < 0 || y < 0 || x + side > picture.width || y + side > picture.height) return std::nullopt;
+  image::Rgb8 crop = image::rgb8_from_picture(picture, x, y, side, side);
+  Patch patch;
+  patch.rgb = cv::Mat(side, side, CV_8UC3, crop.samples.get()).clone();
+  cv::Mat(side, side, CV_8UC1).convertTo(patch.grey, CV_32F);
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) patch.grey.at<float>(j, i) = picture.luma().row(y + j)[x + i];
+  patch.silhouette = silhouette_of(patch.grey);
+  return patch;
+}
+
+Looks looks_of(const Patch& patch, int x, int y) {
+  Looks looks;
+  const auto kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
+  cv::Mat inside, wide, around;
+  cv::erode(patch.silhouette, inside, kernel);
+  if (cv::countNonZero(inside) < 6) inside = patch.silhouette;
+  cv::dilate(patch.silhouette, wide, kernel, {-1, -1}, 3);
+  cv::bitwise_not(wide, around);
+  looks.contrast =
+      median(values_where(patch.grey, patch.silhouette)) - median(values_where(patch.grey, around));
+  looks.edge_width_px = edge_width(patch.grey, patch.silhouette);
+  looks.noise = laplacian_deviation(patch.grey, inside);
+  looks.background_noise = laplacian_deviation(patch.grey, around);
+  looks.fine_share = fine_share(patch.grey);
+  looks.blockiness = blockiness(patch.grey, x, y);
+  double count = 0;
+  for (int j = 0; j < patch.rgb.rows; ++j)
+    for (int i = 0; i < patch.rgb.cols; ++i) {
+      if (patch.silhouette.at<unsigned char>(j, i) == 0) continue;
+      const auto p = patch.rgb.at<cv::Vec3b>(j, i);
+      const auto [low, high] = std::minmax({p[0], p[1], p[2]});
+      looks.saturation += high > 0 ? double(high - low) / high : 0;
+      for (std::size_t c = 0; c < 3; ++c) looks.histogram[8 * c + p[static_cast<int>(c)] / 32] += 1;
+      count += 1;
+    }
+  if (count > 0) {
+    looks.saturation /= count;
+    for (double& bin : looks.histogram) bin /= 3 * count;
+  }
+  return looks;
+}
+
+double distance(const std::array<double, 24>& a, const std::array<double, 24>& b) {
+  double overlap = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) overlap += std::sqrt(a[i] * b[i]);
+  return std::sqrt(std::max(0.0, 1 - overlap));
+}
+
+std::vector<float> features_of(const Patch& patch) {
+  // At one size, so that an aircraft's own size says nothing.
+  constexpr int kSide = 48;
+  constexpr int kOrientations = 8;
+  cv::Mat grey, gx, gy, size, angle;
+  cv::resize(patch.grey, grey, {kSide, kSide}, 0, 0, cv::INTER_AREA);
+  cv::Sobel(grey, gx, CV_32F, 1, 0);
+  cv::Sobel(grey, gy, CV_32F, 0, 1);
+  cv::cartToPolar(gx, gy, size, angle);
+  std::vector<float> features;
+  for (int ring = 0; ring < 2; ++ring) {
+    std::array<float, kOrientations> histogram{};
+    float total = 1e-3F;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const double away = std::hypot(x - kSide / 2.0, y - kSide / 2.0) / (kSide / 2.0);
+        if ((away < 0.5) != (ring == 0) || away > 1) continue;
+        const auto bin = static_cast<std::size_t>(double(angle.at<float>(y, x)) / (2 * kPi) * 2 *
+                                                  kOrientations) %
+                         kOrientations;
+        histogram[bin] += size.at<float>(y, x);
+        total += size.at<float>(y, x);
+      }
+    for (const float h : histogram) features.push_back(h / total);
+  }
+  const Looks looks = looks_of(patch, 0, 0);
+  const double contrast = std::abs(looks.contrast) + 4;
+  for (const double v : {looks.edge_width_px,
+                         std::log(looks.noise + 0.05),
+                         std::log((looks.noise + 0.05) / (looks.background_noise + 0.05)),
+                         looks.noise / contrast,
+                         std::log(looks.fine_share + 1e-6),
+                         looks.saturation})
+    features.push_back(static_cast<float>(v));
+  // How far grey strays inside the silhouette, and its steps' sharpest over its range.
+  cv::Scalar mean, deviation;
+  if (cv::countNonZero(patch.silhouette) > 0)
+    cv::meanStdDev(patch.grey, mean, deviation, patch.silhouette);
+  features.push_back(static_cast<float>(deviation[0] / contrast));
+  cv::Mat laplacian;
+  cv::Laplacian(patch.grey, laplacian, CV_32F);
+  double low, high;
+  cv::minMaxLoc(laplacian, &low, &high);
+  features.push_back(static_cast<float>(high / contrast));
+  features.push_back(static_cast<float>(-low / contrast));
+  return features;
+}
+
+}  // namespace airtruth::comparison

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison/place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "annotation/exact_box.h"
+#include "base/error.h"
+
+namespace airtruth::comparison {
+namespace {
+
+struct Spot {
+  std::int64_t frame = 0;
+  Pixel centre;
+  double size_px = 0;
+};
+
+// Every frame from the first box to the last: places between boxes by straight lines, sizes by the
+// mean of a second's worth around.
+std::vector<Spot> spots_of(const RealBoxes& boxes) {
+  std::vector<Spot> spots;
+  for (auto it = boxes.begin(); it != boxes.end(); ++it) {
+    const auto& [frame, box] = *it;
+    const auto next = std::next(it);
+    const std::int64_t until = next == boxes.end() ? frame + 1 : next->first;
+    for (std::int64_t k = frame; k < until; ++k) {
+      const double t = double(k - frame) / double(until - frame);
+      const Box& after = next == boxes.end() ? box : next->second;
+      const Pixel here(box.x + box.width / 2, box.y + box.height / 2);
+      const Pixel there(after.x + after.width / 2, after.y + after.height / 2);
+      spots.push_back({k, here + t * (there - here), std::max(box.width, box.height)});
+    }
+  }
+  constexpr int kReach = 15;
+  std::vector<Spot> smooth = spots;
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    double sum = 0, weight = 0;
+    Pixel place = Pixel::Zero();
+    double near = 0;
+    for (int d = -kReach; d <= kReach; ++d) {
+      const auto j = static_cast<std::int64_t>(i) + d;
+      if (j < 0 || j >= static_cast<std::int64_t>(spots.size())) continue;
+      const Spot& s = spots[static_cast<std::size_t>(j)];
+      sum += s.size_px, weight += 1;
+      // A box is drawn to the pixel: its middle is smoothed over three frames.
+      const double w = std::exp(-0.5 * d * d);
+      place += w * s.centre, near += w;
+    }
+    smooth[i].size_px = sum / weight;
+    smooth[i].centre = place / near;
+  }
+  return smooth;
+}
+
+// To which side there is room in most frames: in units of the real one's patch.
+Pixel side_of(const std::vector<Spot>& spots, const lens::ImageSize& size) {
+  Pixel best(0, 0);
+  std::size_t most = 0;
+  for (const Pixel& side : {Pixel(1.5, 0), Pixel(-1.5, 0), Pixel(0, -1.5), Pixel(0, 1.5)}) {
+    std::size_t inside = 0;
+    for (const Spot& s : spots) {
+      const double patch = 2 * std::max(8.0, s.size_px);
+      const Pixel p = s.centre + patch * side;
+      const double half = patch / 2 + 2;
+      inside +=
+          p.x() > half && p.y() > half && p.x() < size.width - half && p.y() < size.height - half
+              ? 1
+              : 0;
+    }
+    if (inside > most) most = inside, best = side;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string path_beside(const RealBoxes& boxes,
+                        const aircraft::Mesh& mesh,
+                        const YawPitchRoll& attitude,
+                        const lens::Lens& lens,
+                        double frame_rate_hz) {
+  const std::vector<Spot> spots = spots_of(boxes);
+  const Pixel side = side_of(spots, lens.size());
+  if (side.isZero())
+    throw Error("there is no room in the picture beside the real aircraft at its own size");
+  const annotation::Silhouette silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const Quaternion turned = world_from_body(attitude);
+  const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
+  const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
+  const aircraft::Extents extents = aircraft::extents(mesh);
+  std::string text = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n";
+  double range_m = 0;
+  for (const Spot& spot : spots) {
+    const Pixel place = spot.centre + 2 * std::max(8.0, spot.size_px) * side;
+    const Pixel bounded(std::clamp(place.x(), 1.0, lens.size().width - 1.0),
+                        std::clamp(place.y(), 1.0, lens.size().height - 1.0));
+    const auto ray = lens.ray_from_pixel(bounded);
+    if (!ray) throw Error("the lens has no direction where the intruder would be placed");
+    const Vector3 direction = world_from_cam.rotation * *ray;
+    if (range_m <= 0)
+      range_m = lens.focal_px() * std::max(extents.length_m(), extents.span_m()) / spot.size_px;
+    for (int round = 0; round < 4; ++round) {
+      const auto box =
+          annotation::exact_box(sight, silhouette, {turned, range_m * direction}, 0).box;
+      if (!box) throw Error("the intruder cannot be drawn where it would be placed");
+      range_m *= std::max(box->width, box->height) / spot.size_px;
+    }
+    const Vector3 p = range_m * direction;
+    text += fmt::format("{},{},{},{},{},{},{}\n",
+                        double(spot.frame - spots.front().frame) / frame_rate_hz,
+                        p.x(),
+                        p.y(),
+                        p.z(),
+                        attitude.yaw_deg,
+                        attitude.pitch_deg,
+                        attitude.roll_deg);
+  }
+  return text;
+}
+
+}  // namespace airtruth::comparison
