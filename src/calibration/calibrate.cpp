@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "calibration/air.h"
+#include "calibration/blur.h"
 #include "calibration/calibration.h"
 #include "calibration/edges.h"
 #include "calibration/horizon.h"
@@ -40,6 +41,7 @@ class Session {
         reader_(video, {options.first_frame, options.frame_count, 0, true}, options.warn),
         noise_(options.own_aircraft),
         edges_(options.own_aircraft),
+        blur_(options.own_aircraft),
         planar_(reader_.info().width, reader_.info().height, {}, options.own_aircraft) {
     const video::StreamInfo& info = reader_.info();
     result_.video = video;
@@ -83,6 +85,9 @@ class Session {
         step = moved.frame_from_reference * last->inverse();
       last = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
       steps_.push_back(step);
+      const Pixel centre(result_.width / 2.0, result_.height / 2.0);
+      blur_.add(frame->picture,
+                step ? std::optional<Pixel>(apply(*step, centre) - centre) : std::nullopt);
       std::optional<motion::FrameMotion> turned;
       if (turning_) turned = turning_->next(frame->picture, frame->time_s, frame->damaged);
       if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
@@ -152,7 +157,7 @@ class Session {
   void take_shutter() {
     std::string why;
     const double interval_s = result_.frame_rate_hz > 0 ? 1 / result_.frame_rate_hz : 0;
-    if (const auto share = edges_.exposure_share(why); share && interval_s > 0)
+    if (const auto share = blur_.share(why); share && interval_s > 0)
       put("shutter.exposure_s", {{share->value * interval_s, share->sigma * interval_s}});
     else
       lack("shutter.exposure_s", why.empty() ? "the video has no frame rate" : why);
@@ -277,6 +282,7 @@ class Session {
   Calibration result_;
   NoiseMeter noise_;
   EdgeMeter edges_;
+  BlurMeter blur_;
   motion::Estimator planar_;
   std::optional<motion::Estimator> turning_;
   std::vector<std::optional<Homography>> steps_;

@@ -9,18 +9,19 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/transform.h"
+#include "image/colour.h"
 
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kAlong = 5;           // half the length of an edge, px
-constexpr double kAcross = 6;       // half the width of its profile, px
-constexpr double kLeastStep = 24;   // code values
-constexpr double kStraight = 0.35;  // px that the edge's places along it may stray
+constexpr int kAlong = 5;          // half the length of an edge, px
+constexpr double kAcross = 6;      // half the width of its profile, px
+constexpr double kLeastStep = 24;  // code values
+constexpr double kStraight = 0.2;  // px that the edge's places along it may stray
 constexpr int kMostPerFrame = 60;
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kFewestEdges = 12;
-constexpr double kSharpestShare = 0.04;
+constexpr double kSharpestShare = 0.015;
 constexpr double kBin = 0.2;  // px
 
 struct Found {
@@ -73,10 +74,51 @@ std::optional<Found> straight_edge(const cv::Mat& grey, int x, int y, double gx,
 
 double phi(double x, double sigma) { return 0.5 * (1 + std::erf(x / (sigma * std::sqrt(2.0)))); }
 
-// A step through a Gaussian, then an unsharp mask.
-double step_model(double x, double sigma, double amount, double radius) {
-  return (1 + amount) * phi(x, sigma) - amount * phi(x, std::hypot(sigma, radius));
-}
+// A step of light from `low` to `high` (0..1, coded) through a Gaussian, coded, then an unsharp
+// mask; scaled to 0..1 and sampled finely.
+class StepModel {
+ public:
+  StepModel(double sigma, double amount, double radius, double low, double high) {
+    const double dark = double(image::linear_from_srgb(static_cast<float>(low)));
+    const double bright = double(image::linear_from_srgb(static_cast<float>(high)));
+    for (int i = 0; i < kCount; ++i) {
+      const double light = dark + (bright - dark) * phi(place(i), sigma);
+      coded_.at(static_cast<std::size_t>(i)) =
+          (double(image::srgb_from_linear(static_cast<float>(light))) - low) / (high - low);
+    }
+    if (amount <= 0) return;
+    const int reach = static_cast<int>(std::ceil(3 * radius / kFine));
+    std::vector<double> kernel;
+    double total = 0;
+    for (int j = -reach; j <= reach; ++j) {
+      kernel.push_back(std::exp(-0.5 * (j * kFine / radius) * (j * kFine / radius)));
+      total += kernel.back();
+    }
+    const auto sharp = coded_;
+    for (int i = 0; i < kCount; ++i) {
+      double soft = 0;
+      for (int j = -reach; j <= reach; ++j)
+        soft += kernel[static_cast<std::size_t>(j + reach)] *
+                sharp[static_cast<std::size_t>(std::clamp(i + j, 0, kCount - 1))];
+      const auto k = static_cast<std::size_t>(i);
+      coded_[k] += amount * (sharp[k] - soft / total);
+    }
+  }
+
+  double at(double x) const {
+    const double p = std::clamp((x + kHalf) / kFine, 0.0, kCount - 1.001);
+    const auto i = static_cast<std::size_t>(p);
+    const double t = p - double(i);
+    return (1 - t) * coded_[i] + t * coded_[i + 1];
+  }
+
+ private:
+  static constexpr double kHalf = 9;
+  static constexpr double kFine = 0.1;
+  static constexpr int kCount = static_cast<int>(2 * kHalf / kFine) + 1;
+  static double place(int i) { return i * kFine - kHalf; }
+  std::array<double, kCount> coded_{};
+};
 
 }  // namespace
 
@@ -141,7 +183,7 @@ void EdgeMeter::add(const image::Picture& frame,
     const double step = high - low;
     const double uneven =
         std::sqrt(std::max({0.0, low2 / low_count - low * low, high2 / high_count - high * high}));
-    if (step < kLeastStep || uneven > 0.12 * step || high > 248 || low < 4) continue;
+    if (step < kLeastStep || uneven > 0.08 * step || high > 248 || low < 4) continue;
     std::array<double, 64> sums{};
     std::array<int, 64> counts{};
     for (auto& [place, v] : samples) {
@@ -153,13 +195,22 @@ void EdgeMeter::add(const image::Picture& frame,
     }
     // Width by the integral of |height - step|: for a Gaussian sigma * sqrt(2 / pi).
     double area = 0;
-    for (std::size_t b = 0; b < 64; ++b) {
+    for (std::size_t b = 16; b < 48; ++b) {
       const double place = (double(b) + 0.5) * 0.25 - 8;
-      if (counts[b] == 0 || std::abs(place) > 4) continue;
-      const double v = sums[b] / counts[b];
-      area += 0.25 * std::abs(v - (place > 0 ? 1 : 0));
-      edge.overshoot = std::max({edge.overshoot, v - 1, -v});
+      if (counts[b] > 0) area += 0.25 * std::abs(sums[b] / counts[b] - (place > 0 ? 1 : 0));
     }
+    edge.low = low, edge.high = high;
+    // The middle of the step as its own samples have it, to a twentieth of a pixel.
+    double below = 0;
+    bool whole = true;
+    for (std::size_t b = 16; b < 48; ++b) {
+      if (counts[b] == 0) whole = false;
+      below += counts[b] > 0 ? 0.25 * (1 - sums[b] / counts[b]) : 0;
+    }
+    if (!whole) continue;
+    const double middle = below - 4;
+    if (std::abs(middle) > 1.5) continue;
+    for (auto& [place, v] : edge.samples) place -= middle;
     edge.width_px = area * std::sqrt(kPi / 2);
     edge.moved_px = std::numeric_limits<double>::quiet_NaN();
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
@@ -193,13 +244,13 @@ std::optional<EdgeMeter::Result> EdgeMeter::result(std::string& why) {
   const std::size_t skip = still.size() / 100;  // narrower than the camera: luck
   const std::size_t count =
       std::max(kFewestEdges / 2, static_cast<std::size_t>(kSharpestShare * double(still.size())));
-  constexpr int kBins = static_cast<int>(2 * 5 / kBin);
+  constexpr int kBins = static_cast<int>(2 * 6 / kBin);
   std::array<std::vector<double>, kBins> bins;
   profile_ = {};
   for (std::size_t i = skip; i < std::min(still.size(), skip + count); ++i) {
     ++profile_.edges;
     for (const auto& [place, v] : still[i]->samples) {
-      const int bin = static_cast<int>(std::floor((place + 5) / kBin));
+      const int bin = static_cast<int>(std::floor((place + 6) / kBin));
       if (bin >= 0 && bin < kBins) bins[static_cast<std::size_t>(bin)].push_back(v);
     }
   }
@@ -208,22 +259,36 @@ std::optional<EdgeMeter::Result> EdgeMeter::result(std::string& why) {
     if (values.size() < 5) continue;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
-    profile_.place_px.push_back((b + 0.5) * kBin - 5);
+    profile_.place_px.push_back((b + 0.5) * kBin - 6);
     profile_.height.push_back(*middle);
   }
-  double best = 1e300, sigma = 1, amount = 0, radius = 1, shift = 0;
+  std::vector<double> lows, highs;
+  for (std::size_t i = skip; i < std::min(still.size(), skip + count); ++i)
+    lows.push_back(still[i]->low), highs.push_back(still[i]->high);
+  std::nth_element(
+      lows.begin(), lows.begin() + static_cast<std::ptrdiff_t>(lows.size() / 2), lows.end());
+  std::nth_element(
+      highs.begin(), highs.begin() + static_cast<std::ptrdiff_t>(highs.size() / 2), highs.end());
+  const double low = lows[lows.size() / 2] / 255, high = highs[highs.size() / 2] / 255;
+  double best = 1e300, sigma = 1, amount = 0, radius = 1, shift = 0, scale = 1, level = 0;
   const auto misfit = [&](double s, double a, double r, double d) {
-    double sum = 0;
+    // The plateaus that heights are told from may lie in the halo: level and scale are free.
+    const StepModel model(s, a, r, low, high);
+    double n = 0, sm = 0, sh = 0, smm = 0, smh = 0, shh = 0;
     for (std::size_t i = 0; i < profile_.place_px.size(); ++i) {
-      const double e = profile_.height[i] - step_model(profile_.place_px[i] - d, s, a, r);
-      sum += e * e;
+      const double m = model.at(profile_.place_px[i] - d);
+      const double h = profile_.height[i];
+      n += 1, sm += m, sh += h, smm += m * m, smh += m * h, shh += h * h;
     }
-    return sum;
+    scale = (n * smh - sm * sh) / (n * smm - sm * sm);
+    level = (sh - scale * sm) / n;
+    if (!(scale > 0.8 && scale < 1.4)) return 1e300;
+    return shh - level * sh - scale * smh;
   };
-  for (double s = 0.3; s < 4; s *= 1.06)
-    for (double a = 0; a <= 2.0; a += 0.1)
-      for (double r = 0.6; r <= (a > 0 ? 2.61 : 0.6); r += 0.25)
-        for (double d : {-0.2, 0.0, 0.2})
+  for (double s = 0.35; s < 4; s *= 1.15)
+    for (double a = 0; a <= 2.0; a += 0.25)
+      for (double r = 0.6; r <= (a > 0 ? 2.61 : 0.6); r += 0.5)
+        for (double d : {-0.3, 0.0, 0.3})
           if (const double m = misfit(s, a, r, d); m < best)
             best = m, sigma = s, amount = a, radius = r, shift = d;
   std::array<double*, 4> parameters = {&sigma, &amount, &radius, &shift};
@@ -244,8 +309,10 @@ std::optional<EdgeMeter::Result> EdgeMeter::result(std::string& why) {
       }
       if (!better) steps[p] *= 0.7;
     }
+  const StepModel fitted(sigma, amount, radius, low, high);
+  misfit(sigma, amount, radius, shift);
   for (const double place : profile_.place_px)
-    profile_.fitted.push_back(step_model(place - shift, sigma, amount, radius));
+    profile_.fitted.push_back(level + scale * fitted.at(place - shift));
   // A step drawn by the renderer is a pixel wide already, and the spread is of whole pixels: each
   // adds the variance of a pixel.
   constexpr double kTwoPixels = 2.0 / 12;
@@ -257,43 +324,6 @@ std::optional<EdgeMeter::Result> EdgeMeter::result(std::string& why) {
   result.sharpening = {amount < 0.03 ? 0 : amount, std::max(0.02, 3 * rms)};
   result.sharpening_px = {radius, std::max(0.1, 6 * rms)};
   return result;
-}
-
-std::optional<Estimate> EdgeMeter::exposure_share(std::string& why) const {
-  // width^2 = w0^2 + (share * moved)^2 / 12, by the lower envelope of each range of motion.
-  std::array<std::vector<double>, 12> bins;
-  for (const Edge& edge : edges_)
-    if (edge.moved_px >= 0 && edge.moved_px < 12)
-      bins[static_cast<std::size_t>(edge.moved_px)].push_back(edge.width_px * edge.width_px);
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    if (bins[b].size() < 8) continue;
-    const auto low = bins[b].begin() + static_cast<std::ptrdiff_t>(bins[b].size() / 5);
-    std::nth_element(bins[b].begin(), low, bins[b].end());
-    const double moved = double(b) + 0.5;
-    const double x = moved * moved / 12;
-    const double y = *low;
-    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
-  }
-  if (n < 3) {
-    why = "too few clean edges move across themselves at different speeds";
-    return std::nullopt;
-  }
-  const double det = n * sxx - sx * sx;
-  const double slope = (n * sxy - sx * sy) / det;
-  const double level = (sy - slope * sx) / n;
-  const double rest = std::max(0.0, syy - level * sy - slope * sxy);
-  const double error = std::sqrt(rest / std::max(1.0, n - 2) * n / det);
-  if (slope < 2 * error || slope <= 0) {
-    why = "edges that move are not wider than others (a short exposure, or too little motion)";
-    return std::nullopt;
-  }
-  const double share = std::sqrt(slope);
-  if (share > 1.2) {
-    why = "edges that move are wider than a whole frame's exposure would make them";
-    return std::nullopt;
-  }
-  return Estimate{std::min(share, 1.0), error / (2 * share)};
 }
 
 }  // namespace airtruth::calibration

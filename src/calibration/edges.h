@@ -23,16 +23,13 @@ class EdgeMeter {
     Estimate point_spread_px, sharpening, sharpening_px;
   };
   std::optional<Result> result(std::string& why);
-  // Exposure as a share of the frame interval, from how much edges that move across themselves are
-  // wider than others.
-  std::optional<Estimate> exposure_share(std::string& why) const;
   const EdgeProfile& profile() const { return profile_; }
 
  private:
   struct Edge {
     double width_px = 0;  // standard deviation of its derivative
     double moved_px = 0;  // across itself, since the frame before; NaN: not known
-    double overshoot = 0;
+    double low = 0, high = 0;                        // code values on its two sides
     std::vector<std::pair<double, double>> samples;  // place px, height 0..1
   };
   const image::Mask* own_aircraft_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSide = 12;
 constexpr int kBins = 24;
-constexpr double kFlatShare = 0.3;         // of the blocks of one brightness
+constexpr double kFlatShare = 0.12;        // of the blocks of one brightness
 constexpr std::size_t kFewestBlocks = 12;  // of one brightness
 constexpr double kRounding = 1.0 / 12;     // variance of whole code values
 
@@ -155,26 +155,45 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
   }
   // variance in linear light = gain x + floor, least squares weighted by how sure each point is,
   // neither below 0.
-  double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  struct Row {
+    double x, y, blocks;
+  };
   const composite::Sensor unit{.noise_floor = 1};
-  std::vector<std::array<double, 3>> rows;
+  std::vector<Row> rows;
   for (const NoisePoint& p : curve) {
     const double x = double(image::linear_from_srgb(static_cast<float>(p.luma)));
     const double codes = double(composite::noise_sigma(
         static_cast<float>(p.luma), static_cast<float>(codes_per_unit_), unit));
     const double y = p.sigma_codes * p.sigma_codes / (codes * codes);
-    const double error = std::max(y, 1e-9);  // of a variance: in proportion to itself
-    const double w = p.blocks / (error * error);
-    rows.push_back({x, y, w});
-    sw += w, sx += w * x, sy += w * y, sxx += w * x * x, sxy += w * x * y;
+    constexpr int kEnough = 40;  // so that the sky does not outvote what is dark
+    rows.push_back({x, y, double(std::min(p.blocks, kEnough))});
   }
-  const double det = sw * sxx - sx * sx;
-  double gain = det > 0 ? (sw * sxy - sx * sy) / det : 0;
-  double floor = det > 0 ? (sxx * sy - sx * sxy) / det : sy / sw;
-  if (gain < 0) gain = 0, floor = sy / sw;
-  if (floor < 0) floor = 0, gain = sxy / sxx;
-  double chi = 0;
-  for (const auto& [x, y, w] : rows) chi += w * (y - gain * x - floor) * (y - gain * x - floor);
+  // Texture can only add to what is seen: points above the curve by more than the rest count ever
+  // less, those below it do not.
+  double gain = 0, floor = 0, sw = 0, sxx = 0, det = 0, chi = 0;
+  for (int round = 0; round < 30; ++round) {
+    double sx = 0, sy = 0, sxy = 0;
+    sw = sxx = 0;
+    for (const auto& [x, y, blocks] : rows) {
+      const double expected = round == 0 ? y : gain * x + floor;
+      const double error = std::max(expected, 1e-9);  // of a variance: in proportion to itself
+      const double above = round == 0 ? 0 : (y - expected) / error;
+      constexpr double kTextured = 0.04;
+      const double trust = above > kTextured ? std::pow(kTextured / above, 3) : 1;
+      const double w = trust * blocks / (error * error);
+      sw += w, sx += w * x, sy += w * y, sxx += w * x * x, sxy += w * x * y;
+    }
+    det = sw * sxx - sx * sx;
+    gain = det > 0 ? (sw * sxy - sx * sy) / det : 0;
+    floor = det > 0 ? (sxx * sy - sx * sxy) / det : sy / sw;
+    if (gain < 0) gain = 0, floor = sy / sw;
+    if (floor < 0) floor = 0, gain = sxy / sxx;
+    chi = 0;
+    for (const auto& [x, y, blocks] : rows) {
+      const double e = (y - gain * x - floor) / std::max(gain * x + floor, 1e-9);
+      chi += blocks * std::min(e * e, 0.02);
+    }
+  }
   const double scale = chi / std::max<double>(1, double(rows.size()) - 2);
   Result result;
   result.gain = {gain, det > 0 ? std::sqrt(scale * sw / det) : gain};

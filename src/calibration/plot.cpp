@@ -81,7 +81,7 @@ image::Rgb8 plot(const Calibration& c) {
                          0,
                          fmt::format("step across the {} sharpest edges", c.edge.edges),
                          "px",
-                         {-5, 5, -0.3, 1.3});
+                         {-6, 6, -0.3, 1.3});
   for (std::size_t i = 0; i < c.edge.place_px.size(); ++i) {
     cv::circle(canvas,
                edge.at(c.edge.place_px[i], std::clamp(c.edge.height[i], -0.3, 1.3)),

@@ -2,10 +2,25 @@
 #include "calibration/readout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+
+#include "calibration/blur.h"
 
 namespace airtruth::calibration {
 namespace {
+
+// Without what is faster than a third of the frame rate, where the differentiator is no longer
+// exact: binomial weights. NaN where a neighbour is.
+double slow_part(const std::vector<double>& values, std::size_t k) {
+  constexpr std::array<double, 9> kWeights = {1, 8, 28, 56, 70, 56, 28, 8, 1};
+  double sum = 0;
+  for (std::size_t i = 0; i < kWeights.size(); ++i)
+    sum += k + i >= 4 && k + i - 4 < values.size() ? kWeights[i] * values[k + i - 4]
+                                                   : std::numeric_limits<double>::quiet_NaN();
+  return sum / 256;
+}
 
 struct Step {
   Pixel moved;     // of the centre
@@ -29,16 +44,32 @@ std::optional<Estimate> readout_share(const std::vector<std::optional<Homography
                                       int height,
                                       std::string& why) {
   const Pixel centre(width / 2.0, height / 2.0);
-  std::vector<std::pair<double, double>> pairs;  // change of speed over height, shear or stretch
-  for (std::size_t k = 1; k + 1 < steps.size(); ++k) {
-    const auto before = step_of(steps[k - 1], centre);
-    const auto here = step_of(steps[k], centre);
-    const auto after = step_of(steps[k + 1], centre);
-    if (!before || !here || !after) continue;
-    const Pixel change = (after->moved - before->moved) / 2 / height;
-    pairs.push_back({change.x(), here->shear});
-    pairs.push_back({change.y(), here->stretch});
+  // Change of speed over height against shear (0) and stretch (1), frame by frame; NaN: not known.
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::array<std::vector<double>, 2> changes, bends;
+  std::vector<Pixel> places;  // of the centre, added up; bridged steps keep still
+  for (const auto& step : steps) {
+    const auto here = step_of(step, centre);
+    const Pixel moved = here ? here->moved : Pixel(0, 0);
+    places.push_back(places.empty() ? moved : Pixel(places.back() + moved));
   }
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const auto here = step_of(steps[k], centre);
+    const auto before = rate_at(places, k - 1);
+    const auto now = rate_at(places, k);
+    const bool known = here && before && now;
+    const Pixel change = known ? Pixel((*now - *before) / height) : Pixel(unknown, unknown);
+    changes[0].push_back(change.x()), changes[1].push_back(change.y());
+    bends[0].push_back(known ? here->shear : unknown);
+    bends[1].push_back(known ? here->stretch : unknown);
+  }
+  std::vector<std::pair<double, double>> pairs;
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    for (std::size_t k = 0; k < changes[axis].size(); ++k) {
+      const double x = slow_part(changes[axis], k);
+      const double y = slow_part(bends[axis], k);
+      if (std::isfinite(x) && std::isfinite(y)) pairs.push_back({x, y});
+    }
   if (pairs.size() < 60) {
     why = "the motion of too few frames is known";
     return std::nullopt;

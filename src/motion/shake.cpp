@@ -1,25 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "base/error.h"
 #include "motion/motion.h"
 
 namespace airtruth::motion {
 
+namespace {
+
+constexpr int kReach = 8;
+
+// How far frames around k are linked to it, at even times; at most kReach to each side.
+int linked_reach(const std::vector<FrameMotion>& motion, std::size_t k) {
+  const auto is_cut = [&](std::size_t i) { return motion[i].state == State::kCut; };
+  int reach = 0;
+  const double step_s = k + 1 < motion.size() ? motion[k + 1].time_s - motion[k].time_s : 0;
+  while (reach < kReach) {
+    const auto next = static_cast<std::size_t>(reach) + 1;
+    if (k < next || k + next >= motion.size()) break;
+    if (is_cut(k + next) || is_cut(k - next + 1)) break;
+    const double after_s = motion[k + next].time_s - motion[k + next - 1].time_s;
+    const double before_s = motion[k - next + 1].time_s - motion[k - next].time_s;
+    if (std::abs(after_s - step_s) > 0.02 * step_s || std::abs(before_s - step_s) > 0.02 * step_s)
+      break;
+    ++reach;
+  }
+  return reach;
+}
+
+// Weights of the ideal differentiator under a Hann window: (-1)^(j + 1) / j for the frames j after
+// and before, per frame. A shake of 10 Hz in 30 frames/s keeps 0.98 of its rate, where a plain
+// difference keeps 0.41; with one frame to each side it is that difference.
+double weight(int j, int reach) {
+  if (reach == 1) return 0.5;
+  const double window = 0.5 * (1 + std::cos(kPi * j / (reach + 1)));
+  return (j % 2 == 1 ? 1.0 : -1.0) / j * window;
+}
+
+}  // namespace
+
 Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
   check(k < motion.size(), "a frame that was measured");
   const FrameMotion& now = motion[k];
   Shake shake{now.frame_from_reference, Homography::Zero(), now.rotation, Vector3::Zero()};
-  // The neighbours that the scene links to this frame.
-  const bool has_before = k > 0 && now.state != State::kCut;
-  const bool has_after = k + 1 < motion.size() && motion[k + 1].state != State::kCut;
-  const FrameMotion& before = has_before ? motion[k - 1] : now;
-  const FrameMotion& after = has_after ? motion[k + 1] : now;
-  const double dt_s = after.time_s - before.time_s;
-  if (!(dt_s > 0)) return shake;
-  if (now.rotation)
-    shake.rate_radps = vector_from_rotation(*after.rotation * before.rotation->conjugate()) / dt_s;
-  else
-    shake.frame_from_reference_per_s =
-        (after.frame_from_reference - before.frame_from_reference) / dt_s;
+  const auto add = [&](std::size_t i, double per_s) {
+    if (now.rotation)
+      shake.rate_radps +=
+          per_s * vector_from_rotation(*motion[i].rotation * now.rotation->conjugate());
+    else
+      shake.frame_from_reference_per_s +=
+          per_s * (motion[i].frame_from_reference - now.frame_from_reference);
+  };
+  const int reach = linked_reach(motion, k);
+  if (reach > 0) {
+    const double step_s = motion[k + 1].time_s - now.time_s;
+    for (int j = 1; j <= reach; ++j) {
+      const auto offset = static_cast<std::size_t>(j);
+      add(k + offset, weight(j, reach) / step_s);
+      add(k - offset, -weight(j, reach) / step_s);
+    }
+    return shake;
+  }
+  // At an end: the one neighbour that there is.
+  if (k + 1 < motion.size() && motion[k + 1].state != State::kCut)
+    add(k + 1, 1 / (motion[k + 1].time_s - now.time_s));
+  else if (k > 0 && now.state != State::kCut)
+    add(k - 1, -1 / (now.time_s - motion[k - 1].time_s));
   return shake;
 }
 

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/blur.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace airtruth::calibration {
+namespace {
+
+constexpr std::size_t kMostFrames = 300;
+constexpr int kWidth = 448;
+constexpr int kHeight = 336;
+constexpr double kFastPx = 4;        // a frame
+constexpr double kSlowShare = 0.35;  // of the fast one's speed
+constexpr std::size_t kNear = 4;     // frames apart, at most
+constexpr std::size_t kMostPairs = 60;
+constexpr std::size_t kFewestPairs = 8;
+
+// Energy of the picture's slopes along a direction over that across it.
+double slope_ratio(const cv::Mat& grey, const Pixel& along) {
+  cv::Mat soft, gx, gy;
+  cv::GaussianBlur(grey, soft, {}, 1.0);
+  cv::Sobel(soft, gx, CV_32F, 1, 0);
+  cv::Sobel(soft, gy, CV_32F, 0, 1);
+  const cv::Mat a = gx * along.x() + gy * along.y();
+  const cv::Mat b = gy * along.x() - gx * along.y();
+  return a.dot(a) / std::max(1e-6, b.dot(b));
+}
+
+// Blur along a straight line of that length.
+cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
+  if (length_px < 0.05) return grey;
+  const int half = static_cast<int>(std::ceil(length_px / 2)) + 1;
+  cv::Mat kernel(2 * half + 1, 2 * half + 1, CV_32F, cv::Scalar(0));
+  constexpr int kPoints = 64;
+  for (int i = 0; i < kPoints; ++i) {
+    const Pixel p = along * length_px * ((i + 0.5) / kPoints - 0.5);
+    const int x = static_cast<int>(std::floor(p.x()));
+    const int y = static_cast<int>(std::floor(p.y()));
+    const double fx = p.x() - x, fy = p.y() - y;
+    const auto add = [&](int i0, int j0, double w) {
+      kernel.at<float>(half + j0, half + i0) += static_cast<float>(w / kPoints);
+    };
+    add(x, y, (1 - fx) * (1 - fy));
+    add(x + 1, y, fx * (1 - fy));
+    add(x, y + 1, (1 - fx) * fy);
+    add(x + 1, y + 1, fx * fy);
+  }
+  cv::Mat result;
+  cv::filter2D(grey, result, CV_32F, kernel);
+  return result;
+}
+
+// How long a blur gives the still picture the moving one's ratio; empty where none does.
+std::optional<double> length_of(const cv::Mat& still,
+                                const cv::Mat& moving,
+                                const Pixel& along,
+                                double most_px) {
+  const double wanted = slope_ratio(moving, along);
+  if (slope_ratio(still, along) <= wanted) return 0.0;
+  if (slope_ratio(blurred(still, along, most_px), along) > wanted) return std::nullopt;
+  double low = 0, high = most_px;
+  for (int i = 0; i < 9; ++i) {
+    const double middle = 0.5 * (low + high);
+    (slope_ratio(blurred(still, along, middle), along) > wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
+  constexpr int kReach = 12;
+  if (k < kReach || k + kReach >= places.size()) return std::nullopt;
+  Pixel rate = Pixel::Zero();
+  for (int j = 1; j <= kReach; ++j) {
+    const double window = 0.5 * (1 + std::cos(kPi * j / (kReach + 1)));
+    const double weight = (j % 2 == 1 ? 1.0 : -1.0) / j * window;
+    rate += weight *
+            (places[k + static_cast<std::size_t>(j)] - places[k - static_cast<std::size_t>(j)]);
+  }
+  return rate;
+}
+
+void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& moved) {
+  if (crops_.size() >= kMostFrames) return;
+  places_.push_back((places_.empty() ? Pixel(0, 0) : places_.back()) + moved.value_or(Pixel(0, 0)));
+  known_.push_back(moved.has_value());
+  const image::Plane& luma = frame.luma();
+  const int width = std::min(kWidth, luma.width);
+  const int height = std::min(kHeight, luma.height);
+  const int x0 = (luma.width - width) / 2;
+  const int y0 = (luma.height - height) / 2;
+  cv::Mat crop(height, width, CV_8UC1);
+  double sum = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      crop.at<unsigned char>(y, x) = luma.row(y0 + y)[x0 + x];
+      sum += crop.at<unsigned char>(y, x);
+    }
+  // The own aircraft is never blurred by the camera's shake: it is made even.
+  if (own_aircraft_ != nullptr)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        if (!own_aircraft_->is_free(x0 + x, y0 + y))
+          crop.at<unsigned char>(y, x) = static_cast<unsigned char>(sum / width / height);
+  crops_.push_back(crop);
+}
+
+std::optional<Estimate> BlurMeter::share(std::string& why) const {
+  std::vector<double> shares;
+  std::size_t tried = 0;
+  for (std::size_t k = 1; k < crops_.size() && shares.size() < kMostPairs; ++k) {
+    const auto fast = rate_at(places_, k);
+    if (!fast || !known_[k] || fast->norm() < kFastPx) continue;
+    const Pixel along = fast->normalized();
+    std::optional<std::size_t> partner;
+    double slowest = kSlowShare * fast->norm();
+    for (std::size_t j = k > kNear ? k - kNear : 0; j <= k + kNear && j < crops_.size(); ++j) {
+      const auto rate = rate_at(places_, j);
+      if (j == k || !rate || !known_[j] || rate->norm() >= slowest) continue;
+      slowest = rate->norm();
+      partner = j;
+    }
+    if (!partner) continue;
+    ++tried;
+    cv::Mat still, moving;
+    crops_[*partner].convertTo(still, CV_32F);
+    crops_[k].convertTo(moving, CV_32F);
+    const auto length = length_of(still, moving, along, 1.3 * fast->norm());
+    if (!length) continue;
+    // The neighbour is blurred a little too; variances add.
+    const double own = slowest * slowest / fast->squaredNorm();
+    shares.push_back(*length / fast->norm() / std::sqrt(std::max(0.2, 1 - own)));
+  }
+  if (shares.size() < kFewestPairs) {
+    why = tried < kFewestPairs
+              ? "too few frames in fast motion have a neighbour at rest"
+              : "moving frames have lost more detail than a whole frame's exposure would take";
+    return std::nullopt;
+  }
+  std::sort(shares.begin(), shares.end());
+  const std::size_t n = shares.size();
+  const double spread = (shares[n * 84 / 100] - shares[n * 16 / 100]) / 2;
+  const Estimate result{shares[n / 2], 1.25 * spread / std::sqrt(double(n))};
+  if (result.value < 0.04 || result.value < 2 * result.sigma) {
+    why = "frames in motion are as sharp as others: the exposure is too short to be told";
+    return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace airtruth::calibration
