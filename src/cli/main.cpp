@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
   cli::add_motion(app, context);
   cli::add_calibrate(app, context);
   cli::add_mask(app, context);
+  cli::add_lens(app, context);
   cli::add_aircraft(app, context);
   cli::add_synth(app, context);
   cli::add_dataset(app, context);

@@ -86,6 +86,16 @@ void measure(const Arguments& arguments, Context& context) {
       sequence::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
+  const sequence::GyroUse gyro = sequence::bridge_by_gyro(arguments.video, all);
+  if (gyro.fit)
+    console.result(
+        fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
+                    "measured follow it",
+                    gyro.fit->correlation,
+                    gyro.fit->offset_s,
+                    degrees(gyro.fit->rms_radps)));
+  else if (gyro.has_gyro)
+    console.warning("the video's gyro does not agree with its motion; it is not used");
   if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
   write_file(arguments.out, motion::csv_from_motion(all));
   if (!arguments.plot.empty())

@@ -18,6 +18,12 @@ constexpr float kSmoothing =
 constexpr Rgb kSunColour = {
     1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
 
+// A white surface square to the sun over a blue sky: about 30,000 cd/m2 over 4,000 to 8,000. Under
+// an even cloud next to nothing comes from one direction.
+constexpr float kSunlitOverSky = 3.5f;
+constexpr float kVeiledSun = 0.12f;
+constexpr float kBrightestSun = 2.5f;
+
 struct Block {
   Rgb linear{};
   float brightness = 0;
@@ -113,6 +119,22 @@ Rgb mean(const std::vector<Block>& blocks, float from, float to) {
   return sum;
 }
 
+// Does the sun shine? 1 where some of the brighter half is blue, 0 where all of it is grey.
+float clearness(const std::vector<Block>& blocks) {
+  std::vector<float> blueness;
+  for (std::size_t i = blocks.size() / 2; i < blocks.size(); ++i) {
+    const Rgb& rgb = blocks[i].linear;
+    if (rgb[2] > 0.04f && rgb[2] < 0.95f) blueness.push_back(1 - rgb[0] / rgb[2]);
+  }
+  if (blueness.size() < 8) return 0;
+  const auto high = blueness.begin() + static_cast<std::ptrdiff_t>(blueness.size() * 9 / 10);
+  std::nth_element(blueness.begin(), high, blueness.end());
+  constexpr float kGrey = 0.12f;
+  constexpr float kBlue = 0.35f;
+  const float t = std::clamp((*high - kGrey) / (kBlue - kGrey), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
 Ambient measure(const std::vector<Block>& blocks) {
   Ambient ambient;
   ambient.sky = mean(blocks, 0.5f, 1.01f);
@@ -125,7 +147,9 @@ Ambient measure(const std::vector<Block>& blocks) {
   const float white =
       blocks.empty() ? 0.7f
                      : std::clamp(blocks[std::min(last, blocks.size() - 1)].brightness, 0.1f, 1.0f);
-  const float direct = std::max(0.35f * white, white - 0.5f * brightness(ambient.sky));
+  const float clear = clearness(blocks);
+  const float sunlit = std::max(white, kSunlitOverSky * brightness(ambient.sky));
+  const float direct = std::min(clear * sunlit + (1 - clear) * kVeiledSun * white, kBrightestSun);
   for (std::size_t c = 0; c < 3; ++c) ambient.sun[c] = direct * kSunColour[c];
   return ambient;
 }

@@ -14,9 +14,11 @@
 // The picture is read as a grid of small blocks in linear light, without the own aircraft. Its
 // brighter half stands for the sky and its darkest quarter for the ground, whatever the bank of the
 // camera; the 98th percentile of brightness is what this exposure makes of a bright white thing
-// (cloud, haze), and a white surface square to the sun is given that much. Blocks near the intruder
-// count four times. Smoothed over time; a jump of the camera's exposure or white balance (the
-// median over the blocks of what each becomes from one frame to the next) is followed at once.
+// (cloud, haze). Where some of the sky is blue the sun shines, and a white surface square to it is
+// given that much or 3.5 times the sky's, whichever is more; under an even grey sky a little.
+// Blocks near the intruder count four times. Smoothed over time; a jump of the camera's exposure or
+// white balance (the median over the blocks of what each becomes from one frame to the next) is
+// followed at once.
 namespace airtruth::sequence {
 
 struct Ambient {

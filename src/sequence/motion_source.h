@@ -10,6 +10,7 @@
 #include "image/layer.h"
 #include "lens/lens.h"
 #include "motion/cache.h"
+#include "motion/gyro.h"
 #include "motion/motion.h"
 #include "scene/scene.h"
 #include "video/reader.h"
@@ -37,8 +38,8 @@ class MotionSource {
                const fs::path& cache);  // empty: none
 
   // True when frames must be seen once before the first motion is known (reference "smoothed", a
-  // shutter; not cached).
-  bool needs_pass() const { return (smoothed_ || needs_change_) && !ready_ && !none_; }
+  // shutter, a gyroscope; not cached).
+  bool needs_pass() const { return (smoothed_ || needs_change_ || !gyro_video_.empty()) && !ready_ && !none_; }
   // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
   void measure(video::Reader& reader,
                const std::stop_token& stop,
@@ -63,6 +64,7 @@ class MotionSource {
 
   bool none_ = false;
   bool needs_change_ = false;
+  fs::path gyro_video_;  // whose gyroscope bridges what cannot be measured; empty: none
   std::optional<lens::Lens> lens_;  // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
@@ -80,6 +82,14 @@ class MotionSource {
 // than 90 degrees (but not for chroma-key, which is the paper's road), else "homography".
 std::string motion_model(const scene::Scene& scene, const lens::Lens& lens);
 bool is_wide(const lens::Lens& lens);
+
+// Bridges what could not be measured by the video's own gyroscope, where it has one (a GoPro's
+// telemetry) that agrees with what was; rotations only. Says what it found.
+struct GyroUse {
+  std::optional<motion::GyroFit> fit;
+  bool has_gyro = false;
+};
+GyroUse bridge_by_gyro(const fs::path& video, std::vector<motion::FrameMotion>& motion);
 
 // Motion of a whole clip against its first frame, as a rotation where a lens is given; `seen` after
 // each frame. Throws Interrupted on stop.

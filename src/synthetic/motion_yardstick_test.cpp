@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "lens/calibration_file.h"
+#include "motion/lens_estimate.h"
 #include "motion/motion.h"
 #include "synthetic/flight.h"
 
@@ -166,6 +167,48 @@ TEST(MotionYardstick, RotationThroughAPinholeIsNoWorseThanAHomography) {
   const Yardstick result = measure(lens::pinhole_from_vertical_fov(60, {640, 480}), 200, 0.12);
   EXPECT_LT(result.median_deg, 0.02);
   EXPECT_LE(result.rotation_edge_px, result.homography_edge_px);
+}
+
+TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
+  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(60, {640, 480}),
+                                 lens::fisheye_from_vertical_fov(100, {640, 480})}) {
+    FlightOptions options;
+    options.lens = lens;
+    options.width = 640;
+    options.height = 480;
+    options.frame_count = 260;
+    options.roll_deg = 25;
+    const Flight flight(options);
+    motion::LensEstimator estimator(640, 480, &flight.own_aircraft());
+    for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
+    std::string why;
+    const auto found = estimator.result(why);
+    ASSERT_TRUE(found) << lens.name() << ": " << why;
+    std::printf("%s: %.1f +- %.1f px, true %.1f, %d pairs, %.2f px (other kind %.2f)\n",
+                found->fisheye ? "fisheye" : "pinhole",
+                found->focal_px,
+                found->sigma_px,
+                lens.focal_px(),
+                found->pairs,
+                found->rms_px,
+                found->other_rms_px);
+    EXPECT_EQ(found->fisheye, std::holds_alternative<lens::Fisheye>(lens.model()));
+    EXPECT_NEAR(found->focal_px, lens.focal_px(), 0.05 * lens.focal_px());
+  }
+}
+
+TEST(LensYardstick, AStillCameraIsRefused) {
+  FlightOptions options;
+  options.width = 320;
+  options.height = 240;
+  options.frame_count = 20;
+  options.shake_deg = 0;
+  const Flight flight(options);
+  motion::LensEstimator estimator(320, 240);
+  for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
+  std::string why;
+  EXPECT_FALSE(estimator.result(why));
+  EXPECT_NE(why.find("turns"), std::string::npos) << why;
 }
 
 }  // namespace

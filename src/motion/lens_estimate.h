@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "image/layer.h"
+#include "image/picture.h"
+#include "lens/lens.h"
+
+namespace airtruth::motion {
+
+// A lens of one number, its focal length, from a video alone: while the camera turns, far points
+// keep their angles to one another, which through a wrong lens they do not. Corners are followed
+// until the camera has turned by some degrees; for every candidate the rotation between the two
+// frames is fitted (rotation_fit.h), and the candidate with the least left over is the lens.
+class LensEstimator {
+ public:
+  LensEstimator(int width, int height, const image::Mask* own_aircraft = nullptr);
+  ~LensEstimator();
+
+  // Frames in order.
+  void add(const image::Picture& picture);
+
+  struct Result {
+    bool fisheye = false;  // equidistant; else pinhole
+    double focal_px = 0;
+    double sigma_px = 0;  // from how the misfit grows about its least, and from half the pairs each
+    double rms_px = 0;    // of what is left over
+    double other_rms_px = 0;  // the same of the best lens of the other kind
+    int pairs = 0;
+  };
+  // Empty, with the reason, where the camera turned too little or the focal length does not show.
+  std::optional<Result> result(std::string& why) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace airtruth::motion
