@@ -45,6 +45,22 @@ video = "{output}"
 quality = 18
 """
 
+REALISM = """
+[shutter]
+exposure_s = 0.008
+readout_s = 0.016
+[air]
+extinction_per_km = [0.15, 0.17, 0.21]
+[optics]
+point_spread_px = 0.7
+sharpening = 0.4
+[sensor]
+noise_gain = 4e-4
+noise_floor = 2e-5
+noise_correlation_px = 0.5
+codec_step = 6
+"""
+
 
 def run(command, environment=None):
     """(wall seconds, CPU seconds, peak MiB, what it printed) of a process; ends the benchmark where it fails."""
@@ -76,12 +92,12 @@ class Bench:
         run([self.program, "synth", "-o", self.clip, "--mask", self.mask, "--frames", str(self.frames), "--width",
              str(WIDTH), "--height", str(HEIGHT), "--fov", str(VIEW_DEG), "--speed", str(SPEED_MPS), "--overwrite"])
 
-    def scene(self, size_px, method="matte", output="mp4", clip=None):
-        name = f"{method}_{size_px}"
+    def scene(self, size_px, method="matte", output="mp4", clip=None, realism=""):
+        name = f"{method}_{size_px}" + ("_real" if realism else "")
         ahead = FOCAL_PX * SPAN_M / size_px
         with open(self.path(name + ".toml"), "w") as file:
             file.write(SCENE.format(name=name, video=clip or self.clip, mask=self.mask, view=VIEW_DEG, speed=SPEED_MPS,
-                                    ahead=ahead, far=ahead + 100 * self.frames, method=method, output=output))
+                                    ahead=ahead, far=ahead + 100 * self.frames, method=method, output=output) + realism)
         return self.path(name + ".toml")
 
     def render(self, scene, *more):
@@ -95,12 +111,15 @@ class Bench:
     def contenders(self):
         chroma = self.scene(40, "chroma-key", "avi")
         by_size = {size: self.scene(size) for size in (40, 100)}
+        real = {size: self.scene(size, realism=REALISM) for size in (40, 100)}
         return {
             "(a) the paper's road, 40 px": lambda: self.render(chroma, "--no-cache"),
             "(b) render, 40 px": lambda: self.render(by_size[40], "--no-cache"),
             "(b) render, 100 px": lambda: self.render(by_size[100], "--no-cache"),
             "(b) render, 40 px, motion cached": lambda: self.render(by_size[40]),
             "(b) render, 100 px, motion cached": lambda: self.render(by_size[100]),
+            "(b) render, 40 px, motion cached, all realism": lambda: self.render(real[40]),
+            "(b) render, 100 px, motion cached, all realism": lambda: self.render(real[100]),
             "(c) ffmpeg, decode and encode": self.transcode,
         }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence.h"
-
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -13,6 +12,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "sequence/finished.h"
+#include "sequence/recompose.h"
+#include "sequence/recompose.h"
 #include "sequence/virtual_flight.h"
 #include "video/reader.h"
 #include "video/still.h"
@@ -312,6 +313,96 @@ TEST_F(Sequence, ThePapersMethodAgreesWithTheMatte) {
     EXPECT_LT(between, drawn / 2) << "no nearer to the matte than the bare background is, frame "
                                   << k;
   }
+}
+
+constexpr const char* kEverything =
+    "[motion]\nmodel = \"rotation\"\n[shutter]\nangle_deg = 180\nreadout_s = 0.02\n"
+    "[air]\nextinction_per_km = [0.2, 0.25, 0.3]\n[optics]\npoint_spread_px = 0.8\nsharpening = "
+    "0.5\n"
+    "[sensor]\nnoise_gain = 4e-4\nnoise_floor = 2e-5\nnoise_correlation_px = 0.5\ncodec_step = 6\n";
+
+TEST_F(Sequence, WithEverythingOnTheBackgroundKeepsItsSamplesAndTruthItsWord) {
+  const scene::Scene scene =
+      scene_of("all", crossing("a", "738/738-Ryanair", 120), "", kEverything);
+  Options one;
+  one.threads = 1;
+  const Finished finished = rendered(scene, one);
+  const auto before = frames_of(root_ / "flight.mkv");
+  const auto after = frames_of(finished.video);
+  ASSERT_EQ(before.size(), after.size());
+  int visible = 0;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const annotation::Frame& truth = finished.truth.frames[k];
+    for (int p = 0; p < 3; ++p) {
+      const image::Plane& a = before[k].picture.planes[static_cast<std::size_t>(p)];
+      const image::Plane& b = after[k].picture.planes[static_cast<std::size_t>(p)];
+      for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+          ASSERT_TRUE(a.row(y)[x] == b.row(y)[x] || under_a_box(truth, x, y, p > 0 ? 1 : 0))
+              << "frame " << k << " plane " << p << " at " << x << ',' << y;
+    }
+    const annotation::Intruder& seen = truth.intruders[0];
+    if (!seen.visible_box_px || seen.cut_by_frame > 0) continue;
+    ++visible;
+    // The box from pixels holds the one from geometry, and goes beyond it by blur and halo alone.
+    const Box& exact = *seen.exact_box_px;
+    EXPECT_GE(exact.x, seen.visible_box_px->x - 1) << k;
+    EXPECT_LE(exact.right(), seen.visible_box_px->right() + 1) << k;
+    EXPECT_LT(exact.x - seen.visible_box_px->x, 9) << k;
+    ASSERT_TRUE(seen.centroid_px);
+    EXPECT_TRUE(seen.visible_box_px->contains(static_cast<int>(seen.centroid_px->x()),
+                                              static_cast<int>(seen.centroid_px->y())));
+    EXPECT_TRUE(truth.shake.rotation);
+  }
+  EXPECT_GT(visible, 3);
+  // The record alone makes the same frames again, and any number of threads the same bytes.
+  const Recomposition again = recompose(finished, 3, {});
+  EXPECT_TRUE(again.faults.empty()) << (again.faults.empty() ? "" : again.faults.front());
+  const std::string truth_of_one = read_file(finished.folder / "truth.jsonl");
+  Options two;
+  two.threads = 2;
+  two.overwrite = true;
+  EXPECT_EQ(read_file(rendered(scene, two).folder / "truth.jsonl"), truth_of_one);
+}
+
+TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid) {
+  write_file(root_ / "small.toml",
+             "[clip]\nwidth = 64\nheight = 48\n[optics]\npoint_spread_px = 1\n");
+  write_file(root_ / "lens.toml",
+             std::string("[clip]\nwidth = ") + std::to_string(kWidth) +
+                 "\nheight = " + std::to_string(kHeight) +
+                 "\nlens = \"fisheye 99.0 "
+                 "px\"\n[optics]\npoint_spread_px = 1\n");
+  const auto said = [&](const std::string& more) {
+    try {
+      render(scene_of("s", crossing("a", "738/738-Ryanair", 120), "", more), out_, {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_NE(said("[realism]\nfile = \"small.toml\"\n").find("was measured on a clip of 64 x 48 px"),
+            std::string::npos);
+  EXPECT_NE(said("[realism]\nfile = \"lens.toml\"\n").find("through the lens 'fisheye 99.0 px'"),
+            std::string::npos);
+  // FFV1 tells no quantiser.
+  const std::string why = said("[sensor]\ncodec_step = \"auto\"\n");
+  EXPECT_NE(why.find("sensor.codec_step cannot be measured"), std::string::npos) << why;
+  EXPECT_NE(why.find("fallback"), std::string::npos) << why;
+  EXPECT_TRUE(left_in_out().empty());
+  Options options;
+  std::vector<std::string> warnings;
+  options.warn = [&](const std::string& w) { warnings.push_back(w); };
+  options.use_cache = false;
+  const Summary summary =
+      render(scene_of("s",
+                      crossing("a", "738/738-Ryanair", 120),
+                      "",
+                      "[sensor]\ncodec_step = \"auto\"\n[realism]\nfallback = true\n"),
+             out_,
+             options);
+  EXPECT_GT(summary.frames_visible, 0);
+  EXPECT_FALSE(warnings.empty());
 }
 
 }  // namespace

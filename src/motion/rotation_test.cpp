@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/seed.h"
+#include "motion/gyro.h"
+#include "motion/motion.h"
+#include "motion/rotation_fit.h"
+
+namespace airtruth::motion {
+namespace {
+
+Quaternion turn(double yaw_deg, double pitch_deg, double roll_deg) {
+  return world_from_body({yaw_deg, pitch_deg, roll_deg});
+}
+
+TEST(RotationFit, HoldsBesideFortyPerCentOfOutliers) {
+  Random random(3);
+  const Quaternion truth = turn(3, -2, 5);
+  std::vector<Bearings> bearings;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 a = Vector3(random.uniform(-1, 1), random.uniform(-0.7, 0.7), 1).normalized();
+    Vector3 b = truth * a + 3e-4 * Vector3(random.normal(), random.normal(), random.normal());
+    if (i % 5 < 2) b = turn(random.uniform(-9, 9), random.uniform(-9, 9), 0) * a;
+    bearings.push_back({a, b.normalized()});
+  }
+  const auto fit = fit_rotation(bearings, 2e-3, 12, 1);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(degrees(fit->cam_from_reference.angularDistance(truth)), 0.005);
+  EXPECT_NEAR(fit->inliers, 180, 12);
+  EXPECT_FALSE(fit_rotation({bearings.begin(), bearings.begin() + 5}, 2e-3, 12, 1));
+}
+
+std::vector<FrameMotion> shaken(int count) {
+  std::vector<FrameMotion> motion;
+  for (int k = 0; k < count; ++k) {
+    FrameMotion m;
+    m.frame = k;
+    m.time_s = k / 30.0;
+    const double t = m.time_s;
+    m.rotation = turn(0.5 * std::sin(2 * kPi * 9 * t), 0.4 * std::sin(2 * kPi * 7 * t + 1), 2 * t);
+    m.state = k == 0 ? State::kReference : State::kMeasured;
+    motion.push_back(m);
+  }
+  return motion;
+}
+
+// d/dt of a 9 Hz shake sampled at 30 Hz, against its closed form.
+TEST(ShakeOf, KeepsTheRateOfFastShake) {
+  const auto motion = shaken(60);
+  double worst = 0;
+  for (std::size_t k = 15; k < 45; ++k) {
+    const double t = double(k) / 30.0;
+    const Shake shake = shake_of(motion, k);
+    const double h = 1e-5;
+    const auto at = [](double s) {
+      return turn(0.5 * std::sin(2 * kPi * 9 * s), 0.4 * std::sin(2 * kPi * 7 * s + 1), 2 * s);
+    };
+    const Vector3 truth = vector_from_rotation(at(t + h) * at(t - h).conjugate()) / (2 * h);
+    worst = std::max(worst, (shake.rate_radps - truth).norm() / truth.norm());
+  }
+  EXPECT_LT(worst, 0.1);
+  // Nothing is told across a cut.
+  auto cut = motion;
+  cut[30].state = State::kCut;
+  cut[30].rotation = turn(90, 0, 0);
+  EXPECT_LT(shake_of(cut, 29).rate_radps.norm(), 2);
+}
+
+TEST(Motion, RotationsSurviveACsvAndAreSmoothed) {
+  const auto motion = shaken(90);
+  const auto again = motion_from_csv(csv_from_motion(motion), "m.csv");
+  ASSERT_EQ(again.size(), motion.size());
+  EXPECT_EQ(again[7].rotation->coeffs(), motion[7].rotation->coeffs());
+  Options options;
+  options.smoothing_s = 0.3;
+  const auto smooth = smoothed(motion, options);
+  // The steady turn is gone, the shake is left.
+  EXPECT_LT(degrees(smooth[45].rotation->angularDistance(Quaternion::Identity())), 1.0);
+  EXPECT_THROW(
+      motion_from_csv("frame,time_s,qw,qx,qy,qz,inliers,rms_px,state\n0,0,2,0,0,0,1,0,measured\n",
+                      "m.csv"),
+      Error);
+}
+
+std::vector<std::uint8_t> element(const std::string& key,
+                                  char type,
+                                  std::uint8_t size,
+                                  std::uint16_t count,
+                                  std::vector<std::uint8_t> data) {
+  std::vector<std::uint8_t> bytes(key.begin(), key.end());
+  for (const auto b :
+       {std::uint8_t(type), size, std::uint8_t(count >> 8), std::uint8_t(count & 255)})
+    bytes.push_back(b);
+  bytes.insert(bytes.end(), data.begin(), data.end());
+  while (bytes.size() % 4 != 0) bytes.push_back(0);
+  return bytes;
+}
+
+std::vector<std::uint8_t> together(std::vector<std::uint8_t> a,
+                                   const std::vector<std::uint8_t>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// A packet as GoPro's specification of GPMF has it.
+TEST(Gpmf, AGyroStreamIsRead) {
+  const auto scale = element("SCAL", 's', 2, 1, {0x01, 0x00});  // 256
+  const auto gyro =
+      element("GYRO", 's', 6, 2, {0x01, 0x00, 0xff, 0x00, 0x00, 0x80, 0, 0, 0, 0, 0x02, 0x00});
+  const auto stream_data = together(scale, gyro);
+  const auto stream =
+      element("STRM", 0, 1, static_cast<std::uint16_t>(stream_data.size()), stream_data);
+  const auto packet = element("DEVC", 0, 1, static_cast<std::uint16_t>(stream.size()), stream);
+  const auto samples = gyro_from_gpmf(packet, 2, 3);
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_DOUBLE_EQ(samples[0].time_s, 2.25);
+  EXPECT_TRUE(samples[0].rate_radps.isApprox(Vector3(1, -1, 0.5)));
+  EXPECT_TRUE(samples[1].rate_radps.isApprox(Vector3(0, 0, 2)));
+  // Cut anywhere, it is read up to there or not at all.
+  for (std::size_t n = 0; n < packet.size(); ++n) gyro_from_gpmf(std::span(packet).first(n), 0, 1);
+}
+
+TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
+  auto motion = shaken(120);
+  const Quaternion gyro_from_cam = turn(90, 0, 180);
+  const Vector3 bias(0.01, -0.02, 0.005);
+  const double offset_s = 0.137;
+  std::vector<GyroSample> gyro;
+  for (int i = 0; i < 2000; ++i) {
+    const double t = i / 400.0 - 0.3;
+    const double h = 1e-4;
+    const auto at = [](double s) {
+      return turn(0.5 * std::sin(2 * kPi * 9 * s), 0.4 * std::sin(2 * kPi * 7 * s + 1), 2 * s);
+    };
+    const Vector3 in_cam = -vector_from_rotation(at(t + h) * at(t - h).conjugate()) / (2 * h);
+    gyro.push_back({t + offset_s, gyro_from_cam * (in_cam - bias)});
+  }
+  const auto fit = fit_gyro(gyro, motion);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->offset_s, offset_s, 0.003);
+  EXPECT_GT(fit->correlation, 0.98);
+  EXPECT_LT(degrees(fit->cam_from_gyro.angularDistance(gyro_from_cam.conjugate())), 2);
+  const auto truth = motion;
+  for (std::size_t k = 60; k < 66; ++k) {
+    motion[k].state = State::kBridged;
+    motion[k].rotation = motion[59].rotation;
+  }
+  const auto bridged = bridged_by_gyro(motion, gyro, *fit);
+  for (std::size_t k = 60; k < 66; ++k) {
+    const double carried_on = degrees(motion[k].rotation->angularDistance(*truth[k].rotation));
+    const double by_gyro = degrees(bridged[k].rotation->angularDistance(*truth[k].rotation));
+    EXPECT_LT(by_gyro, 0.12) << k << " (carried on: " << carried_on << ")";
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::motion
