@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "base/files.h"
 #include "calibration/calibration.h"
+#include "calibration/horizon.h"
 #include "calibration/own_aircraft.h"
 #include "composite/sensor.h"
 #include "composite/spread.h"
 #include "image/colour.h"
 #include "synthetic/flight.h"
+#include "video/still.h"
 #include "video/writer.h"
 
 // What is put into a virtual flight is measured out of it again.
@@ -324,6 +329,104 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
     const double iou = overlap(find_own_aircraft(clip.path(), {}), flight.own_aircraft());
     std::printf("own aircraft, flight %d: IoU %.3f\n", static_cast<int>(seed), iou);
     EXPECT_GE(iou, 0.95) << seed;
+  }
+}
+
+// Hand-marked horizons of a real onboard video, through a wide lens: sky and ground are painted
+// along each, and the plane that is found must lie along it.
+TEST(Horizon, LiesAlongHandMarkedOnes) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
+  std::istringstream lines(
+      read_file(std::string(shared) + "/evision/horizon/HorizonLineData_1.txt"));
+  const lens::ImageSize size{1280, 720};
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(90, size);
+  const HorizonFinder finder(lens, nullptr);
+  std::vector<double> off_px;
+  int frames = 0, found = 0, line_number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line_number++ % 20 != 0) continue;
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');
+    std::vector<double> numbers;
+    while (std::getline(cells, cell, ',')) numbers.push_back(std::atof(cell.c_str()));
+    std::vector<double> horizon(1280, 0);
+    for (std::size_t i = 0; i + 3 < numbers.size(); i += 2)
+      for (int x = static_cast<int>(numbers[i]); x <= static_cast<int>(numbers[i + 2]) && x < 1280;
+           ++x)
+        horizon[static_cast<std::size_t>(x)] =
+            numbers[i + 1] + (numbers[i + 3] - numbers[i + 1]) * (x - numbers[i]) /
+                                 std::max(1.0, numbers[i + 2] - numbers[i]);
+    image::Picture picture = image::make_picture(1280, 720, image::Colour{});
+    for (int y = 0; y < 720; ++y)
+      for (int x = 0; x < 1280; ++x) {
+        const bool sky = y < horizon[static_cast<std::size_t>(x)];
+        const auto grain = static_cast<int>((x * 7919u ^ y * 104729u) % 37u);
+        picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(sky ? 190 - y / 20 : 80 + grain);
+        picture.planes[1].row(y / 2)[x / 2] = static_cast<std::uint8_t>(sky ? 140 : 112);
+        picture.planes[2].row(y / 2)[x / 2] = static_cast<std::uint8_t>(sky ? 116 : 126);
+      }
+    ++frames;
+    const auto plane = finder.find(picture);
+    if (!plane) continue;
+    ++found;
+    EXPECT_LT(plane->up_in_cam.y(), 0);
+    double sum = 0;
+    int count = 0;
+    for (int x = 40; x < 1280; x += 40)
+      for (int y = 1; y < 720; ++y) {
+        const double above = lens.ray_from_pixel({x + 0.5, y - 0.5})->dot(plane->up_in_cam);
+        const double below = lens.ray_from_pixel({x + 0.5, y + 0.5})->dot(plane->up_in_cam);
+        if (above > 0 && below <= 0) {
+          sum += std::abs(y - horizon[static_cast<std::size_t>(x)]);
+          ++count;
+        }
+      }
+    off_px.push_back(sum / std::max(1, count));
+  }
+  std::sort(off_px.begin(), off_px.end());
+  std::printf(
+      "horizons: %d of %d found, median %.1f px off (a fisheye's bent line against a plane)\n",
+      found,
+      frames,
+      off_px[off_px.size() / 2]);
+  EXPECT_EQ(found, frames);
+  EXPECT_LT(off_px[off_px.size() / 2], 15);
+}
+
+// The paper's own masks, each laid over a virtual flight as a real aircraft would stand in it.
+TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
+  for (const char* name : {"mask1", "mask7b"}) {
+    const image::Mask mask =
+        video::read_mask(std::string(shared) + "/evision/masks/" + name + ".png", 1280, 960);
+    synthetic::FlightOptions o;
+    o.seed = 11;
+    o.frame_count = 200;
+    o.own_aircraft = false;
+    const synthetic::Flight flight(o);
+    Clip clip;
+    clip.write(
+        flight,
+        [&](int k) {
+          image::Picture picture = flight.frame(k);
+          for (int y = 0; y < 960; ++y)
+            for (int x = 0; x < 1280; ++x) {
+              if (mask.is_free(x, y)) continue;
+              picture.planes[0].row(y)[x] =
+                  static_cast<std::uint8_t>(170 - y / 16 + (x / 90 % 2) * 20);
+              picture.planes[1].row(y / 2)[x / 2] = 126;
+              picture.planes[2].row(y / 2)[x / 2] = 132;
+            }
+          return picture;
+        },
+        o.frame_count,
+        video::Format::kMp4);
+    const double iou = overlap(find_own_aircraft(clip.path(), {}), mask);
+    std::printf("%s: IoU %.3f\n", name, iou);
+    EXPECT_GE(iou, 0.93) << name;
   }
 }
 

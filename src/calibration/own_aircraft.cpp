@@ -175,15 +175,33 @@ image::Mask mask_of(const cv::Mat& aircraft) {
   return mask;
 }
 
+float middle_of(const cv::Mat& values, const cv::Mat& where) {
+  std::vector<float> chosen;
+  for (int y = 0; y < values.rows; ++y)
+    for (int x = 0; x < values.cols; ++x)
+      if (where.at<unsigned char>(y, x) != 0) chosen.push_back(values.at<float>(y, x));
+  if (chosen.empty()) return 0;
+  const auto middle = chosen.begin() + static_cast<std::ptrdiff_t>(chosen.size() / 2);
+  std::nth_element(chosen.begin(), middle, chosen.end());
+  return *middle;
+}
+
 // A region is kept where it reaches the picture's border (it carries the camera) and enough of it
 // was seen to stay while the world moved.
-void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure) {
+void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure, const cv::Mat& spread) {
   cv::Mat labels, statistics, centres;
   const int count = cv::connectedComponentsWithStats(aircraft, labels, statistics, centres, 8);
   const int least = aircraft.cols * aircraft.rows / 2000;
   int largest = 0;
+  int main_part = 0;
   for (int i = 1; i < count; ++i)
-    largest = std::max(largest, statistics.at<int>(i, cv::CC_STAT_AREA));
+    if (const int area = statistics.at<int>(i, cv::CC_STAT_AREA); area > largest) {
+      largest = area;
+      main_part = i;
+    }
+  // Cloud may look like the aircraft, and hardly move; but it moves more.
+  constexpr float kAsSteady = 1.6F;
+  const float steady = main_part > 0 ? middle_of(spread, labels == main_part) : 0;
   constexpr int kOfLargest = 20;  // a smaller share of it is a corner of sky
   constexpr double kSeenShare = 0.25;
   for (int i = 1; i < count; ++i) {
@@ -193,7 +211,8 @@ void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure) {
                            s[cv::CC_STAT_TOP] + s[cv::CC_STAT_HEIGHT] >= aircraft.rows - 1;
     const cv::Mat here = labels == i;
     const bool seen = cv::countNonZero(here & sure) > kSeenShare * s[cv::CC_STAT_AREA];
-    if (!at_border || s[cv::CC_STAT_AREA] < std::max(least, largest / kOfLargest) || !seen)
+    if (!at_border || s[cv::CC_STAT_AREA] < std::max(least, largest / kOfLargest) || !seen ||
+        middle_of(spread, here) > kAsSteady * steady + 0.3F)
       aircraft.setTo(0, here);
   }
   // And small holes in it are part of it.
@@ -206,14 +225,7 @@ void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure) {
 // More change over time than this, and it is not the aircraft: some times what most of what looks
 // like it shows.
 float steady_limit(const cv::Mat& spread, const cv::Mat& candidates) {
-  std::vector<float> values;
-  for (int y = 0; y < spread.rows; ++y)
-    for (int x = 0; x < spread.cols; ++x)
-      if (candidates.at<unsigned char>(y, x) != 0) values.push_back(spread.at<float>(y, x));
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return std::max(5.0F, 3 * *middle);
+  return std::max(5.0F, 3 * middle_of(spread, candidates));
 }
 
 cv::Mat cut(const cv::Mat& features, cv::Mat labels) {
@@ -305,7 +317,7 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
   cv::Mat small;
   cv::resize(features, small, labels.size(), 0, 0, cv::INTER_AREA);
   cv::Mat aircraft = cut(small, labels);
-  keep_what_was_seen(aircraft, sure);
+  keep_what_was_seen(aircraft, sure, spread);
   return mask_of(refined(aircraft, features, sums.spread(), steady));
 }
 
