@@ -27,9 +27,9 @@ class EdgeMeter {
 
  private:
   struct Edge {
-    double width_px = 0;  // standard deviation of its derivative
-    double moved_px = 0;  // across itself, since the frame before; NaN: not known
-    double low = 0, high = 0;                        // code values on its two sides
+    double width_px = 0;       // standard deviation of its derivative
+    double moved_px = 0;       // across itself, since the frame before; NaN: not known
+    double low = 0, high = 0;  // code values on its two sides
     std::vector<std::pair<double, double>> samples;  // place px, height 0..1
   };
   const image::Mask* own_aircraft_;

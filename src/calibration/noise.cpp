@@ -194,6 +194,9 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
       chi += blocks * std::min(e * e, 0.02);
     }
   }
+  constexpr double kNone = 1e-9;  // a hundredth of a code value
+  if (gain < kNone) gain = 0;
+  if (floor < kNone) floor = 0;
   const double scale = chi / std::max<double>(1, double(rows.size()) - 2);
   Result result;
   result.gain = {gain, det > 0 ? std::sqrt(scale * sw / det) : gain};

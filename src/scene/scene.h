@@ -58,7 +58,7 @@ struct Motion {
 struct Light {
   double sun_azimuth_deg = 180;  // from north towards east
   double sun_elevation_deg = 45;
-  bool sun_is_stated = false;  // else a camera file may know better
+  bool sun_is_stated = false;      // else a camera file may know better
   std::optional<double> exposure;  // factor on the sun's light; else from the background
   std::optional<std::array<double, 3>>
       sky_colour;  // linear RGB of the light from above; else from the background

@@ -39,7 +39,9 @@ class MotionSource {
 
   // True when frames must be seen once before the first motion is known (reference "smoothed", a
   // shutter, a gyroscope; not cached).
-  bool needs_pass() const { return (smoothed_ || needs_change_ || !gyro_video_.empty()) && !ready_ && !none_; }
+  bool needs_pass() const {
+    return (smoothed_ || needs_change_ || !gyro_video_.empty()) && !ready_ && !none_;
+  }
   // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
   void measure(video::Reader& reader,
                const std::stop_token& stop,
@@ -64,7 +66,7 @@ class MotionSource {
 
   bool none_ = false;
   bool needs_change_ = false;
-  fs::path gyro_video_;  // whose gyroscope bridges what cannot be measured; empty: none
+  fs::path gyro_video_;             // whose gyroscope bridges what cannot be measured; empty: none
   std::optional<lens::Lens> lens_;  // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence.h"
+
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -12,7 +13,6 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "sequence/finished.h"
-#include "sequence/recompose.h"
 #include "sequence/recompose.h"
 #include "sequence/virtual_flight.h"
 #include "video/reader.h"
