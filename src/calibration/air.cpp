@@ -63,7 +63,7 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
       if (!ray) continue;
       const Vector3 direction = world_from_cam * *ray;
       const double elevation_deg = degrees(std::asin(std::clamp(-direction.z(), -1.0, 1.0)));
-      const image::Rgb linear = linear_colour(picture, code, x, y);
+      const image::Rgb linear = image::linear_at(picture, code, x, y);
       if (elevation_deg > kLowSkyDeg) {
         const double light =
             0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);

@@ -320,7 +320,7 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
   for (const std::uint64_t seed : {1u, 4u}) {
     synthetic::FlightOptions o;
     o.seed = seed;
-    o.frame_count = 240;
+    o.frame_count = 180;
     o.width = 960, o.height = 720;
     const synthetic::Flight flight(o);
     Clip clip;
@@ -404,7 +404,7 @@ TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
         video::read_mask(std::string(shared) + "/evision/masks/" + name + ".png", 1280, 960);
     synthetic::FlightOptions o;
     o.seed = 11;
-    o.frame_count = 200;
+    o.frame_count = 120;
     o.own_aircraft = false;
     const synthetic::Flight flight(o);
     Clip clip;

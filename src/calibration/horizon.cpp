@@ -64,23 +64,6 @@ bool is_sky(const std::vector<Sample>& samples, const Vector3& up) {
 
 }  // namespace
 
-image::Rgb linear_colour(const image::Picture& picture,
-                         const image::ColourCode& code,
-                         int x,
-                         int y) {
-  image::Ycc ycc;
-  ycc.y = picture.planes[0].row(y)[x];
-  if (picture.plane_count == 3) {
-    const int cx = x >> image::log2_chroma_width(picture.colour.chroma);
-    const int cy = y >> image::log2_chroma_height(picture.colour.chroma);
-    ycc.cb = picture.planes[1].row(cy)[cx];
-    ycc.cr = picture.planes[2].row(cy)[cx];
-  }
-  image::Rgb rgb = code.rgb_from_ycc(ycc);
-  for (float& c : rgb) c = image::linear_from_srgb(c);
-  return rgb;
-}
-
 Quaternion cam_from_level(const Vector3& up_in_cam) {
   const YawPitchRoll attitude = attitude_from_up(up_in_cam);
   return cam_from_body() * world_from_body(attitude).conjugate();

@@ -40,10 +40,4 @@ YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
 Quaternion cam_from_level(
     const Vector3& up_in_cam);  // level: north-east-down with the camera's yaw
 
-// Linear colour of a pixel, chroma held over its block.
-image::Rgb linear_colour(const image::Picture& picture,
-                         const image::ColourCode& code,
-                         int x,
-                         int y);
-
 }  // namespace airtruth::calibration

@@ -32,7 +32,8 @@ constexpr const char* kName = "sequence";
 scene::Scene scene_beside(const scene::Scene& given,
                           const fs::path& real,
                           const RealBoxes& boxes,
-                          const fs::path& path_file) {
+                          const Beside& path,
+                          const YawPitchRoll& attitude) {
   scene::Scene scene = given;
   scene.name = kName;
   scene.background.video = real;
@@ -43,12 +44,14 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.motion.model = "none";
   scene.intruders.resize(1);
   scene::Intruder& intruder = scene.intruders[0];
-  intruder.path_file = path_file;
-  intruder.waypoints_ned_m.clear();
+  intruder.path_file.reset();
+  intruder.waypoints_ned_m = path.waypoints_ned_m;
+  intruder.times_s = path.times_s;
   intruder.speed_mps.reset();
-  intruder.times_s.clear();
   intruder.start_s = 0;
-  intruder.yaw_deg = intruder.pitch_deg = intruder.roll_deg = std::nullopt;
+  intruder.yaw_deg = attitude.yaw_deg;
+  intruder.pitch_deg = attitude.pitch_deg;
+  intruder.roll_deg = attitude.roll_deg;
   scene.output.video = "mkv";  // what is compared is not encoded once more
   return scene;
 }
@@ -248,16 +251,14 @@ class Comparing {
     const YawPitchRoll attitude{intruder.yaw_deg.value_or(90),
                                 intruder.pitch_deg.value_or(0),
                                 intruder.roll_deg.value_or(0)};
-    const fs::path path_file = staged_.path() / "path.csv";
-    write_file(path_file,
-               path_beside(boxes_, aircraft.mesh, attitude, lens, info.frame_rate.value()));
+    const Beside path = path_beside(boxes_, aircraft.mesh, attitude, lens, info.frame_rate.value());
     sequence::Options how;
     how.warn = options_.warn;
     how.stop = options_.stop;
     how.progress = [&](const sequence::Progress& p) {
       if (options_.progress) options_.progress(p.frames_done, 2 * p.frames_total);
     };
-    sequence::render(scene_beside(given, real_, boxes_, path_file), staged_.path(), how);
+    sequence::render(scene_beside(given, real_, boxes_, path, attitude), staged_.path(), how);
   }
 
   void compare() {

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "annotation/exact_box.h"
 #include "base/error.h"
 
@@ -78,11 +76,11 @@ Pixel side_of(const std::vector<Spot>& spots, const lens::ImageSize& size) {
 
 }  // namespace
 
-std::string path_beside(const RealBoxes& boxes,
-                        const aircraft::Mesh& mesh,
-                        const YawPitchRoll& attitude,
-                        const lens::Lens& lens,
-                        double frame_rate_hz) {
+Beside path_beside(const RealBoxes& boxes,
+                   const aircraft::Mesh& mesh,
+                   const YawPitchRoll& attitude,
+                   const lens::Lens& lens,
+                   double frame_rate_hz) {
   const std::vector<Spot> spots = spots_of(boxes);
   const Pixel side = side_of(spots, lens.size());
   if (side.isZero())
@@ -92,7 +90,7 @@ std::string path_beside(const RealBoxes& boxes,
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
   const aircraft::Extents extents = aircraft::extents(mesh);
-  std::string text = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n";
+  Beside path;
   double range_m = 0;
   for (const Spot& spot : spots) {
     const Pixel place = spot.centre + 2 * std::max(8.0, spot.size_px) * side;
@@ -110,16 +108,18 @@ std::string path_beside(const RealBoxes& boxes,
       range_m *= std::max(box->width, box->height) / spot.size_px;
     }
     const Vector3 p = range_m * direction;
-    text += fmt::format("{},{},{},{},{},{},{}\n",
-                        double(spot.frame - spots.front().frame) / frame_rate_hz,
-                        p.x(),
-                        p.y(),
-                        p.z(),
-                        attitude.yaw_deg,
-                        attitude.pitch_deg,
-                        attitude.roll_deg);
+    if (!path.waypoints_ned_m.empty() && path.waypoints_ned_m.back() == p) continue;
+    path.waypoints_ned_m.push_back(p);
+    path.times_s.push_back(double(spot.frame - spots.front().frame) / frame_rate_hz);
   }
-  return text;
+  if (path.times_s.size() < 2)
+    throw Error("the real aircraft stands still in the picture; nothing can fly beside it");
+  // The last frame is part of it, and a little more.
+  const Vector3 last = path.waypoints_ned_m.back();
+  path.waypoints_ned_m.push_back(
+      last + (last - path.waypoints_ned_m[path.times_s.size() - 2]) * 1e-3 + Vector3(1e-6, 0, 0));
+  path.times_s.push_back(double(spots.back().frame - spots.front().frame + 1) / frame_rate_hz);
+  return path;
 }
 
 }  // namespace airtruth::comparison

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "aircraft/mesh.h"
@@ -10,13 +9,17 @@
 
 namespace airtruth::comparison {
 
-// A path file (trajectory::read_path_file) on which an aircraft of that mesh keeps beside the real
-// one, as large as it, in the view of a camera that stands at the origin and looks north. Rows
-// begin at the first box's frame, time 0. Error where there is no room beside it.
-std::string path_beside(const RealBoxes& boxes,
-                        const aircraft::Mesh& mesh,
-                        const YawPitchRoll& attitude,
-                        const lens::Lens& lens,
-                        double frame_rate_hz);
+// Waypoints and times on which an aircraft of that mesh keeps beside the real one, as large as it,
+// in the view of a camera that stands at the origin and looks north. Time 0 is the first box's
+// frame. Error where there is no room beside it.
+struct Beside {
+  std::vector<Vector3> waypoints_ned_m;
+  std::vector<double> times_s;
+};
+Beside path_beside(const RealBoxes& boxes,
+                   const aircraft::Mesh& mesh,
+                   const YawPitchRoll& attitude,
+                   const lens::Lens& lens,
+                   double frame_rate_hz);
 
 }  // namespace airtruth::comparison

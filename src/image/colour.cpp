@@ -65,6 +65,20 @@ Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int he
   return result;
 }
 
+Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y) {
+  Ycc ycc;
+  ycc.y = picture.planes[0].row(y)[x];
+  if (picture.plane_count == 3) {
+    const int cx = x >> log2_chroma_width(picture.colour.chroma);
+    const int cy = y >> log2_chroma_height(picture.colour.chroma);
+    ycc.cb = picture.planes[1].row(cy)[cx];
+    ycc.cr = picture.planes[2].row(cy)[cx];
+  }
+  Rgb rgb = code.rgb_from_ycc(ycc);
+  for (float& c : rgb) c = linear_from_srgb(c);
+  return rgb;
+}
+
 Rgb8 rgb8_from_picture(const Picture& picture) {
   return rgb8_from_picture(picture, 0, 0, picture.width, picture.height);
 }

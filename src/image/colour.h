@@ -61,6 +61,9 @@ inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
           (rgb[0] - y) / (2 * (1 - kr_)) * c_scale_ + 128};
 }
 
+// Linear light of one pixel, chroma held over its block.
+Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y);
+
 // The whole picture as packed sRGB, chroma held over its block, for previews and stills.
 Rgb8 rgb8_from_picture(const Picture& picture);
 

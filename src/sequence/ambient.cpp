@@ -34,20 +34,6 @@ float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
-Rgb linear_at(const image::Picture& picture, const image::ColourCode& code, int x, int y) {
-  image::Ycc ycc;
-  ycc.y = picture.planes[0].row(y)[x];
-  if (picture.plane_count == 3) {
-    const int cx = x >> image::log2_chroma_width(picture.colour.chroma);
-    const int cy = y >> image::log2_chroma_height(picture.colour.chroma);
-    ycc.cb = picture.planes[1].row(cy)[cx];
-    ycc.cr = picture.planes[2].row(cy)[cx];
-  }
-  Rgb rgb = code.rgb_from_ycc(ycc);
-  for (float& c : rgb) c = image::linear_from_srgb(c);
-  return rgb;
-}
-
 std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::Mask* own_aircraft,
                              const std::optional<PixelBox>& near) {
@@ -64,7 +50,7 @@ std::vector<Block> blocks_of(const image::Picture& picture,
     for (int x = step / 2; x < picture.width; x += step) {
       if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
       Block block;
-      block.linear = linear_at(picture, code, x, y);
+      block.linear = image::linear_at(picture, code, x, y);
       block.brightness = brightness(block.linear);
       block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
       blocks.push_back(block);

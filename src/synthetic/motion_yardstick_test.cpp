@@ -151,10 +151,10 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
 
 TEST(MotionYardstick, RotationThroughAFisheyeHoldsWithinAFiftiethOfADegreeOver1000Frames) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
-  const lens::ImageSize size{1280, 960};
+  const lens::ImageSize size{960, 720};  // the calibration is scaled
   const lens::Lens lens =
       shared == nullptr
-          ? lens::Lens(lens::Fisheye{{563, 563}, {637.8, 473.8}, {0.06, 0.01, 0, 0}}, size)
+          ? lens::Lens(lens::Fisheye{{422, 422}, {478, 355}, {0.06, 0.01, 0, 0}}, size)
           : lens::read_calibration(
                 std::string(shared) + "/lens/gopro_hero3plus_1280x960.gyroflow.json", size);
   const Yardstick result = measure(lens, kFrames, 0.12);
