@@ -63,6 +63,8 @@ Background background_from(const TableReader& table) {
   background.lens = scene::lens_in(table);
   background.camera = scene::camera_in(table);
   background.motion = scene::motion_in(table);
+  background.camera_model = scene::camera_model_in(table);
+  background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);
   return background;
 }
@@ -267,9 +269,21 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.render = scene::render_in(root);
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);
-  for (const TableReader& table : root.tables(
-           "background",
-           {"name", "video", "flight", "mask", "first_frame", "lens", "camera", "motion", "light"}))
+  for (const TableReader& table : root.tables("background",
+                                              {"name",
+                                               "video",
+                                               "flight",
+                                               "mask",
+                                               "first_frame",
+                                               "lens",
+                                               "camera",
+                                               "motion",
+                                               "light",
+                                               "shutter",
+                                               "air",
+                                               "optics",
+                                               "sensor",
+                                               "realism"}))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
     catalogue.aircraft.push_back(

@@ -29,6 +29,8 @@ struct Background {
   scene::Lens lens;
   scene::Camera camera;
   scene::Motion motion;
+  scene::CameraModel camera_model;
+  scene::Realism realism;
   scene::Light light;
   Where where;
 };

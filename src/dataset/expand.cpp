@@ -36,6 +36,8 @@ scene::Scene scene_over(const Catalogue& catalogue, const Background& background
   scene.lens = background.lens;
   scene.camera = background.camera;
   scene.motion = background.motion;
+  scene.camera_model = background.camera_model;
+  scene.realism = background.realism;
   scene.light = background.light;
   scene.render = catalogue.render;
   scene.composite = catalogue.composite;

@@ -34,7 +34,6 @@ velocity_ned_mps = [%g, 0, 0]
 attitude_yaw_pitch_roll_deg = [0, 0, 0]
 
 [motion]
-model = "homography"
 reference = "first_frame"
 
 [light]
