@@ -9,42 +9,10 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kStep = 7;  // pixels between samples
+constexpr int kGroundStep = 2;  // pixels between samples
+constexpr int kSkyStep = 3;     // of those
 constexpr double kLowSkyDeg = 2.5;
-constexpr double kHighSkyDeg = 6;
-constexpr double kLeastDepressionDeg = 1.0;
 constexpr std::size_t kFewest = 200;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// Median and its standard error.
-Estimate middle_of(const std::vector<double>& values) {
-  const double m = median(values);
-  std::vector<double> off;
-  for (const double v : values) off.push_back(std::abs(v - m));
-  return {m, 1.4826 * median(off) * 1.25 / std::sqrt(double(values.size()))};
-}
-
-struct Bin {
-  double range_km = 0;
-  std::array<double, 3> light{};
-  double weight = 0;
-};
-
-// Misfit of A + B exp(-beta r) with the best B; A is given.
-double misfit(const std::vector<Bin>& bins, std::size_t c, double airlight, double beta) {
-  double sxx = 0, sxy = 0, syy = 0;
-  for (const Bin& b : bins) {
-    const double x = std::exp(-beta * b.range_km);
-    const double y = b.light[c] - airlight;
-    sxx += b.weight * x * x, sxy += b.weight * x * y, syy += b.weight * y * y;
-  }
-  return syy - sxy * sxy / sxx;
-}
 
 }  // namespace
 
@@ -56,102 +24,50 @@ AirMeter::AirMeter(const lens::Lens& lens,
 void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_world) {
   const image::ColourCode code(picture.colour);
   const Quaternion world_from_cam = cam_from_world.conjugate();
-  for (int y = kStep / 2; y < picture.height; y += kStep)
-    for (int x = kStep / 2; x < picture.width; x += kStep) {
+  GroundPatches patches(altitude_m_.value_or(1), 1 / lens_.focal_px());
+  for (int y = kGroundStep / 2; y < picture.height; y += kGroundStep)
+    for (int x = kGroundStep / 2; x < picture.width; x += kGroundStep) {
       if (own_aircraft_ != nullptr && !own_aircraft_->is_free(x, y)) continue;
       const auto ray = lens_.ray_from_pixel({x + 0.5, y + 0.5});
       if (!ray) continue;
       const Vector3 direction = world_from_cam * *ray;
-      const double elevation_deg = degrees(std::asin(std::clamp(-direction.z(), -1.0, 1.0)));
+      const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
+      const bool is_sky = elevation_rad > 0;
+      if (is_sky ? x / kGroundStep % kSkyStep != 0 || y / kGroundStep % kSkyStep != 0
+                 : !altitude_m_)
+        continue;
       const image::Rgb linear = image::linear_at(picture, code, x, y);
-      if (elevation_deg > kLowSkyDeg) {
+      const SeenLight seen{std::atan2(direction.y(), direction.x()), elevation_rad, linear};
+      if (!is_sky) {
+        patches.add(seen);
+        continue;
+      }
+      seen_.push_back(seen);
+      if (elevation_rad > radians(kLowSkyDeg) && ++sky_count_ % 3 == 0) {
         const double light =
             0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
-        if ((x / kStep + y / kStep) % 3 == 0) sky_.push_back({direction, light});
-        if (elevation_deg < kHighSkyDeg) above_.push_back(linear);
-      } else if (altitude_m_ && elevation_deg < -kLeastDepressionDeg) {
-        below_.push_back({*altitude_m_ / -direction.z(), linear});
+        sky_.push_back({direction, light});
       }
     }
+  for (const SeenLight& patch : patches.take()) seen_.push_back(patch);
 }
 
-std::optional<AirMeter::Colour> AirMeter::airlight(std::string& why) const {
-  if (above_.size() < kFewest) {
-    why = "the horizon is not seen, and so not the sky just above it";
-    return std::nullopt;
+AirMeter::Air AirMeter::air() const {
+  Air air;
+  const SkyCurves sky = sky_curves(seen_);
+  air.airlight = airlight_of(sky, 0);
+  if (!air.airlight) {
+    air.why = "the horizon is not seen, and so not the sky just above it";
+    air.why_no_extinction = air.why;
+  } else if (!altitude_m_) {
+    air.why_no_extinction =
+        "without the camera's height above the ground (--altitude) terrain has no range";
+  } else if (const auto fading =
+                 fading_of_ground(seen_, sky, *altitude_m_, air.why_no_extinction)) {
+    air.extinction_per_km = fading->extinction_per_km;
+    air.airlight = airlight_of(sky, fading->horizon_rad);
   }
-  Colour result;
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::vector<double> values;
-    for (const image::Rgb& rgb : above_) values.push_back(double(rgb[c]));
-    result[c] = middle_of(values);
-  }
-  return result;
-}
-
-std::optional<AirMeter::Colour> AirMeter::extinction_per_km(std::string& why) const {
-  if (!altitude_m_) {
-    why = "without the camera's height above the ground (--altitude) terrain has no range";
-    return std::nullopt;
-  }
-  std::string no_air;
-  const auto air = airlight(no_air);
-  if (!air) {
-    why = no_air;
-    return std::nullopt;
-  }
-  constexpr int kBins = 24;
-  const double nearest_km = 2e-3 * *altitude_m_;
-  const double farthest_km = 1e-3 * *altitude_m_ / std::sin(radians(kLeastDepressionDeg));
-  std::vector<std::array<std::vector<double>, 3>> values(kBins);
-  for (const Far& f : below_) {
-    const double at = std::log(f.range_m / 1000 / nearest_km) / std::log(farthest_km / nearest_km);
-    if (!(at >= 0 && at < 1)) continue;
-    for (std::size_t c = 0; c < 3; ++c)
-      values[static_cast<std::size_t>(at * kBins)][c].push_back(double(f.linear[c]));
-  }
-  std::vector<Bin> bins;
-  for (int i = 0; i < kBins; ++i) {
-    auto& v = values[static_cast<std::size_t>(i)];
-    if (v[0].size() < 60) continue;
-    Bin bin;
-    bin.range_km = nearest_km * std::pow(farthest_km / nearest_km, (i + 0.5) / kBins);
-    double mean_error = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      double sum = 0, squares = 0;
-      for (const double x : v[c]) sum += x, squares += x * x;
-      const double n = double(v[c].size());
-      bin.light[c] = sum / n;
-      mean_error += std::sqrt(std::max(1e-12, squares / n - bin.light[c] * bin.light[c]) / n) / 3;
-    }
-    bin.weight = 1 / (mean_error * mean_error + 1e-6);
-    bins.push_back(bin);
-  }
-  if (bins.size() < 8) {
-    why = "too little ground is seen at different distances";
-    return std::nullopt;
-  }
-  Colour result;
-  for (std::size_t c = 0; c < 3; ++c) {
-    double best = 1e300, beta = 0;
-    std::vector<std::pair<double, double>> curve;
-    for (double b = 0.004; b < 4; b *= 1.02) {
-      const double m = misfit(bins, c, (*air)[c].value, b);
-      curve.push_back({b, m});
-      if (m < best) best = m, beta = b;
-    }
-    // One standard error: where the misfit has grown by its own mean share of one bin.
-    const double scale = best / double(bins.size() - 2);
-    double low = beta, high = beta;
-    for (const auto& [b, m] : curve)
-      if (m <= best + scale) low = std::min(low, b), high = std::max(high, b);
-    if (beta < 0.005 || beta > 3.8 || (high - low) / 2 > 0.5 * beta) {
-      why = "the ground's colour does not go over into the airlight clearly enough";
-      return std::nullopt;
-    }
-    result[c] = {beta, (high - low) / 2};
-  }
-  return result;
+  return air;
 }
 
 std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {

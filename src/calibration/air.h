@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/calibration.h"
-#include "calibration/horizon.h"
+#include "calibration/extinction.h"
+#include "motion/horizon.h"
 
 namespace airtruth::calibration {
 
@@ -20,12 +20,13 @@ class AirMeter {
   // cam_from_world: north-east-down, with the heading that the caller knows.
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
-  using Colour = std::array<Estimate, 3>;
-  // The sky just above the horizon: what an endless way through air looks like.
-  std::optional<Colour> airlight(std::string& why) const;
-  // Per km, from how the ground's colour goes over into the airlight with distance:
-  // L(r) = A + (L0 - A) exp(-extinction r). Empty without an altitude, or where it does not show.
-  std::optional<Colour> extinction_per_km(std::string& why) const;
+  struct Air {
+    std::optional<ColourEstimate> airlight;  // the sky at the horizon
+    // Per km (extinction.h). Empty without an altitude, or where it does not show.
+    std::optional<ColourEstimate> extinction_per_km;
+    std::string why, why_no_extinction;  // of what is empty
+  };
+  Air air() const;
   // The sun's azimuth and elevation, degrees: the direction about which the clear sky (its darkest
   // part at each elevation) is brightest.
   struct Sun {
@@ -34,10 +35,6 @@ class AirMeter {
   std::optional<Sun> sun(std::string& why) const;
 
  private:
-  struct Far {
-    double range_m;
-    image::Rgb linear;
-  };
   struct SkySample {
     Vector3 direction;
     double light;
@@ -45,9 +42,9 @@ class AirMeter {
   lens::Lens lens_;
   const image::Mask* own_aircraft_;
   std::optional<double> altitude_m_;
-  std::vector<image::Rgb> above_;
-  std::vector<Far> below_;
+  std::vector<SeenLight> seen_;
   std::vector<SkySample> sky_;
+  std::size_t sky_count_ = 0;
 };
 
 }  // namespace airtruth::calibration

@@ -9,9 +9,9 @@
 #include "calibration/blur.h"
 #include "calibration/calibration.h"
 #include "calibration/edges.h"
-#include "calibration/horizon.h"
 #include "calibration/noise.h"
 #include "calibration/readout.h"
+#include "motion/horizon.h"
 #include "motion/motion.h"
 #include "video/reader.h"
 
@@ -178,17 +178,17 @@ class Session {
     const lens::ImageSize size{result_.width, result_.height};
     const lens::Lens lens =
         options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
-    const HorizonFinder finder(lens, options_.own_aircraft);
-    std::vector<std::optional<HorizonFinder::Found>> found;
+    const motion::HorizonFinder finder(lens, options_.own_aircraft);
+    std::vector<std::optional<motion::HorizonFinder::Found>> found;
     std::vector<Vector3> ups;  // in the first frame's camera
     for (const Sampled& sampled : sampled_) {
       if (options_.stop.stop_requested()) throw Interrupted();
       found.push_back(finder.find(sampled.picture));
       if (!found.back()) continue;
-      const YawPitchRoll attitude = attitude_from_up(found.back()->up_in_cam);
+      const YawPitchRoll attitude = motion::attitude_from_up(found.back()->up_in_cam);
       result_.horizons.push_back(
           {sampled.frame, attitude.pitch_deg, attitude.roll_deg, found.back()->separation});
-      if (sampled.turn_known)
+      if (sampled.turn_known && found.back()->is_sharp())
         ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
     }
     tint_sky(lens, found);
@@ -199,14 +199,14 @@ class Session {
       if (first_from_level && sampled_[i].turn_known)
         air.add(sampled_[i].picture, sampled_[i].cam_from_first * *first_from_level);
       else if (!options_.lens && found[i])
-        air.add(sampled_[i].picture, cam_from_level(found[i]->up_in_cam));
+        air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
     }
-    std::string why;
-    if (const auto colour = air.airlight(why))
-      put("air.airlight", {colour->begin(), colour->end()});
+    const AirMeter::Air measured = air.air();
+    if (measured.airlight)
+      put("air.airlight", {measured.airlight->begin(), measured.airlight->end()});
     else
-      lack("air.airlight", why);
-    take_extinction(air);
+      lack("air.airlight", measured.why);
+    take_extinction(measured);
     take_sun(air, first_from_level.has_value());
   }
 
@@ -221,15 +221,14 @@ class Session {
       std::nth_element(values.begin(), at, values.end());
       middle[axis] = *at;
     }
-    const Quaternion cam_from_heading = cam_from_level(middle.normalized());
+    const Quaternion cam_from_heading = motion::cam_from_level(middle.normalized());
     const Quaternion heading(Eigen::AngleAxisd(-radians(options_.heading_deg), Vector3::UnitZ()));
     return cam_from_heading * heading;
   }
 
-  void take_extinction(const AirMeter& air) {
-    std::string why;
-    if (const auto extinction = air.extinction_per_km(why)) {
-      put("air.extinction_per_km", {extinction->begin(), extinction->end()});
+  void take_extinction(const AirMeter::Air& air) {
+    if (air.extinction_per_km) {
+      put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
       return;
     }
     // A stated prior: the "standard clear" meteorological range of 23 km (Koschmieder's 3.912 over
@@ -242,7 +241,7 @@ class Session {
     }
     put("air.extinction_per_km", prior);
     result_.notes["air.extinction_per_km"] =
-        "a prior, not measured (standard clear air, visibility 23 km): " + why;
+        "a prior, not measured (standard clear air, visibility 23 km): " + air.why_no_extinction;
   }
 
   void take_sun(const AirMeter& air, bool level_known) {
@@ -260,7 +259,7 @@ class Session {
 
   // The sampled frame in the middle of those with a horizon, sky tinted.
   void tint_sky(const lens::Lens& lens,
-                const std::vector<std::optional<HorizonFinder::Found>>& found) {
+                const std::vector<std::optional<motion::HorizonFinder::Found>>& found) {
     std::vector<std::size_t> with;
     for (std::size_t i = 0; i < found.size(); ++i)
       if (found[i]) with.push_back(i);

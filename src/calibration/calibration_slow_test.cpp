@@ -10,12 +10,13 @@
 
 #include "base/files.h"
 #include "calibration/calibration.h"
-#include "calibration/horizon.h"
 #include "calibration/own_aircraft.h"
 #include "composite/sensor.h"
 #include "composite/spread.h"
 #include "image/colour.h"
+#include "motion/horizon.h"
 #include "synthetic/flight.h"
+#include "synthetic/sky.h"
 #include "video/still.h"
 #include "video/writer.h"
 
@@ -273,7 +274,7 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
   EXPECT_EQ(c.notes.at("shutter.readout"), "down");
 }
 
-TEST(Calibrate, FindsSunAirlightAndExtinction) {
+TEST(Calibrate, FindsTheSun) {
   for (const auto& [azimuth, elevation] : {std::pair(20.0, 25.0), std::pair(-35.0, 40.0)}) {
     synthetic::FlightOptions o = ideal(8);
     o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
@@ -288,21 +289,58 @@ TEST(Calibrate, FindsSunAirlightAndExtinction) {
         flight, [&](int k) { return flight.frame(k); }, o.frame_count);
     Options options;
     options.lens = o.lens;
-    options.altitude_m = o.altitude_m;
     const Calibration c = calibrate(clip.path(), options);
-    std::printf("%s\n", toml_from(c).c_str());
     ASSERT_TRUE(c.values.contains("light.sun_azimuth_deg"))
         << c.missing.at("light.sun_azimuth_deg");
-    const auto direction = [](double a, double e) {
-      return Vector3(std::cos(radians(e)) * std::cos(radians(a)),
-                     std::cos(radians(e)) * std::sin(radians(a)),
-                     std::sin(radians(e)));
-    };
-    const double off = degrees(std::acos(direction(c.values.at("light.sun_azimuth_deg")[0].value,
+    const double off =
+        degrees(std::acos(-synthetic::sun_in_world(c.values.at("light.sun_azimuth_deg")[0].value,
                                                    c.values.at("light.sun_elevation_deg")[0].value)
-                                             .dot(direction(azimuth, elevation))));
+                               .dot(-synthetic::sun_in_world(azimuth, elevation))));
     std::printf("sun off by %.1f degrees\n", off);
     EXPECT_LT(off, 10);
+  }
+}
+
+// A flight over two kilometres, so that not one field makes the ground.
+TEST(Calibrate, MeasuresTheAir) {
+  for (const double extinction_per_km : {0.12, 0.3}) {
+    synthetic::FlightOptions o = ideal(9);
+    o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
+    o.cloud_cover = 0.3;
+    o.own_aircraft = false;
+    o.frame_rate_hz = 4;
+    o.frame_count = 160;
+    o.speed_mps = 50;
+    o.shake_deg = 0.1;
+    o.extinction_per_km = extinction_per_km;
+    const synthetic::Flight flight(o);
+    Clip clip;
+    clip.write(
+        flight, [&](int k) { return flight.frame(k); }, o.frame_count);
+    Options options;
+    options.lens = o.lens;
+    options.altitude_m = o.altitude_m;
+    const Calibration c = calibrate(clip.path(), options);
+    EXPECT_FALSE(c.notes.contains("air.extinction_per_km")) << c.notes.at("air.extinction_per_km");
+    expect_within(c, "air.extinction_per_km", extinction_per_km, 0.1);
+    // The sky at the horizon, over the azimuths that the lens sees.
+    const synthetic::Sky sky(synthetic::sun_in_world(o.sun_azimuth_deg, o.sun_elevation_deg));
+    synthetic::Light airlight = synthetic::Light::Zero();
+    for (int degree = -60; degree <= 60; degree += 10)
+      airlight += sky.haze({std::cos(radians(degree)), std::sin(radians(degree)), 0}) / 13;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double found = c.values.at("air.airlight")[channel].value;
+      const double extinction = c.values.at("air.extinction_per_km")[channel].value;
+      const double truth = double(airlight[static_cast<int>(channel)]);
+      std::printf("channel %zu: airlight %.3f, put in %.3f; extinction %.3f +- %.3f\n",
+                  channel,
+                  found,
+                  truth,
+                  extinction,
+                  c.values.at("air.extinction_per_km")[channel].sigma);
+      EXPECT_NEAR(found, truth, 0.1 * truth) << channel;
+      EXPECT_NEAR(extinction, extinction_per_km, 0.1 * extinction_per_km) << channel;
+    }
   }
 }
 
@@ -341,7 +379,7 @@ TEST(Horizon, LiesAlongHandMarkedOnes) {
       read_file(std::string(shared) + "/evision/horizon/HorizonLineData_1.txt"));
   const lens::ImageSize size{1280, 720};
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, size);
-  const HorizonFinder finder(lens, nullptr);
+  const motion::HorizonFinder finder(lens, nullptr);
   std::vector<double> off_px;
   int frames = 0, found = 0, line_number = 0;
   for (std::string line; std::getline(lines, line);) {

@@ -46,6 +46,10 @@ const FlightOptions& validated(const FlightOptions& o) {
           "2 to 90 deg");
   require(o.cloud_cover >= 0 && o.cloud_cover <= 1, "cloud cover", o.cloud_cover, "0 to 1");
   require(o.hills_deg >= 0 && o.hills_deg <= 5, "hills", o.hills_deg, "0 to 5 deg");
+  require(o.extinction_per_km >= 0 && o.extinction_per_km <= 10,
+          "extinction",
+          o.extinction_per_km,
+          "0 to 10 per km");
   require(o.shake_deg >= 0 && o.shake_deg <= 5, "shake", o.shake_deg, "0 to 5 deg");
   require(std::abs(o.roll_deg) <= 45, "roll", o.roll_deg, "-45 to 45 deg");
   require(o.noise >= 0 && o.noise <= 20, "noise", o.noise, "0 to 20");
@@ -84,7 +88,7 @@ struct Flight::Impl {
                               sun_in_world(o.sun_azimuth_deg - o.heading_deg, o.sun_elevation_deg),
                               sky,
                               o.own_aircraft)),
-        view(lens),
+        view(lens, !o.ideal_sensor),
         panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
         sensor(o.width, o.height, o.noise, o.ideal_sensor, stream(o, "sensor")),
         clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
@@ -121,11 +125,17 @@ Ground Flight::Impl::make_world() {
     for (const Light& d : view.directions_in_world(path.shaken(k).world_from_body, 4))
       panorama.want(d[0], d[1], -d[2]);
   const Clouds clouds(sky, options.cloud_cover, stream(options, "clouds"));
-  panorama.draw(sky, clouds, options.hills_deg, stream(options, "hills"));
+  panorama.draw(
+      sky, clouds, {options.hills_deg, options.extinction_per_km}, stream(options, "hills"));
   Random random = Seed(options.seed).stream("start");
   start_in_land_m = {random.uniform(0, kLand_m), random.uniform(0, kLand_m), 0};
   const double pixel_rad = 1 / lens.focal_px();
-  return {options.altitude_m * pixel_rad * 4, pixel_rad, sky, clouds, stream(options, "ground")};
+  return {options.altitude_m * pixel_rad * 4,
+          pixel_rad,
+          options.extinction_per_km,
+          sky,
+          clouds,
+          stream(options, "ground")};
 }
 
 Light Flight::Impl::light_at(const Light& d, const trajectory::State& state) const {

@@ -33,13 +33,15 @@ struct FlightOptions {
   double heading_deg = 0;
   double sun_azimuth_deg = 120;
   double sun_elevation_deg = 40;
-  double cloud_cover = 0.5;   // 0..1
-  double hills_deg = 1.1;     // highest of the hills on the horizon; 0 none
-  double shake_deg = 0.35;    // rms of the vibration in pitch and yaw
-  double roll_deg = 3;        // amplitude of the slow rolling of the flight
-  bool own_aircraft = true;   // nose and wing tips in view
-  double noise = 1.0;         // sensor noise: 1 = a cheap camera; 0 none
-  bool ideal_sensor = false;  // no lens blur, no sharpening, no noise (for the calibration's tests)
+  double cloud_cover = 0.5;             // 0..1
+  double hills_deg = 1.1;               // highest of the hills on the horizon; 0 none
+  double extinction_per_km = 1.0 / 17;  // of the air before ground and hills, all colours alike
+  double shake_deg = 0.35;              // rms of the vibration in pitch and yaw
+  double roll_deg = 3;                  // amplitude of the slow rolling of the flight
+  bool own_aircraft = true;             // nose and wing tips in view
+  double noise = 1.0;                   // sensor noise: 1 = a cheap camera; 0 none
+  bool ideal_sensor =
+      false;  // no blur, sharpening, noise, shoulder or fall-off (calibration's tests)
   double clutter =
       0;  // share of the image's texture that moves on its own (for the motion tests), 0..1
   bool translate = true;  // false: the camera only rotates, so that a homography is exact

@@ -11,7 +11,6 @@ namespace {
 constexpr float kHighest_m = 16;      // of trees and houses
 constexpr int kMarch = 7;             // steps through the height field
 constexpr float kReliefEnd_m = 1600;  // beyond, the ground is flat
-constexpr float kVisibility_m = 17000;
 constexpr float kFarthest_m = 26000;  // where the hills begin
 constexpr float kPeakCell_m = 10;
 constexpr int kShadowCells = 512;
@@ -210,7 +209,7 @@ Light Ground::seen(float eye_north_m,
   Light albedo = root * root;
   if (t < 1200) albedo *= 1 + (1 - t / 1200) * (detail(north_m, east_m) - 0.5F) * 0.7F;
   const float lit = sunlit(north_m, east_m);
-  const float fog = 1 - std::exp(-reach_m / kVisibility_m);
+  const float fog = 1 - std::exp(-reach_m * extinction_per_m_);
   const Light up = albedo * (sunlight_ * lit + skylight_) * shade;
   return up + (veil - up) * fog;
 }

@@ -18,8 +18,12 @@ class Ground {
  public:
   // `texel_m` is rounded so that the tile has a power of two of texels. `pixel_rad` is the angle of
   // one pixel.
-  Ground(
-      double texel_m, double pixel_rad, const Sky& sky, const Clouds& clouds, std::uint32_t seed);
+  Ground(double texel_m,
+         double pixel_rad,
+         double extinction_per_km,
+         const Sky& sky,
+         const Clouds& clouds,
+         std::uint32_t seed);
 
   // The light that comes up from the ground to an eye there; `down` > 0, the direction is a unit
   // vector.
@@ -79,6 +83,7 @@ class Ground {
 
   float texel_m_;
   float pixel_rad_;
+  float extinction_per_m_;
   Vector3 sun_;
   Light sunlight_;
   Light skylight_;

@@ -25,9 +25,14 @@ std::uint32_t pack(const Light& albedo, float height_m) {
 
 }  // namespace
 
-Ground::Ground(
-    double texel_m, double pixel_rad, const Sky& sky, const Clouds& clouds, std::uint32_t seed)
+Ground::Ground(double texel_m,
+               double pixel_rad,
+               double extinction_per_km,
+               const Sky& sky,
+               const Clouds& clouds,
+               std::uint32_t seed)
     : pixel_rad_(static_cast<float>(pixel_rad)),
+      extinction_per_m_(static_cast<float>(extinction_per_km / 1000)),
       sun_(sky.sun_in_world()),
       sunlight_(sky.sunlight()) {
   const auto wanted = static_cast<unsigned>(std::clamp(kLand_m / texel_m, 512.0, 4096.0));

@@ -10,10 +10,13 @@ namespace airtruth::synthetic {
 namespace {
 
 // Two ranges of hills, as heights over the horizon by direction.
-class Hills {
+class HillRanges {
  public:
-  Hills(double highest_deg, std::uint32_t seed)
-      : highest_(static_cast<float>(radians(highest_deg))), seed_(seed) {}
+  HillRanges(const Panorama::Hills& hills, std::uint32_t seed)
+      : highest_(static_cast<float>(radians(hills.highest_deg))),
+        far_veil_(veil(30, hills.extinction_per_km)),
+        near_veil_(veil(21.6, hills.extinction_per_km)),
+        seed_(seed) {}
 
   void cover(const Vector3& direction, float texel_rad, const Sky& sky, Light& colour) const {
     const float up = static_cast<float>(-direction.z());
@@ -22,11 +25,16 @@ class Hills {
         static_cast<float>((std::atan2(direction.y(), direction.x()) / (2 * kPi) + 0.5) * 16);
     const Light haze = sky.haze(direction);
     const Light slope = light(0.17F, 0.165F, 0.12F);
-    range(azimuth, up, highest_, 0.83F, 1, texel_rad, haze, slope, colour);
-    range(azimuth * 2, up, 0.55F * highest_, 0.72F, 2, texel_rad, haze, slope, colour);
+    range(azimuth, up, highest_, far_veil_, 1, texel_rad, haze, slope, colour);
+    range(azimuth * 2, up, 0.55F * highest_, near_veil_, 2, texel_rad, haze, slope, colour);
   }
 
  private:
+  // Of the airlight over a range of hills that stands so far away.
+  static float veil(double range_km, double extinction_per_km) {
+    return static_cast<float>(1 - std::exp(-range_km * extinction_per_km));
+  }
+
   void range(float azimuth,
              float up,
              float highest,
@@ -47,6 +55,8 @@ class Hills {
   }
 
   float highest_;
+  float far_veil_;
+  float near_veil_;
   std::uint32_t seed_;
 };
 
@@ -71,8 +81,8 @@ void Panorama::want(float north, float east, float up) {
       wanted_[static_cast<std::size_t>(j * blocks_ + i)] = 1;
 }
 
-void Panorama::draw(const Sky& sky, const Clouds& clouds, double hills_deg, std::uint32_t seed) {
-  const Hills hills(hills_deg, seed);
+void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, std::uint32_t seed) {
+  const HillRanges ranges(hills, seed);
   const float texel_rad = 1 / radius_;
   tbb::parallel_for(0, blocks_ * blocks_, [&](int block) {
     if (wanted_[static_cast<std::size_t>(block)] == 0) return;
@@ -86,7 +96,7 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, double hills_deg, std:
         const double up = (1 - square) / (1 + square);
         const Vector3 direction(u * (1 + up), v * (1 + up), -up);
         Light colour = clouds.seen_through(direction, sky.at(direction));
-        hills.cover(direction, texel_rad, sky, colour);
+        ranges.cover(direction, texel_rad, sky, colour);
         texels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) +
                 static_cast<std::size_t>(x)] = colour;
       }

@@ -23,7 +23,11 @@ class Panorama {
 
   // Says that the direction will be looked at. Only such parts are drawn.
   void want(float north, float east, float up);
-  void draw(const Sky& sky, const Clouds& clouds, double hills_deg, std::uint32_t seed);
+  struct Hills {
+    double highest_deg = 0;
+    double extinction_per_km = 0;
+  };
+  void draw(const Sky& sky, const Clouds& clouds, const Hills& hills, std::uint32_t seed);
 
   Light at(float north, float east, float up) const {
     const float scale = radius_ / (1 + up);

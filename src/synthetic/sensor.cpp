@@ -17,12 +17,12 @@ constexpr float kSharpening = 0.22F;
 
 // Code values 0..255 by the square root of light, so that the dark end is as fine as the bright
 // one.
-std::vector<float> tone_curve() {
+std::vector<float> tone_curve(bool ideal) {
   std::vector<float> curve(kCurve + 1);
   for (int i = 0; i <= kCurve; ++i) {
     const float root = static_cast<float>(i) / kCurve;
     const float light = root * root * kBrightest;
-    const float exposed = light * (1 + 0.10F * light) / (1 + 0.42F * light) * 1.18F;
+    const float exposed = ideal ? light : light * (1 + 0.10F * light) / (1 + 0.42F * light) * 1.18F;
     curve[static_cast<std::size_t>(i)] = 255 * image::srgb_from_linear(std::min(exposed, 1.0F));
   }
   return curve;
@@ -40,7 +40,7 @@ Sensor::Sensor(int width, int height, double noise, bool ideal, std::uint32_t se
       noise_(ideal ? 0 : static_cast<float>(noise)),
       ideal_(ideal),
       seed_(seed),
-      curve_(tone_curve()),
+      curve_(tone_curve(ideal)),
       grain_(std::size_t{kGrain} * kGrain) {
   Random random(seed_);
   const auto normal = [&] { return static_cast<float>(random.normal()); };

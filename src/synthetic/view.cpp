@@ -22,7 +22,7 @@ Vector3 ray_or_nearest(const lens::Lens& lens, const Pixel& pixel) {
 
 }  // namespace
 
-View::View(const lens::Lens& lens)
+View::View(const lens::Lens& lens, bool falls_off)
     : width_(lens.size().width),
       columns_((lens.size().width + kPitch - 1) / kPitch + 1),
       rows_((lens.size().height + kPitch - 1) / kPitch + 1) {
@@ -36,7 +36,9 @@ View::View(const lens::Lens& lens)
       const double off_centre = (pixel - middle).squaredNorm() / middle.squaredNorm();
       Light node;
       node.head<3>() = ray.cast<float>().array();
-      node[3] = static_cast<float>(1 - 0.26 * off_centre - 0.08 * off_centre * off_centre);
+      node[3] = falls_off
+                    ? static_cast<float>(1 - 0.26 * off_centre - 0.08 * off_centre * off_centre)
+                    : 1.0F;
       rays_in_body_.push_back(node);
     }
 }

@@ -14,7 +14,8 @@ namespace airtruth::synthetic {
 // lens of 75 degrees). The fourth number is the lens's fall-off of light.
 class View {
  public:
-  explicit View(const lens::Lens& lens);
+  // falls_off: less light reaches the corners than the middle, as through a cheap lens.
+  View(const lens::Lens& lens, bool falls_off);
 
   // Rays of every `stride`-th node, turned into the world.
   std::vector<Light> directions_in_world(const Quaternion& world_from_body, int stride) const;

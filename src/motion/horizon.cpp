@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/horizon.h"
+#include "motion/horizon.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-namespace airtruth::calibration {
+#include "motion/horizon_edge.h"
+
+namespace airtruth::motion {
 namespace {
 
 constexpr int kAcross = 56;  // blocks along the longer side
@@ -77,7 +79,9 @@ YawPitchRoll attitude_from_up(const Vector3& up_in_cam) {
 }
 
 HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft)
-    : lens_(lens), step_(std::max(4, std::max(lens.size().width, lens.size().height) / kAcross)) {
+    : lens_(lens),
+      own_aircraft_(own_aircraft),
+      step_(std::max(4, std::max(lens.size().width, lens.size().height) / kAcross)) {
   const auto [width, height] = lens.size();
   for (int y = 0; y + step_ <= height; y += step_)
     for (int x = 0; x + step_ <= width; x += step_) {
@@ -127,7 +131,8 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
   if (std::sqrt(best) < kLeastSeparation) return std::nullopt;
   Vector3 up = up_of(pitch, roll);
   if (!is_sky(samples, up)) up = -up;
-  return Found{up, std::sqrt(best)};
+  const HorizonEdge edge = horizon_edge(picture, lens_, own_aircraft_, up);
+  return Found{edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best), edge.sharpness};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::motion

@@ -4,23 +4,30 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/calibration.h"
 #include "geometry/transform.h"
-#include "image/colour.h"
+#include "image/layer.h"
+#include "image/picture.h"
+#include "lens/lens.h"
 
-namespace airtruth::calibration {
+namespace airtruth::motion {
 
 // Sky and ground as the two sides of a plane through the camera, that a lens bends as it bends all
 // else: the plane that parts the colours of the picture best (Ettinger et al. 2002, "Vision-guided
 // flight stability and control for micro air vehicles", with Fisher's criterion for their
-// determinants, and planes for their lines).
+// determinants, and planes for their lines). Haze draws that plane down into the ground, so it is
+// then moved to the line near it across which the picture steps most evenly (horizon_edge.h).
 class HorizonFinder {
  public:
   HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft);
 
+  static constexpr double kSharp = 0.85;
   struct Found {
     Vector3 up_in_cam{0, -1, 0};
     double separation = 0;  // of sky and ground, in standard deviations
+    // Share of the line across which the picture steps the same way. Below kSharp there is no line
+    // to see, as in fog, and the plane is only the one that parts the colours.
+    double sharpness = 0;
+    bool is_sharp() const { return sharpness >= kSharp; }
   };
   // Empty where no plane parts the picture clearly, or less than 6 % lies on one side.
   std::optional<Found> find(const image::Picture& picture) const;
@@ -31,6 +38,7 @@ class HorizonFinder {
     Vector3 ray;
   };
   lens::Lens lens_;
+  const image::Mask* own_aircraft_;
   int step_;
   std::vector<Block> blocks_;
 };
@@ -40,4 +48,4 @@ YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
 Quaternion cam_from_level(
     const Vector3& up_in_cam);  // level: north-east-down with the camera's yaw
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::motion

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/calibration.h"
+#include "image/colour.h"
+
+namespace airtruth::calibration {
+
+using ColourEstimate = std::array<Estimate, 3>;
+
+// Azimuth is divided, since the airlight is brighter towards the sun.
+constexpr int kSectors = 12;
+
+// Light seen under one direction of a level world.
+struct SeenLight {
+  double azimuth_rad = 0;
+  double elevation_rad = 0;  // below 0: the ground
+  image::Rgb linear;
+};
+int sector_of(double azimuth_rad);
+
+// Light of level ground in patches of one size, whatever their distance, so that what is far does
+// not look more alike than what is near only because a pixel holds more of it: as large as a pixel
+// is on the ground at 2 degrees below the horizon, and beyond that a pixel. One frame at a time.
+class GroundPatches {
+ public:
+  GroundPatches(double altitude_m, double pixel_rad);
+  void add(const SeenLight& ground);
+  std::vector<SeenLight> take();
+
+ private:
+  struct Sum {
+    int count = 0;
+    SeenLight mean;
+  };
+  double altitude_m_;
+  double across_m_;
+  double along_m_;
+  double farthest_m_;
+  std::map<std::pair<int, int>, Sum> patches_;
+  std::vector<SeenLight> far_;
+};
+
+// What an endless way through air looks like, by sector: the sky's light from 2 to 10 degrees of
+// elevation, drawn on to the horizon, where hills hide it (least squares of a parabola on medians).
+// Empty where too little of such sky is seen.
+struct SkyCurve {
+  std::array<std::array<double, 3>, 3> by_channel{};  // 1, elevation, its square, over 10 degrees
+  std::array<double, 3> sigma{};                      // at the horizon
+  double at(std::size_t channel, double elevation_rad) const;
+};
+using SkyCurves = std::array<std::optional<SkyCurve>, kSectors>;
+SkyCurves sky_curves(const std::vector<SeenLight>& seen);
+
+// Their mean at an elevation; empty where there is none.
+std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation_rad);
+
+// Per km, by Koschmieder (1924): the darkest ground (Chavez 1988: woods and shadows, here the
+// quantile of 3 %) of each sector at the range r = altitude / sin(depression) looks like
+//
+//   L(r) = A_sector + (D - A_sector) exp(-extinction r)
+//
+// Least squares over all sectors and ranges, for each channel: D, the airlights (held near what the
+// sky says), and how far the horizon lies over where it was found, since haze draws it down (held
+// near 0 by 1.5 degrees), are solved with it. Its error is what thirds of the view say for
+// themselves. Empty, with the reason in `why`, where the ground does not fade clearly.
+struct Fading {
+  ColourEstimate extinction_per_km;
+  double horizon_rad = 0;  // elevation of the true horizon, as elevations are given
+};
+std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& seen,
+                                       const SkyCurves& sky,
+                                       double altitude_m,
+                                       std::string& why);
+
+}  // namespace airtruth::calibration

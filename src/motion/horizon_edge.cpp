@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/horizon_edge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kColumns = 180;  // of azimuth, where the picture is seen
+constexpr int kFewestColumns = 30;
+constexpr float kLargestStep = 6;  // code values: what is more counts no more
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+struct Sweep {
+  double low_deg, high_deg;  // of elevation over the guess
+  double step_deg;
+  double across_deg;     // on either side, that is compared
+  double most_tilt_deg;  // of a plane to the guess
+};
+// Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
+constexpr Sweep kSweeps[] = {{-6, 16, 0.2, 0.6, 6}, {-1.5, 1.5, 0.04, 0.2, 1}};
+
+// Bilinear; not a number outside, and on the own aircraft.
+float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
+  const double x = p.x() - 0.5;
+  const double y = p.y() - 0.5;
+  const int ix = static_cast<int>(std::floor(x));
+  const int iy = static_cast<int>(std::floor(y));
+  if (ix < 0 || iy < 0 || ix + 1 >= picture.width || iy + 1 >= picture.height) return kNothing;
+  if (own_aircraft != nullptr && !own_aircraft->is_free(ix, iy)) return kNothing;
+  const auto fx = static_cast<float>(x - ix);
+  const auto fy = static_cast<float>(y - iy);
+  const std::uint8_t* upper = picture.planes[0].row(iy) + ix;
+  const std::uint8_t* lower = picture.planes[0].row(iy + 1) + ix;
+  const float a = static_cast<float>(upper[0]) * (1 - fx) + static_cast<float>(upper[1]) * fx;
+  const float b = static_cast<float>(lower[0]) * (1 - fx) + static_cast<float>(lower[1]) * fx;
+  return a * (1 - fy) + b * fy;
+}
+
+// The step of luma from below to above, by azimuth and elevation.
+struct Unrolled {
+  std::vector<double> azimuth_rad;
+  std::vector<float> step;  // [column][row]
+  int rows = 0;
+};
+
+// Level: x ahead along the camera's own axis as far as it is level, y right, z down.
+Unrolled unroll(const image::Picture& picture,
+                const lens::Lens& lens,
+                const image::Mask* own_aircraft,
+                const Quaternion& cam_from_level,
+                const Sweep& sweep) {
+  Unrolled result;
+  const int across = std::max(1, static_cast<int>(std::lround(sweep.across_deg / sweep.step_deg)));
+  result.rows = static_cast<int>((sweep.high_deg - sweep.low_deg) / sweep.step_deg) + 1;
+  const double half_rad = std::min(
+      kPi, radians(std::max(lens.horizontal_fov_deg(), lens.vertical_fov_deg())) / 2 * 1.1);
+  const int rows = result.rows + 2 * across;
+  std::vector<float> luma(static_cast<std::size_t>(rows));
+  for (int i = 0; i < kColumns; ++i) {
+    const double azimuth = half_rad * (2.0 * (i + 0.5) / kColumns - 1);
+    bool any = false;
+    for (int r = 0; r < rows; ++r) {
+      const double e = radians(sweep.low_deg + (r - across) * sweep.step_deg);
+      const Vector3 direction(
+          std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), -std::sin(e));
+      const auto pixel = lens.pixel_from_cam(cam_from_level * direction);
+      luma[static_cast<std::size_t>(r)] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
+      any = any || !std::isnan(luma[static_cast<std::size_t>(r)]);
+    }
+    if (!any) continue;
+    result.azimuth_rad.push_back(azimuth);
+    for (int r = across; r < across + result.rows; ++r) {
+      float sum = 0;
+      for (int k = 1; k <= across; ++k)
+        sum += luma[static_cast<std::size_t>(r + k)] - luma[static_cast<std::size_t>(r - k)];
+      result.step.push_back(
+          std::clamp(sum / static_cast<float>(across), -kLargestStep, kLargestStep));
+    }
+  }
+  return result;
+}
+
+struct Line {
+  double pitch_deg = 0, roll_deg = 0;  // elevation = pitch cos(azimuth) + roll sin(azimuth)
+  float sum = 0;
+  double sharpness = 0;
+};
+
+Line best_line(const Unrolled& picture, const Sweep& sweep) {
+  Line best;
+  const std::size_t columns = picture.azimuth_rad.size();
+  for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
+    for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
+      float sum = 0;
+      int up = 0, down = 0;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double e =
+            pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
+        const int row = static_cast<int>(std::lround((e - sweep.low_deg) / sweep.step_deg));
+        if (row < 0 || row >= picture.rows) continue;
+        const float step =
+            picture
+                .step[i * static_cast<std::size_t>(picture.rows) + static_cast<std::size_t>(row)];
+        if (std::isnan(step)) continue;
+        sum += step;
+        up += step > 0 ? 1 : 0;
+        down += step < 0 ? 1 : 0;
+      }
+      if (up + down < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
+      best = {pitch, roll, sum, double(std::max(up, down)) / (up + down)};
+    }
+  return best;
+}
+
+}  // namespace
+
+HorizonEdge horizon_edge(const image::Picture& picture,
+                         const lens::Lens& lens,
+                         const image::Mask* own_aircraft,
+                         const Vector3& guess_up_in_cam) {
+  HorizonEdge edge{guess_up_in_cam.normalized(), 0};
+  for (const Sweep& sweep : kSweeps) {
+    // Level axes: ahead is the optical axis laid level.
+    const Vector3 down = -edge.up_in_cam;
+    Vector3 ahead = Vector3::UnitZ() - down * down.z();
+    if (ahead.norm() < 0.1) return edge;  // looking straight up or down
+    ahead.normalize();
+    Matrix3 axes;
+    axes << ahead, down.cross(ahead), down;
+    const Quaternion cam_from_level(axes);
+    const Line line = best_line(unroll(picture, lens, own_aircraft, cam_from_level, sweep), sweep);
+    edge.sharpness = line.sharpness;
+    // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
+    edge.up_in_cam =
+        cam_from_level *
+        Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1)
+            .normalized();
+  }
+  return edge;
+}
+
+}  // namespace airtruth::motion

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/transform.h"
+#include "image/layer.h"
+#include "image/picture.h"
+#include "lens/lens.h"
+
+namespace airtruth::motion {
+
+struct HorizonEdge {
+  Vector3 up_in_cam{0, -1, 0};
+  double sharpness = 0;  // share of the line across which the picture steps the same way, 0..1
+};
+
+// The plane near a first guess of it along which luma steps most: the picture is unrolled into
+// elevation over azimuth about the guess, where planes near it are sines, and the step is summed
+// along each, cut off at a few code values so that a weak step all along counts more than strong
+// ones here and there. Coarse first, then about what was found.
+HorizonEdge horizon_edge(const image::Picture& picture,
+                         const lens::Lens& lens,
+                         const image::Mask* own_aircraft,
+                         const Vector3& guess_up_in_cam);
+
+}  // namespace airtruth::motion
