@@ -2,26 +2,76 @@
 #include "base/error.h"
 #include "motion/corners.h"
 #include "motion/follower.h"
+#include "motion/horizon.h"
+#include "motion/horizon_hold.h"
 #include "motion/motion.h"
 
 namespace airtruth::motion {
+namespace {
+
+// Looks for the horizon every half a second, and more often while it is needed.
+class HorizonWatch {
+ public:
+  HorizonWatch(const lens::Lens& lens, const image::Mask* own_aircraft)
+      : finder_(lens, own_aircraft) {}
+
+  void hold(FrameMotion& motion, const image::Picture& picture, double stray_rad) {
+    hold_.stray(stray_rad);
+    const bool known = motion.state != State::kBridged || stray_rad > 0;
+    const double pause_s = hold_.uncertainty_rad() > kLostRad ? kPauseWhenLost_s : kPause_s;
+    if (known && (stray_rad > kLostRad || !last_s_ || motion.time_s >= *last_s_ + pause_s)) {
+      last_s_ = motion.time_s;
+      const Quaternion before = hold_.held(*motion.rotation);
+      const auto found = look(picture, *motion.rotation);
+      if (found && found->is_sharp()) hold_.see(*motion.rotation, found->up_in_cam);
+      // Put right by so much at once, it does not go on from the frame before.
+      if (hold_.held(*motion.rotation).angularDistance(before) > kLostRad)
+        motion.state = State::kCut;
+    }
+    motion.rotation = hold_.held(*motion.rotation);
+  }
+
+ private:
+  std::optional<HorizonFinder::Found> look(const image::Picture& picture,
+                                           const Quaternion& cam_from_reference) const {
+    const auto expected = hold_.expected_up(cam_from_reference);
+    if (expected && hold_.uncertainty_rad() < kLostRad) return finder_.follow(picture, *expected);
+    return finder_.find(picture);
+  }
+
+  static constexpr double kPause_s = 0.5;
+  static constexpr double kPauseWhenLost_s = 0.15;
+  static constexpr double kLostRad = 0.02;
+  HorizonFinder finder_;
+  HorizonHold hold_;
+  std::optional<double> last_s_;
+};
+
+}  // namespace
 
 struct Estimator::Impl {
   int width;
   int height;
   std::unique_ptr<Follower> follower;
+  std::optional<HorizonWatch> horizon;  // of the model rotation
 };
 
 Estimator::Estimator(int width, int height, const Options& options, const image::Mask* own_aircraft)
-    : impl_(std::make_unique<Impl>(Impl{
-          width, height, planar_follower(allowed_area(width, height, own_aircraft), options)})) {}
+    : impl_(std::make_unique<Impl>(
+          Impl{width,
+               height,
+               planar_follower(allowed_area(width, height, own_aircraft), options),
+               {}})) {}
 
 Estimator::Estimator(const lens::Lens& lens,
                      const Options& options,
                      const image::Mask* own_aircraft) {
   const auto [width, height] = lens.size();
-  impl_ = std::make_unique<Impl>(Impl{
-      width, height, spherical_follower(lens, allowed_area(width, height, own_aircraft), options)});
+  impl_ = std::make_unique<Impl>(
+      Impl{width,
+           height,
+           spherical_follower(lens, allowed_area(width, height, own_aircraft), options),
+           HorizonWatch(lens, own_aircraft)});
 }
 
 Estimator::~Estimator() = default;
@@ -31,6 +81,7 @@ FrameMotion Estimator::next(const image::Picture& picture, double time_s, bool d
   check(picture.width == impl_->width && picture.height == impl_->height, "frames keep their size");
   FrameMotion motion = impl_->follower->next(luma_of(picture), damaged);
   motion.time_s = time_s;
+  if (impl_->horizon) impl_->horizon->hold(motion, picture, impl_->follower->stray_rad());
   return motion;
 }
 

@@ -19,6 +19,9 @@ class Follower {
  public:
   virtual ~Follower() = default;
   virtual FrameMotion next(const cv::Mat& grey, bool damaged) = 0;
+  // How far the rotation may have strayed from the truth since the frame before, as a standard
+  // deviation: where a key frame was tied to others, and where tracking began anew.
+  virtual double stray_rad() const { return 0; }
 };
 
 std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed, const Options& options);

@@ -79,9 +79,8 @@ YawPitchRoll attitude_from_up(const Vector3& up_in_cam) {
 }
 
 HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft)
-    : lens_(lens),
-      own_aircraft_(own_aircraft),
-      step_(std::max(4, std::max(lens.size().width, lens.size().height) / kAcross)) {
+    : lens_(lens), step_(std::max(4, std::max(lens.size().width, lens.size().height) / kAcross)) {
+  if (own_aircraft != nullptr) own_aircraft_ = *own_aircraft;
   const auto [width, height] = lens.size();
   for (int y = 0; y + step_ <= height; y += step_)
     for (int x = 0; x + step_ <= width; x += step_) {
@@ -131,8 +130,14 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
   if (std::sqrt(best) < kLeastSeparation) return std::nullopt;
   Vector3 up = up_of(pitch, roll);
   if (!is_sky(samples, up)) up = -up;
-  const HorizonEdge edge = horizon_edge(picture, lens_, own_aircraft_, up);
+  const HorizonEdge edge = horizon_edge(picture, lens_, mask(), up);
   return Found{edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best), edge.sharpness};
+}
+
+HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
+                                           const Vector3& expected_up_in_cam) const {
+  const HorizonEdge edge = horizon_edge_beside(picture, lens_, mask(), expected_up_in_cam);
+  return {edge.up_in_cam, 0, edge.sharpness};
 }
 
 }  // namespace airtruth::motion

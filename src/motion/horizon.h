@@ -23,7 +23,7 @@ class HorizonFinder {
   static constexpr double kSharp = 0.85;
   struct Found {
     Vector3 up_in_cam{0, -1, 0};
-    double separation = 0;  // of sky and ground, in standard deviations
+    double separation = 0;  // of sky and ground, in standard deviations; of find() alone
     // Share of the line across which the picture steps the same way. Below kSharp there is no line
     // to see, as in fog, and the plane is only the one that parts the colours.
     double sharpness = 0;
@@ -31,14 +31,17 @@ class HorizonFinder {
   };
   // Empty where no plane parts the picture clearly, or less than 6 % lies on one side.
   std::optional<Found> find(const image::Picture& picture) const;
+  // The same within a degree and a half of where it is expected, twenty times as fast.
+  Found follow(const image::Picture& picture, const Vector3& expected_up_in_cam) const;
 
  private:
   struct Block {
     int x = 0, y = 0;
     Vector3 ray;
   };
+  const image::Mask* mask() const { return own_aircraft_ ? &*own_aircraft_ : nullptr; }
   lens::Lens lens_;
-  const image::Mask* own_aircraft_;
+  std::optional<image::Mask> own_aircraft_;
   int step_;
   std::vector<Block> blocks_;
 };

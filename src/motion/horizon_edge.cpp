@@ -21,7 +21,8 @@ struct Sweep {
   double most_tilt_deg;  // of a plane to the guess
 };
 // Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
-constexpr Sweep kSweeps[] = {{-6, 16, 0.2, 0.6, 6}, {-1.5, 1.5, 0.04, 0.2, 1}};
+constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
+constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
 
 // Bilinear; not a number outside, and on the own aircraft.
 float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
@@ -116,31 +117,41 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
   return best;
 }
 
+HorizonEdge swept(const image::Picture& picture,
+                  const lens::Lens& lens,
+                  const image::Mask* own_aircraft,
+                  const Vector3& up_in_cam,
+                  const Sweep& sweep) {
+  // Level axes: ahead is the optical axis laid level.
+  const Vector3 down = -up_in_cam.normalized();
+  Vector3 ahead = Vector3::UnitZ() - down * down.z();
+  if (ahead.norm() < 0.1) return {up_in_cam, 0};  // looking straight up or down
+  ahead.normalize();
+  Matrix3 axes;
+  axes << ahead, down.cross(ahead), down;
+  const Quaternion cam_from_level(axes);
+  const Line line = best_line(unroll(picture, lens, own_aircraft, cam_from_level, sweep), sweep);
+  // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
+  const Vector3 up =
+      Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1);
+  return {cam_from_level * up.normalized(), line.sharpness};
+}
+
 }  // namespace
 
 HorizonEdge horizon_edge(const image::Picture& picture,
                          const lens::Lens& lens,
                          const image::Mask* own_aircraft,
                          const Vector3& guess_up_in_cam) {
-  HorizonEdge edge{guess_up_in_cam.normalized(), 0};
-  for (const Sweep& sweep : kSweeps) {
-    // Level axes: ahead is the optical axis laid level.
-    const Vector3 down = -edge.up_in_cam;
-    Vector3 ahead = Vector3::UnitZ() - down * down.z();
-    if (ahead.norm() < 0.1) return edge;  // looking straight up or down
-    ahead.normalize();
-    Matrix3 axes;
-    axes << ahead, down.cross(ahead), down;
-    const Quaternion cam_from_level(axes);
-    const Line line = best_line(unroll(picture, lens, own_aircraft, cam_from_level, sweep), sweep);
-    edge.sharpness = line.sharpness;
-    // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
-    edge.up_in_cam =
-        cam_from_level *
-        Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1)
-            .normalized();
-  }
-  return edge;
+  const HorizonEdge edge = swept(picture, lens, own_aircraft, guess_up_in_cam, kWide);
+  return swept(picture, lens, own_aircraft, edge.up_in_cam, kNarrow);
+}
+
+HorizonEdge horizon_edge_beside(const image::Picture& picture,
+                                const lens::Lens& lens,
+                                const image::Mask* own_aircraft,
+                                const Vector3& guess_up_in_cam) {
+  return swept(picture, lens, own_aircraft, guess_up_in_cam, kNarrow);
 }
 
 }  // namespace airtruth::motion

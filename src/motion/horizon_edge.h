@@ -21,5 +21,10 @@ HorizonEdge horizon_edge(const image::Picture& picture,
                          const lens::Lens& lens,
                          const image::Mask* own_aircraft,
                          const Vector3& guess_up_in_cam);
+// The second step alone, for a guess that is good to a degree.
+HorizonEdge horizon_edge_beside(const image::Picture& picture,
+                                const lens::Lens& lens,
+                                const image::Mask* own_aircraft,
+                                const Vector3& guess_up_in_cam);
 
 }  // namespace airtruth::motion

@@ -24,7 +24,8 @@
 //
 // rotation: through a known lens corners are bearings, and what is far turns with the camera. One
 // rotation per frame by RANSAC and robust least squares; near ground and own aircraft fall out
-// (rotation_fit.h). Exact for any lens, where a homography is exact for a pinhole alone.
+// (rotation_fit.h). Exact for any lens, where a homography is exact for a pinhole alone. Horizons
+// that are seen hold its pitch and roll (horizon_hold.h).
 namespace airtruth::motion {
 
 enum class State {
@@ -77,7 +78,8 @@ class Estimator {
             const image::Mask* own_aircraft = nullptr);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
-  // Reads the luma plane alone. `damaged` frames are bridged. Result against the first frame.
+  // A homography reads the luma plane alone. `damaged` frames are bridged. Result against the first
+  // frame.
   FrameMotion next(const image::Picture& picture, double time_s, bool damaged = false);
 
  private:

@@ -24,6 +24,7 @@ constexpr double kLargestTurnRad = 0.2;  // from a key frame: beyond it its patc
 constexpr int kMostMisses = 3;           // in a row, before a corner is let go
 constexpr int kSweeps = 4;               // of the sliding window
 constexpr double kStepLimit = 3;         // times ransac_px, for the first guess
+constexpr double kUnknownTurnRad = 0.5;  // of a camera that was not followed for a while
 
 struct Landmark {
   cv::Point2f corner;  // in its key frame
@@ -70,6 +71,7 @@ class Spherical : public Follower {
       first.rotation = now_from_reference_;
       return first;
     }
+    stray_rad_ = 0;
     if (damaged) return unmeasured(State::kBridged);
     std::size_t survivors = 0;
     const std::size_t before = previous_corners_.size();
@@ -82,6 +84,8 @@ class Spherical : public Follower {
     }
     return lost(grey, std::move(now), before, survivors);
   }
+
+  double stray_rad() const override { return stray_rad_; }
 
  private:
   std::optional<Vector3> bearing(const cv::Point2f& p) const {
@@ -171,6 +175,7 @@ class Spherical : public Follower {
     const bool far = now_from_reference_.angularDistance(last.cam_from_reference) > kLargestTurnRad;
     if (far || static_cast<double>(newest) < kMinKeptShare * static_cast<double>(last.proven)) {
       make_key(grey, now, links_of(sightings, fit));
+      stray_rad_ = fit.rms_rad / std::sqrt(double(fit.inliers));
       motion.rotation = now_from_reference_ = keys_.back().cam_from_reference;
     } else {
       for (Key& key : keys_)
@@ -265,6 +270,7 @@ class Spherical : public Follower {
       keys_.clear();
       links_.clear();
       make_key(grey, now, {});
+      stray_rad_ = kUnknownTurnRad;
       previous_ = std::move(now);
       bridged_in_row_ = 0;
     }
@@ -282,6 +288,7 @@ class Spherical : public Follower {
   std::vector<cv::Point2f> previous_corners_;
   Quaternion now_from_reference_ = Quaternion::Identity();
   int bridged_in_row_ = 0;
+  double stray_rad_ = 0;
 };
 
 }  // namespace

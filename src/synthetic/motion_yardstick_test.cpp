@@ -151,7 +151,7 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
 
 TEST(MotionYardstick, RotationThroughAFisheyeHoldsWithinAFiftiethOfADegreeOver1000Frames) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
-  const lens::ImageSize size{960, 720};  // the calibration is scaled
+  const lens::ImageSize size{640, 480};  // the calibration is scaled
   const lens::Lens lens =
       shared == nullptr
           ? lens::Lens(lens::Fisheye{{422, 422}, {478, 355}, {0.06, 0.01, 0, 0}}, size)
@@ -167,6 +167,48 @@ TEST(MotionYardstick, RotationThroughAPinholeIsNoWorseThanAHomography) {
   const Yardstick result = measure(lens::pinhole_from_vertical_fov(60, {640, 480}), 200, 0.12);
   EXPECT_LT(result.median_deg, 0.02);
   EXPECT_LE(result.rotation_edge_px, result.homography_edge_px);
+}
+
+// Nothing is seen for a second, while the aircraft rolls on: what is level then is told by the
+// horizon alone.
+TEST(MotionYardstick, TheHorizonPutsTheRotationRightAfterABlank) {
+  const lens::Lens lens = lens::fisheye_from_vertical_fov(100, {640, 480});
+  FlightOptions options;
+  options.lens = lens;
+  options.width = 640;
+  options.height = 480;
+  options.frame_count = 130;
+  options.roll_deg = 30;
+  const Flight flight(options);
+  motion::Estimator estimator(lens, {}, &flight.own_aircraft());
+  const auto cam_from_world = [&](int k) {
+    return Quaternion(cam_from_body() * flight.camera(k).world_from_body.conjugate());
+  };
+  std::vector<double> before_deg, after_deg, carried_on_deg;
+  Quaternion last_before = Quaternion::Identity();
+  for (int k = 0; k < options.frame_count; ++k) {
+    image::Picture picture = flight.frame(k);
+    const bool blank = k >= 60 && k < 90;
+    if (blank)
+      for (image::Plane& plane : picture.planes)
+        for (int y = 0; y < plane.height; ++y) std::fill_n(plane.row(y), plane.width, 128);
+    const auto moved = estimator.next(picture, k / options.frame_rate_hz);
+    const Vector3 up = cam_from_world(0) * Vector3(0, 0, -1);
+    const Vector3 truth = cam_from_world(k) * Vector3(0, 0, -1);
+    const double off = degrees(std::acos(std::min(1.0, (*moved.rotation * up).dot(truth))));
+    if (k < 60) before_deg.push_back(off), last_before = *moved.rotation;
+    if (k >= 92) {
+      after_deg.push_back(off);
+      carried_on_deg.push_back(degrees(std::acos(std::min(1.0, (last_before * up).dot(truth)))));
+    }
+  }
+  std::printf("level: before the blank %.3f deg, after it %.3f deg (carried on: %.1f)\n",
+              median(before_deg),
+              median(after_deg),
+              median(carried_on_deg));
+  EXPECT_LT(median(before_deg), 0.02);
+  EXPECT_LT(median(after_deg), 0.5);
+  EXPECT_GT(median(carried_on_deg), 5);
 }
 
 TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
