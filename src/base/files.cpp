@@ -102,6 +102,11 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   return bytes;
 }
 
+void refuse_existing(const fs::path& path, bool overwrite) {
+  if (!overwrite && fs::exists(path))
+    throw Error("exists already; give --overwrite to replace it", {path.string()});
+}
+
 void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
   const fs::path part = part_path(path);
   try {

@@ -21,6 +21,9 @@ std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{
 enum class Flush { kNow, kLater };
 void write_file(const fs::path& path, std::string_view bytes, Flush flush = Flush::kNow);
 
+// Error where the path exists and may not be replaced.
+void refuse_existing(const fs::path& path, bool overwrite);
+
 // Everything that was written to the file system of `folder` is on the disk when this returns.
 void flush_files(const fs::path& folder);
 

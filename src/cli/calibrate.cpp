@@ -17,11 +17,6 @@
 namespace airtruth::cli {
 namespace {
 
-void refuse_existing(const std::string& file, bool overwrite) {
-  if (!file.empty() && fs::exists(file) && !overwrite)
-    throw Error("exists already; give --overwrite to replace it", {file});
-}
-
 struct CalibrateArguments {
   std::string video;
   std::string out;

@@ -40,8 +40,7 @@ std::string calibration_text(const motion::LensEstimator::Result& found, int wid
 }
 
 void estimate(const Arguments& arguments, Context& context) {
-  if (!arguments.out.empty() && fs::exists(arguments.out) && !arguments.overwrite)
-    throw Error("exists already; give --overwrite to replace it", {arguments.out});
+  refuse_existing(arguments.out, arguments.overwrite);
   Console& console = context.console();
   video::Reader reader(arguments.video, {}, console.warn());
   const video::StreamInfo info = reader.info();

@@ -68,8 +68,7 @@ void stabilise(const Arguments& arguments,
 
 void measure(const Arguments& arguments, Context& context) {
   for (const std::string& file : {arguments.out, arguments.plot, arguments.stabilised})
-    if (!file.empty() && fs::exists(file) && !arguments.overwrite)
-      throw Error("exists already; give --overwrite to replace it", {file});
+    refuse_existing(file, arguments.overwrite);
   Console& console = context.console();
   video::Reader reader(arguments.video, {}, console.warn());
   const video::StreamInfo info = reader.info();

@@ -41,8 +41,7 @@ struct InspectArguments {
 };
 
 void inspect(const InspectArguments& arguments, Context& context) {
-  if (fs::exists(arguments.out) && !arguments.overwrite)
-    throw Error("exists already; give --overwrite to replace it", {arguments.out});
+  refuse_existing(arguments.out, arguments.overwrite);
   const sequence::Finished finished = sequence::open_finished(arguments.folder);
   video::write_still(
       arguments.out,

@@ -27,14 +27,9 @@ struct Arguments {
   synthetic::FlightOptions flight;
 };
 
-void refuse_existing(const Arguments& arguments) {
-  for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
-    if (!file.empty() && fs::exists(file) && !arguments.overwrite)
-      throw Error("exists already; give --overwrite to replace it", {file});
-}
-
 void synth(Arguments arguments, Context& context) {
-  refuse_existing(arguments);
+  for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
+    refuse_existing(file, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
   if (arguments.duration_s > 0)
     options.frame_count =

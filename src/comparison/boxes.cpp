@@ -1,37 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "comparison/comparison.h"
 
 namespace airtruth::comparison {
-namespace {
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.pop_back();
-    cells.push_back(cell);
-  }
-  return cells;
-}
-
-double number(const std::string& cell, const Where& where) {
-  double value = 0;
-  const auto [rest, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (failed != std::errc() || rest != cell.data() + cell.size() || !std::isfinite(value))
-    throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
-  return value;
-}
-
-}  // namespace
-
 RealBoxes read_boxes(const fs::path& file, double origin_px) {
   std::istringstream lines(read_file(file));
   std::string line;
@@ -47,13 +25,13 @@ RealBoxes read_boxes(const fs::path& file, double origin_px) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != 5)
       throw Error(fmt::format("has {} cells; expected 5", cells.size()), where);
-    const double frame = number(cells[0], where);
+    const double frame = finite_number(cells[0], where);
     if (!(frame >= 0 && frame < 1e9) || frame != std::floor(frame))
       throw Error("'" + cells[0] + "' is no frame; expected a whole number from 0", where);
-    const Box box{number(cells[1], where) - origin_px,
-                  number(cells[2], where) - origin_px,
-                  number(cells[3], where),
-                  number(cells[4], where)};
+    const Box box{finite_number(cells[1], where) - origin_px,
+                  finite_number(cells[2], where) - origin_px,
+                  finite_number(cells[3], where),
+                  finite_number(cells[4], where)};
     if (!(box.width > 0 && box.height > 0))
       throw Error("has a box without a size; expected width and height above 0", where);
     if (!boxes.emplace(static_cast<std::int64_t>(frame), box).second)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <opencv2/ml.hpp>
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/seed.h"
@@ -32,14 +32,8 @@ Clip read_clip(const fs::path& folder) {
   std::getline(lines, line);
   for (int row = 2; std::getline(lines, line); ++row) {
     std::vector<float> values;
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) {
-      float value = 0;
-      const auto [rest, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (failed != std::errc() || rest != cell.data() + cell.size() || !std::isfinite(value))
-        throw Error("'" + cell.substr(0, 40) + "' is not a finite number", {file.string(), row});
-      values.push_back(value);
-    }
+    for (const std::string& cell : cells_of(line))
+      values.push_back(static_cast<float>(finite_number(cell, {file.string(), row})));
     if (values.size() < 3) throw Error("has too few cells", {file.string(), row});
     clip.real.push_back(values[0] > 0.5F ? 1 : 0);
     clip.features.emplace_back(values.begin() + 2, values.end());

@@ -214,8 +214,7 @@ Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portra
 }  // namespace
 
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
-  if (fs::exists(out) && !options.overwrite)
-    throw Error("exists already; give --overwrite to replace it", {out.string()});
+  refuse_existing(out, options.overwrite);
   const LabelledSet labelled(set);
   std::vector<Portrait> portraits(labelled.names().size());
   in_parallel(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/csv.h"
+
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -18,15 +19,6 @@ constexpr const char* kHeader =
 constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
 constexpr std::size_t kCells = 14;
 constexpr std::size_t kRotationCells = 9;
-
-double number(const std::string& cell, const Where& where) {
-  double value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
-  if (failed != std::errc() || rest != end || !std::isfinite(value))
-    throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
-  return value;
-}
 
 State state_of(const std::string& word, const Where& where) {
   for (State state : {State::kReference, State::kMeasured, State::kBridged, State::kCut})
@@ -65,30 +57,28 @@ std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::files
   std::vector<FrameMotion> motion;
   for (int row = 2; std::getline(lines, line); ++row) {
     const Where where{file.string(), row};
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != expected)
       throw Error(fmt::format("has {} cells; expected {}", cells.size(), expected), where);
     FrameMotion m;
-    const double frame = number(cells[0], where);
-    const double inliers = number(cells[expected - 3], where);
+    const double frame = finite_number(cells[0], where);
+    const double inliers = finite_number(cells[expected - 3], where);
     if (std::abs(frame) > 1e15 || std::abs(inliers) > 1e9)
       throw Error("a count is too large", where);
     m.frame = static_cast<std::int64_t>(frame);
-    m.time_s = number(cells[1], where);
+    m.time_s = finite_number(cells[1], where);
     if (rotations) {
-      const auto q = [&](std::size_t i) { return number(cells[2 + i], where); };
+      const auto q = [&](std::size_t i) { return finite_number(cells[2 + i], where); };
       m.rotation = Quaternion(q(0), q(1), q(2), q(3));
       if (std::abs(m.rotation->norm() - 1) > 1e-6)
         throw Error("qw,qx,qy,qz is no rotation; expected a unit quaternion", where);
     } else {
       for (std::size_t i = 0; i < 9; ++i)
         m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
-            number(cells[2 + i], where);
+            finite_number(cells[2 + i], where);
     }
     m.inliers = static_cast<int>(inliers);
-    m.rms_px = number(cells[expected - 2], where);
+    m.rms_px = finite_number(cells[expected - 2], where);
     m.state = state_of(cells[expected - 1], where);
     motion.push_back(m);
   }

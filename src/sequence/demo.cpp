@@ -92,8 +92,7 @@ std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& option
 }  // namespace
 
 Summary make_demo(const fs::path& out, const DemoOptions& options) {
-  if (fs::exists(out / "demo") && !options.overwrite)
-    throw Error("exists already; give --overwrite to replace it", {(out / "demo").string()});
+  refuse_existing(out / "demo", options.overwrite);
   std::error_code failed;
   fs::create_directories(out, failed);
   if (failed) throw Error("cannot create: " + failed.message(), {out.string()});

@@ -26,11 +26,6 @@ video::Format format_of(const fs::path& out) {
   return video::format_from_name(extension.substr(1));
 }
 
-void refuse_existing(const fs::path& out, bool overwrite) {
-  if (fs::exists(out) && !overwrite)
-    throw Error("exists already; give --overwrite to replace it", {out.string()});
-}
-
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
   video::ReaderOptions options;
   options.first_frame = index;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/suggest.h"
@@ -22,17 +23,6 @@ const std::vector<std::string> kColumns = {
 constexpr std::size_t kRequired = 4;
 constexpr double kLargest = 1e9;  // metres, seconds or degrees: squares stay far from overflow
 constexpr double kShortestStep_s = 1e-6;
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r");
-    const auto last = cell.find_last_not_of(" \t\r");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
 
 // Which cell holds each known column; npos where a column is not given.
 std::array<std::size_t, 7> columns_of(const std::string& header, const std::string& file) {
@@ -115,7 +105,11 @@ Samples read_samples(std::string_view text, const std::string& file) {
     if (!samples.angles.empty())
       for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
     samples.times.push_back(time);
-    samples.positions.emplace_back(value(1), value(2), value(3));
+    // Named in turn, so that the first that is missing is the one that is told.
+    const double north = value(1);
+    const double east = value(2);
+    const double down = value(3);
+    samples.positions.emplace_back(north, east, down);
     samples.angles.push_back(angle);
   }
   if (samples.times.size() < 2)

@@ -192,7 +192,7 @@ TEST(PathFile, PointsAtTheLineThatIsWrong) {
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,nan,0,0\n", "a.csv"); }),
               testing::StartsWith("a.csv:3: north_m is 'nan'"));
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n1,1\n", "a.csv"); }),
-              testing::HasSubstr("no value for down_m"));
+              testing::HasSubstr("no value for east_m"));
   EXPECT_THAT(error_of([&] { parse_path_csv(header + "0,0,0,0\n", "a.csv"); }),
               testing::HasSubstr("at least two"));
   EXPECT_THAT(error_of([&] { parse_path_csv("", "a.csv"); }), testing::HasSubstr("is empty"));
