@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <map>
+#include <type_traits>
 
 #include <fmt/format.h>
 
 #include "calibration/calibration.h"
+#include "scene/camera_keys.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -25,7 +27,7 @@ struct Key {
   const char* words;
 };
 
-constexpr std::array<Key, 14> kKeys = {{
+constexpr std::array<Key, 13> kKeys = {{
     {"shutter", "exposure_s", "seconds that a row is exposed"},
     {"shutter", "readout_s", "seconds from the first row to the last; 0: no sign of any"},
     {"air", "extinction_per_km", "red, green, blue"},
@@ -39,7 +41,6 @@ constexpr std::array<Key, 14> kKeys = {{
     {"sensor", "codec_step", "of the quantiser, in code values"},
     {"light", "sun_azimuth_deg", "from north, if the heading given was the camera's"},
     {"light", "sun_elevation_deg", "above the horizon"},
-    {"", "", ""},
 }};
 
 }  // namespace
@@ -82,28 +83,18 @@ std::string toml_from(const Calibration& c) {
 
 scene::CameraModel model_of(const Calibration& c) {
   scene::CameraModel model;
-  const auto one = [&](const char* key) -> std::optional<double> {
-    const auto found = c.values.find(key);
-    return found == c.values.end() ? std::nullopt : std::optional(found->second[0].value);
-  };
-  const auto three = [&](const char* key) -> std::optional<std::array<double, 3>> {
-    const auto found = c.values.find(key);
-    if (found == c.values.end()) return std::nullopt;
-    return std::array<double, 3>{
-        found->second[0].value, found->second[1].value, found->second[2].value};
-  };
-  model.exposure_s = one("shutter.exposure_s");
-  model.readout_s = one("shutter.readout_s");
+  scene::for_each_camera_key(
+      [&](const char* key, auto& member) {
+        const auto found = c.values.find(key);
+        if (found == c.values.end()) return;
+        const std::vector<Estimate>& values = found->second;
+        if constexpr (std::is_same_v<decltype(member), std::optional<double>&>)
+          member = values[0].value;
+        else
+          member = {values[0].value, values[1].value, values[2].value};
+      },
+      model);
   if (model.readout_s) model.readout = c.notes.at("shutter.readout");
-  model.extinction_per_km = three("air.extinction_per_km");
-  model.airlight = three("air.airlight");
-  model.point_spread_px = one("optics.point_spread_px");
-  model.sharpening = one("optics.sharpening");
-  model.sharpening_px = one("optics.sharpening_px");
-  model.noise_gain = one("sensor.noise_gain");
-  model.noise_floor = one("sensor.noise_floor");
-  model.noise_correlation_px = one("sensor.noise_correlation_px");
-  model.codec_step = one("sensor.codec_step");
   return model;
 }
 

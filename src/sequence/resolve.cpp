@@ -7,33 +7,11 @@
 
 #include "base/error.h"
 #include "calibration/calibration.h"
+#include "scene/camera_keys.h"
 #include "sequence/world.h"
 
 namespace airtruth::sequence {
 namespace {
-
-// visit(key, member of scene, member of file, member of measured) for every key that a clip or a
-// file can tell.
-template <typename Visit>
-void each_key(scene::CameraModel& s,
-              const scene::CameraModel& f,
-              const scene::CameraModel& m,
-              const Visit& visit) {
-  visit("shutter.exposure_s", s.exposure_s, f.exposure_s, m.exposure_s);
-  visit("shutter.readout_s", s.readout_s, f.readout_s, m.readout_s);
-  visit("air.extinction_per_km", s.extinction_per_km, f.extinction_per_km, m.extinction_per_km);
-  visit("air.airlight", s.airlight, f.airlight, m.airlight);
-  visit("optics.point_spread_px", s.point_spread_px, f.point_spread_px, m.point_spread_px);
-  visit("optics.sharpening", s.sharpening, f.sharpening, m.sharpening);
-  visit("optics.sharpening_px", s.sharpening_px, f.sharpening_px, m.sharpening_px);
-  visit("sensor.noise_gain", s.noise_gain, f.noise_gain, m.noise_gain);
-  visit("sensor.noise_floor", s.noise_floor, f.noise_floor, m.noise_floor);
-  visit("sensor.noise_correlation_px",
-        s.noise_correlation_px,
-        f.noise_correlation_px,
-        m.noise_correlation_px);
-  visit("sensor.codec_step", s.codec_step, f.codec_step, m.codec_step);
-}
 
 scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size) {
   const fs::path& path = *scene.realism.file;
@@ -69,6 +47,21 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   return calibration::calibrate(scene.background.video, how);
 }
 
+// The paper's road has no place for what a camera and its air do; half of it would be worse.
+void refuse_with_chroma_key(const scene::Scene& scene) {
+  if (scene.composite.method != "chroma-key") return;
+  scene::CameraModel model = scene.camera_model;
+  bool any = scene.realism.file || scene.realism.automatic || model.angle_deg || model.readout ||
+             !model.automatic.empty();
+  scene::for_each_camera_key([&](const char*, const auto& value) { any = any || value; }, model);
+  if (any)
+    throw Error(
+        "composite.method chroma-key is for the picture as it is, without [shutter], [air], "
+        "[optics], "
+        "[sensor] and [realism]; expected none of them, or method = \"matte\"",
+        scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
+}
+
 void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
   scene::CameraModel& model = scene.camera_model;
   if (!model.angle_deg) return;
@@ -88,6 +81,7 @@ scene::Scene resolved(const scene::Scene& scene,
                       const Options& options) {
   scene::Scene result = scene;
   scene::CameraModel& model = result.camera_model;
+  refuse_with_chroma_key(scene);
   take_angle(result, info);
   const lens::ImageSize size{info.width, info.height};
   scene::CameraFile file;
@@ -97,19 +91,21 @@ scene::Scene resolved(const scene::Scene& scene,
     return scene.realism.automatic || std::find(named.begin(), named.end(), key) != named.end();
   };
   bool measure = false;
-  each_key(
-      model, file.model, {}, [&](const char* key, auto& stated, const auto& filed, const auto&) {
+  scene::for_each_camera_key(
+      [&](const char* key, auto& stated, const auto& filed) {
         if (!stated) stated = filed;
         measure = measure || (!stated && wanted(key));
-      });
+      },
+      model,
+      file.model);
   if (!model.readout) model.readout = file.model.readout;
   std::optional<double> azimuth = file.sun_azimuth_deg;
   std::optional<double> elevation = file.sun_elevation_deg;
   if (measure) {
     const calibration::Calibration found = measured_on(scene, size, mask, options);
     const scene::CameraModel from_clip = calibration::model_of(found);
-    each_key(
-        model, {}, from_clip, [&](const char* key, auto& stated, const auto&, const auto& seen) {
+    scene::for_each_camera_key(
+        [&](const char* key, auto& stated, const auto& seen) {
           if (stated || !wanted(key)) return;
           stated = seen;
           if (stated) return;
@@ -120,7 +116,9 @@ scene::Scene resolved(const scene::Scene& scene,
                 what + "; state it, or set fallback = true in [realism] to leave it out",
                 scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
           warn(options.warn, what + "; it is left out");
-        });
+        },
+        model,
+        from_clip);
     if (!model.readout) model.readout = from_clip.readout;
     if (!azimuth && found.values.contains("light.sun_azimuth_deg")) {
       azimuth = found.values.at("light.sun_azimuth_deg")[0].value;
