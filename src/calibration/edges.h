@@ -16,7 +16,8 @@ namespace airtruth::calibration {
 class EdgeMeter {
  public:
   explicit EdgeMeter(const image::Mask* own_aircraft) : own_aircraft_(own_aircraft) {}
-  // flow: how far the picture moved to this frame at the edge, px; empty: not known.
+  // frame_from_before: the picture's motion, which tells a sharp edge from a blurred one; empty:
+  // not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
 
   struct Result {

@@ -283,14 +283,11 @@ class Comparing {
       if (cv::countNonZero(real_patch->silhouette) < kFewest ||
           cv::countNonZero(made_patch->silhouette) < kFewest)
         continue;
-      all_.push_back(
-          {box->first,
-           looks_of(*real_patch, static_cast<int>(box->second.x), static_cast<int>(box->second.y)),
-           looks_of(*made_patch,
-                    static_cast<int>(made.exact_box_px->x),
-                    static_cast<int>(made.exact_box_px->y)),
-           features_of(*real_patch),
-           features_of(*made_patch)});
+      all_.push_back({box->first,
+                      looks_of(*real_patch),
+                      looks_of(*made_patch),
+                      features_of(*real_patch),
+                      features_of(*made_patch)});
       if (figure_.size() < static_cast<std::size_t>(options_.pairs) &&
           (figure_.empty() || box->first >= figure_.back().frame + every))
         figure_.push_back({box->first,

@@ -27,7 +27,7 @@ std::vector<double> values_where(const cv::Mat& values, const cv::Mat& mask) {
   return result;
 }
 
-// What differs from the plane through the patch's rim by more than its noise; the part nearest the
+// What differs from the median of the patch's rim by more than its noise; the part nearest the
 // middle.
 cv::Mat silhouette_of(const cv::Mat& grey) {
   const int rim = std::max(2, grey.cols / 8);
@@ -135,7 +135,8 @@ double fine_share(const cv::Mat& grey) {
   return fine / all;
 }
 
-double blockiness(const cv::Mat& grey, int x0, int y0) {
+// x0: of the patch in the picture, whose blocks begin at its own edge.
+double blockiness(const cv::Mat& grey, int x0) {
   double on = 0, off = 0;
   int on_count = 0, off_count = 0;
   for (int y = 0; y < grey.rows; ++y)
@@ -146,7 +147,6 @@ double blockiness(const cv::Mat& grey, int x0, int y0) {
       else
         off += d, ++off_count;
     }
-  (void)y0;
   return (on / std::max(1, on_count) + 0.1) / (off / std::max(1, off_count) + 0.1);
 }
 
@@ -160,15 +160,17 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   if (x < 0 || y < 0 || x + side > picture.width || y + side > picture.height) return std::nullopt;
   image::Rgb8 crop = image::rgb8_from_picture(picture, x, y, side, side);
   Patch patch;
+  patch.x = x;
+  patch.y = y;
   patch.rgb = cv::Mat(side, side, CV_8UC3, crop.samples.get()).clone();
-  cv::Mat(side, side, CV_8UC1).convertTo(patch.grey, CV_32F);
+  patch.grey.create(side, side, CV_32F);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) patch.grey.at<float>(j, i) = picture.luma().row(y + j)[x + i];
   patch.silhouette = silhouette_of(patch.grey);
   return patch;
 }
 
-Looks looks_of(const Patch& patch, int x, int y) {
+Looks looks_of(const Patch& patch) {
   Looks looks;
   const auto kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
   cv::Mat inside, wide, around;
@@ -182,7 +184,7 @@ Looks looks_of(const Patch& patch, int x, int y) {
   looks.noise = laplacian_deviation(patch.grey, inside);
   looks.background_noise = laplacian_deviation(patch.grey, around);
   looks.fine_share = fine_share(patch.grey);
-  looks.blockiness = blockiness(patch.grey, x, y);
+  looks.blockiness = blockiness(patch.grey, patch.x);
   double count = 0;
   for (int j = 0; j < patch.rgb.rows; ++j)
     for (int i = 0; i < patch.rgb.cols; ++i) {
@@ -231,7 +233,7 @@ std::vector<float> features_of(const Patch& patch) {
       }
     for (const float h : histogram) features.push_back(h / total);
   }
-  const Looks looks = looks_of(patch, 0, 0);
+  const Looks looks = looks_of(patch);
   const double contrast = std::abs(looks.contrast) + 4;
   for (const double v : {looks.edge_width_px,
                          std::log(looks.noise + 0.05),

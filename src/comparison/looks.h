@@ -14,8 +14,9 @@
 // for an inserted one, from pixels alone: no alpha, no truth.
 namespace airtruth::comparison {
 
-// A square crop about a box, in linear luma order: 8-bit RGB and float grey.
+// A square crop about a box.
 struct Patch {
+  int x = 0, y = 0;    // its corner in the picture
   cv::Mat rgb;         // 8-bit
   cv::Mat grey;        // float code values
   cv::Mat silhouette;  // 8-bit, 255: differs from its surroundings
@@ -34,8 +35,7 @@ struct Looks {
   double saturation = 0;        // mean of (max - min) / max over the silhouette
   std::array<double, 24> histogram{};  // 8 bins of red, green, blue, of the silhouette
 };
-// x, y: where the patch's corner is in the picture, for the block grid.
-Looks looks_of(const Patch& patch, int x, int y);
+Looks looks_of(const Patch& patch);
 
 // Hellinger (1909) distance of two histograms, 0..1.
 double distance(const std::array<double, 24>& a, const std::array<double, 24>& b);

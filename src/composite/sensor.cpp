@@ -69,7 +69,7 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 // A normal number that belongs to a pixel of a frame: the sum of 8 uniform bytes, twice (Irwin 1927
-// and Hall 1927), which is normal to 3.9 standard deviations.
+// and Hall 1927), which never strays more than 6.9 standard deviations.
 float normal_at(std::uint64_t key, int x, int y) {
   const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
                               static_cast<std::uint32_t>(y);
