@@ -277,12 +277,13 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
 TEST(Calibrate, FindsTheSun) {
   for (const auto& [azimuth, elevation] : {std::pair(20.0, 25.0), std::pair(-35.0, 40.0)}) {
     synthetic::FlightOptions o = ideal(8);
+    o.width = 640, o.height = 480;
     o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
     o.sun_azimuth_deg = azimuth;
     o.sun_elevation_deg = elevation;
     o.cloud_cover = 0.3;
     o.own_aircraft = false;
-    o.frame_count = 40;
+    o.frame_count = 24;
     const synthetic::Flight flight(o);
     Clip clip;
     clip.write(
@@ -313,6 +314,7 @@ TEST(Calibrate, MeasuresTheAir) {
     o.speed_mps = 50;
     o.shake_deg = 0.1;
     o.extinction_per_km = extinction_per_km;
+    o.linear_light = true;
     const synthetic::Flight flight(o);
     Clip clip;
     clip.write(

@@ -27,12 +27,13 @@ constexpr int kFewestCells = 10;
 constexpr double kAirlightTrust = 0.1;  // of its value
 constexpr double kDark = 0.03;          // quantile
 constexpr double kLeastSpread = 0.01;
-constexpr double kTiltTrustDeg = 1.5;
+constexpr double kTiltTrustDeg = 3;
 constexpr double kTiltStepDeg = 0.25;
 constexpr double kWeakest = 0.004;  // per km
 constexpr double kStrongest = 4;
 constexpr double kStep = 1.02;
 constexpr int kParts = 3;
+constexpr double kModelError = 0.15;  // of the value: woods are not the same everywhere
 constexpr double kLeastKnown = 0.5;  // of the value: a larger error is no answer
 
 double median(std::vector<double> values) {
@@ -291,7 +292,8 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& seen,
     double squares = 0;
     for (const Fit& p : parts) squares += (p.beta[c] - all.beta[c]) * (p.beta[c] - all.beta[c]);
     const double n = std::max<double>(2, double(parts.size()));
-    const double sigma = std::max(all.sigma[c], std::sqrt(squares / (n * (n - 1))));
+    const double scatter = std::max(all.sigma[c], std::sqrt(squares / (n * (n - 1))));
+    const double sigma = std::hypot(scatter, kModelError * all.beta[c]);
     if (all.beta[c] < 1.2 * kWeakest || all.beta[c] > kStrongest / 1.2 ||
         sigma > kLeastKnown * all.beta[c]) {
       why = "the ground's colour does not go over into the airlight clearly enough";

@@ -69,8 +69,9 @@ std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation
 //
 // Least squares over all sectors and ranges, for each channel: D, the airlights (held near what the
 // sky says), and how far the horizon lies over where it was found, since haze draws it down (held
-// near 0 by 1.5 degrees), are solved with it. Its error is what thirds of the view say for
-// themselves. Empty, with the reason in `why`, where the ground does not fade clearly.
+// near 0 by 3 degrees), are solved with it. Its error is what thirds of the view say for
+// themselves, and 15 % for ground that is not the same everywhere. Empty, with the reason in `why`,
+// where the ground does not fade clearly.
 struct Fading {
   ColourEstimate extinction_per_km;
   double horizon_rad = 0;  // elevation of the true horizon, as elevations are given

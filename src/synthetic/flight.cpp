@@ -88,9 +88,9 @@ struct Flight::Impl {
                               sun_in_world(o.sun_azimuth_deg - o.heading_deg, o.sun_elevation_deg),
                               sky,
                               o.own_aircraft)),
-        view(lens, !o.ideal_sensor),
+        view(lens, !o.linear_light),
         panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
-        sensor(o.width, o.height, o.noise, o.ideal_sensor, stream(o, "sensor")),
+        sensor(o, stream(o, "sensor")),
         clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
         ground(make_world()) {}
 

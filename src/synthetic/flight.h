@@ -40,8 +40,9 @@ struct FlightOptions {
   double roll_deg = 3;                  // amplitude of the slow rolling of the flight
   bool own_aircraft = true;             // nose and wing tips in view
   double noise = 1.0;                   // sensor noise: 1 = a cheap camera; 0 none
-  bool ideal_sensor =
-      false;  // no blur, sharpening, noise, shoulder or fall-off (calibration's tests)
+  // For the calibration's tests:
+  bool ideal_sensor = false;  // no lens blur, no sharpening, no noise
+  bool linear_light = false;  // no shoulder, no fall-off to the corners
   double clutter =
       0;  // share of the image's texture that moves on its own (for the motion tests), 0..1
   bool translate = true;  // false: the camera only rotates, so that a homography is exact

@@ -17,12 +17,13 @@ constexpr float kSharpening = 0.22F;
 
 // Code values 0..255 by the square root of light, so that the dark end is as fine as the bright
 // one.
-std::vector<float> tone_curve(bool ideal) {
+std::vector<float> tone_curve(bool linear) {
   std::vector<float> curve(kCurve + 1);
   for (int i = 0; i <= kCurve; ++i) {
     const float root = static_cast<float>(i) / kCurve;
     const float light = root * root * kBrightest;
-    const float exposed = ideal ? light : light * (1 + 0.10F * light) / (1 + 0.42F * light) * 1.18F;
+    const float exposed =
+        linear ? light : light * (1 + 0.10F * light) / (1 + 0.42F * light) * 1.18F;
     curve[static_cast<std::size_t>(i)] = 255 * image::srgb_from_linear(std::min(exposed, 1.0F));
   }
   return curve;
@@ -34,13 +35,13 @@ std::uint8_t code(float value) {
 
 }  // namespace
 
-Sensor::Sensor(int width, int height, double noise, bool ideal, std::uint32_t seed)
-    : width_(width),
-      height_(height),
-      noise_(ideal ? 0 : static_cast<float>(noise)),
-      ideal_(ideal),
+Sensor::Sensor(const FlightOptions& options, std::uint32_t seed)
+    : width_(options.width),
+      height_(options.height),
+      noise_(options.ideal_sensor ? 0 : static_cast<float>(options.noise)),
+      ideal_(options.ideal_sensor),
       seed_(seed),
-      curve_(tone_curve(ideal)),
+      curve_(tone_curve(options.linear_light)),
       grain_(std::size_t{kGrain} * kGrain) {
   Random random(seed_);
   const auto normal = [&] { return static_cast<float>(random.normal()); };

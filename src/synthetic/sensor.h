@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/picture.h"
+#include "synthetic/flight.h"
 #include "synthetic/noise.h"
 
 namespace airtruth::synthetic {
@@ -13,8 +14,7 @@ namespace airtruth::synthetic {
 // sharpening, 4:2:0.
 class Sensor {
  public:
-  // ideal: no noise, no blur, no sharpening; light is coded as it falls.
-  Sensor(int width, int height, double noise, bool ideal, std::uint32_t seed);
+  Sensor(const FlightOptions& options, std::uint32_t seed);
 
   // Luma before sharpening, in 1/64 code values.
   struct Exposure {
