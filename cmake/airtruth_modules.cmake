@@ -1,7 +1,7 @@
 # add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...])
 # makes the static library airtruth_NAME and, from TESTS, the program NAME_test (one ctest entry; SLOW_TESTS
-# make NAME_slow_test, labelled slow).
+# make NAME_slow_test, labelled slow; not with sanitizers, under which they take hours).
 function(add_module name)
   cmake_parse_arguments(arg "" ""
     "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS" ${ARGN})
@@ -23,7 +23,7 @@ function(add_module name)
     if(arg_TESTS)
       add_module_test(${name}_test fast ${name} "${arg_TESTS}" "${arg_TEST_DEPENDS};${arg_PRIVATE_LIBRARIES}")
     endif()
-    if(arg_SLOW_TESTS)
+    if(arg_SLOW_TESTS AND NOT AIRTRUTH_SANITIZE)
       add_module_test(${name}_slow_test slow ${name} "${arg_SLOW_TESTS}" "${arg_TEST_DEPENDS};${arg_PRIVATE_LIBRARIES}")
     endif()
   endif()

@@ -21,3 +21,7 @@ if(AIRTRUTH_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(AIRTRUTH_FUZZERS)
+  # Every branch tells the fuzzers that it was taken.
+  target_compile_options(airtruth_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
