@@ -8,6 +8,8 @@
 #include <optional>
 #include <variant>
 
+#include "render/marking.h"
+
 namespace airtruth::render {
 namespace {
 
@@ -29,196 +31,6 @@ std::optional<Pixel> frame_pixel(const View& view,
   const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return std::nullopt;
   return Pixel(h.x() / h.z(), h.y() / h.z());
-}
-
-// The value of a side's product over a pixel: a + b x + c y + d x y, in units of its largest
-// corner.
-struct Bilinear {
-  float a = 0, b = 0, c = 0, d = 0;
-};
-
-Bilinear bilinear_of(const std::array<double, 4>& corner) {
-  double largest = 0;
-  for (const double value : corner) largest = std::max(largest, std::abs(value));
-  const double scale = 1 / largest;
-  return {static_cast<float>(corner[0] * scale),
-          static_cast<float>((corner[1] - corner[0]) * scale),
-          static_cast<float>((corner[2] - corner[0]) * scale),
-          static_cast<float>((corner[0] - corner[1] - corner[2] + corner[3]) * scale)};
-}
-
-struct Places {
-  alignas(32) std::array<float, PixelSamples::kMost> x;
-  alignas(32) std::array<float, PixelSamples::kMost> y;
-  alignas(32) std::array<float, PixelSamples::kMost> t;
-};
-
-// A side's product over a pixel and its exposure: steady + u (first + u second), u from -1 to 1.
-struct Swept {
-  Bilinear steady, first, second;
-};
-
-Swept swept_of(const Thrice<std::array<double, 4>>& at) {
-  double largest = 0;
-  for (const auto& corner : at)
-    for (const double value : corner) largest = std::max(largest, std::abs(value));
-  const double scale = 1 / largest;
-  const auto bilinear = [scale](const std::array<double, 4>& c) {
-    return Bilinear{static_cast<float>(c[0] * scale),
-                    static_cast<float>((c[1] - c[0]) * scale),
-                    static_cast<float>((c[2] - c[0]) * scale),
-                    static_cast<float>((c[0] - c[1] - c[2] + c[3]) * scale)};
-  };
-  std::array<double, 4> first;
-  std::array<double, 4> second;
-  for (std::size_t i = 0; i < 4; ++i) {
-    first[i] = 0.5 * (at[2][i] - at[0][i]);
-    second[i] = 0.5 * (at[2][i] - 2 * at[1][i] + at[0][i]);
-  }
-  return {bilinear(at[1]), bilinear(first), bilinear(second)};
-}
-
-// The same instructions in vectors of 16, 8 or 4, as the machine has them. No product is fused with
-// its sum (-ffp-contract=off), so that the answers are the same bits on all of them.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define AIRTRUTH_VECTORS __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
-#else
-#define AIRTRUTH_VECTORS
-#endif
-
-// Marks the samples on the inner side of all three (an unused one is +1 everywhere); true where
-// every sample is marked by now.
-AIRTRUTH_VECTORS
-bool mark(const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
-  const Bilinear p = sides[0];
-  const Bilinear q = sides[1];
-  const Bilinear r = sides[2];
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float x = px[i];
-    const float y = py[i];
-    const float u = (p.a + p.b * x) + y * (p.c + p.d * x);
-    const float v = (q.a + q.b * x) + y * (q.c + q.d * x);
-    const float w = (r.a + r.b * x) + y * (r.c + r.d * x);
-    const std::int32_t inside = -static_cast<std::int32_t>((u >= 0) & (v >= 0) & (w >= 0));
-    const std::int32_t now = covered[i] | inside;
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
-}
-
-// The same for the only side that crosses the pixel.
-AIRTRUTH_VECTORS
-bool mark_one(
-    const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
-  const Bilinear p = *side;
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float u = (p.a + p.b * px[i]) + py[i] * (p.c + p.d * px[i]);
-    const std::int32_t now = covered[i] | -static_cast<std::int32_t>(u >= 0);
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
-}
-
-// A side that goes straight over a pixel and evenly through its exposure: a + b x + c y + d t.
-// Sides of what is seen from afar are such, to a fraction of what a sample can tell.
-std::optional<Bilinear> even_side(const Swept& side) {
-  constexpr float kNegligiblePx = 0.004F;
-  const Bilinear& p = side.steady;
-  const Bilinear& q = side.first;
-  const Bilinear& r = side.second;
-  const float left_out = std::abs(p.d) / 4 + (std::abs(q.b) + std::abs(q.c) + std::abs(q.d)) / 2 +
-                         std::abs(r.a) + std::abs(r.b) + std::abs(r.c) + std::abs(r.d);
-  const float slope = std::hypot(p.b + p.d / 2, p.c + p.d / 2);
-  if (!(left_out < kNegligiblePx * slope)) return std::nullopt;
-  // About the pixel's middle: x y is (x + y) / 2 - 1/4 and u (b x + c y) is u (b + c) / 2, nearly.
-  const float drift = q.a + (q.b + q.c) / 2 + q.d / 4;
-  const float bend = (r.a + (r.b + r.c) / 2 + r.d / 4) / 3;
-  return Bilinear{p.a - p.d / 4 - drift + bend, p.b + p.d / 2, p.c + p.d / 2, 2 * drift};
-}
-
-AIRTRUTH_VECTORS
-bool mark_even(const Bilinear* sides,
-               const float* px,
-               const float* py,
-               const float* pt,
-               int n,
-               std::int32_t* covered) {
-  const Bilinear p = sides[0];
-  const Bilinear q = sides[1];
-  const Bilinear r = sides[2];
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float x = px[i];
-    const float y = py[i];
-    const float t = pt[i];
-    const float u = (p.a + p.b * x) + (p.c * y + p.d * t);
-    const float v = (q.a + q.b * x) + (q.c * y + q.d * t);
-    const float w = (r.a + r.b * x) + (r.c * y + r.d * t);
-    const std::int32_t inside = -static_cast<std::int32_t>((u >= 0) & (v >= 0) & (w >= 0));
-    const std::int32_t now = covered[i] | inside;
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
-}
-
-AIRTRUTH_VECTORS
-bool mark_one_even(const Bilinear* side,
-                   const float* px,
-                   const float* py,
-                   const float* pt,
-                   int n,
-                   std::int32_t* covered) {
-  const Bilinear p = *side;
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float u = (p.a + p.b * px[i]) + (p.c * py[i] + p.d * pt[i]);
-    const std::int32_t now = covered[i] | -static_cast<std::int32_t>(u >= 0);
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
-}
-
-// The same for sides that are not; an unused one is 1 everywhere.
-AIRTRUTH_VECTORS
-void side_values(
-    const Swept* side, const float* px, const float* py, const float* pt, int n, float* least) {
-  const Bilinear p = side->steady;
-  const Bilinear q = side->first;
-  const Bilinear r = side->second;
-  for (int i = 0; i < n; ++i) {
-    const float u = 2 * pt[i] - 1;
-    const float a = p.a + u * (q.a + u * r.a);
-    const float b = p.b + u * (q.b + u * r.b);
-    const float c = p.c + u * (q.c + u * r.c);
-    const float d = p.d + u * (q.d + u * r.d);
-    const float value = (a + b * px[i]) + py[i] * (c + d * px[i]);
-    least[i] = value < least[i] ? value : least[i];
-  }
-}
-
-bool mark_swept(const Swept* sides,
-                int count,
-                const float* px,
-                const float* py,
-                const float* pt,
-                int n,
-                std::int32_t* covered) {
-  alignas(64) std::array<float, PixelSamples::kMost> least;
-  std::fill_n(least.begin(), n, 1.0F);
-  for (int k = 0; k < count; ++k) side_values(sides + k, px, py, pt, n, least.data());
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    covered[i] |= -static_cast<std::int32_t>(least[static_cast<std::size_t>(i)] >= 0);
-    all &= covered[i];
-  }
-  return all == -1;
 }
 
 }  // namespace
@@ -549,6 +361,41 @@ Silhouette::Pencil Silhouette::pencil_of(int x, int y) const {
   return pencil;
 }
 
+// Side: of marking.h. side_of(triangle, side): its four corners' products, at one moment or three.
+template <typename Side, typename ProductsOf, typename SideOf, typename Place>
+void Silhouette::cover_by(int x,
+                          int y,
+                          int samples,
+                          const ProductsOf& products_of,
+                          const SideOf& side_of,
+                          const Place& place,
+                          Cover& result) const {
+  std::int32_t* covered = result.is_covered.data();
+  Places places;
+  bool placed = false;
+  bool full = false;
+  for (const std::uint32_t index : triangles_of(x, y)) {
+    std::array<Side, 3> sides;
+    int crossing = 0;
+    bool outside = false;
+    for (std::size_t side = 0; side < 3 && !outside; ++side) {
+      const auto products = products_of(triangles_[index], side);
+      const std::ptrdiff_t inner =
+          std::count_if(products.begin(), products.end(), [](double p) { return p >= 0; });
+      if (inner == std::ssize(products)) continue;
+      outside = inner == 0;
+      if (!outside) sides[static_cast<std::size_t>(crossing++)] = side_of(products);
+    }
+    if (outside) continue;
+    if (!placed && crossing > 0) place(PixelSamples(x, y), places);
+    placed = placed || crossing > 0;
+    full = crossing == 0 || mark(sides, crossing, places, samples, covered);
+    if (full) break;
+  }
+  if (full) std::fill_n(covered, samples, -1);
+  result.covered = -std::accumulate(covered, covered + samples, 0);
+}
+
 void Silhouette::cover(int x, int y, int samples, Cover& result) const {
   result.is_covered.assign(static_cast<std::size_t>(samples), 0);
   result.covered = 0;
@@ -561,106 +408,44 @@ void Silhouette::cover(int x, int y, int samples, Cover& result) const {
 }
 
 void Silhouette::cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const {
-  std::int32_t* covered = result.is_covered.data();
-  Places places;
-  bool placed = false;
-  bool full = false;
-  for (const std::uint32_t index : triangles_of(x, y)) {
-    std::array<Bilinear, 3> sides = {{{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}}};
-    std::size_t crossing = 0;
-    bool outside = false;
-    for (std::size_t side = 0; side < 3; ++side) {
-      std::array<double, 4> at;
-      int inner = 0;
-      for (std::size_t c = 0; c < 4; ++c) {
-        at[c] = pencil.product(triangles_[index], side, 1, c);
-        inner += at[c] >= 0 ? 1 : 0;
-      }
-      if (inner == 4) continue;
-      outside = outside || inner == 0;
-      sides[crossing++] = bilinear_of(at);
-    }
-    if (outside) continue;
-    if (!placed && crossing > 0) PixelSamples(x, y).fill(samples, places.x.data(), places.y.data());
-    placed = placed || crossing > 0;
-    if (crossing == 0)
-      full = true;
-    else if (crossing == 1)
-      full = mark_one(sides.data(), places.x.data(), places.y.data(), samples, covered);
-    else
-      full = mark(sides.data(), places.x.data(), places.y.data(), samples, covered);
-    if (full) break;
-  }
-  if (full) std::fill_n(covered, samples, -1);
-  result.covered = -std::accumulate(covered, covered + samples, 0);
+  using Products = std::array<double, 4>;
+  cover_by<Bilinear>(
+      x,
+      y,
+      samples,
+      [&](const Triangle& triangle, std::size_t side) {
+        Products at;
+        for (std::size_t c = 0; c < 4; ++c) at[c] = pencil.product(triangle, side, 1, c);
+        return at;
+      },
+      bilinear_of,
+      [&](const PixelSamples& here, Places& places) {
+        here.fill(samples, places.x.data(), places.y.data());
+      },
+      result);
 }
-
-namespace {
-
-// By the cheapest way that is exact enough.
-bool mark_crossing(const std::array<Swept, 3>& sides,
-                   int crossing,
-                   const Places& places,
-                   int samples,
-                   std::int32_t* covered) {
-  std::array<Bilinear, 3> even = {{{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}}};
-  for (int k = 0; k < crossing; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const auto side = even_side(sides[i]);
-    if (!side)
-      return mark_swept(sides.data(),
-                        crossing,
-                        places.x.data(),
-                        places.y.data(),
-                        places.t.data(),
-                        samples,
-                        covered);
-    even[i] = *side;
-  }
-  const auto mark_them = crossing == 1 ? mark_one_even : mark_even;
-  return mark_them(
-      even.data(), places.x.data(), places.y.data(), places.t.data(), samples, covered);
-}
-
-}  // namespace
 
 void Silhouette::cover_moving(
     int x, int y, const Pencil& pencil, int samples, Cover& result) const {
-  std::int32_t* covered = result.is_covered.data();
-  Places places;
-  bool placed = false;
-  bool full = false;
-  for (const std::uint32_t index : triangles_of(x, y)) {
-    std::array<Swept, 3> sides;
-    int crossing = 0;
-    bool outside = false;
-    for (std::size_t side = 0; side < 3; ++side) {
-      Thrice<std::array<double, 4>> at;
-      int inner = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t c = 0; c < 4; ++c) {
-          at[k][c] = pencil.product(triangles_[index], side, k, c);
-          inner += at[k][c] >= 0 ? 1 : 0;
-        }
-      if (inner == 12) continue;
-      if (inner == 0) {
-        outside = true;
-        break;
-      }
-      sides[static_cast<std::size_t>(crossing++)] = swept_of(at);
-    }
-    if (outside) continue;
-    if (!placed && crossing > 0) {
-      const PixelSamples here(x, y);
-      here.fill(samples, places.x.data(), places.y.data());
-      here.fill_times(samples, places.t.data());
-      placed = true;
-    }
-    full = crossing == 0 || mark_crossing(sides, crossing, places, samples, covered);
-    if (full) break;
-  }
-  if (full) std::fill_n(covered, samples, -1);
-  result.covered = -std::accumulate(covered, covered + samples, 0);
+  using Products = std::array<double, 12>;  // four of each moment
+  cover_by<Swept>(
+      x,
+      y,
+      samples,
+      [&](const Triangle& triangle, std::size_t side) {
+        Products at;
+        for (std::size_t i = 0; i < 12; ++i) at[i] = pencil.product(triangle, side, i / 4, i % 4);
+        return at;
+      },
+      [](const Products& p) {
+        return swept_of(
+            {{{p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, {p[8], p[9], p[10], p[11]}}});
+      },
+      [&](const PixelSamples& here, Places& places) {
+        here.fill(samples, places.x.data(), places.y.data());
+        here.fill_times(samples, places.t.data());
+      },
+      result);
 }
 
 }  // namespace airtruth::render

@@ -85,6 +85,14 @@ class Silhouette {
                       const aircraft::Part& part,
                       const std::vector<Eye>& eyes) const;
   Pencil pencil_of(int x, int y) const;
+  template <typename Side, typename ProductsOf, typename SideOf, typename Place>
+  void cover_by(int x,
+                int y,
+                int samples,
+                const ProductsOf& products_of,
+                const SideOf& side_of,
+                const Place& place,
+                Cover& result) const;
   void cover_moving(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
   void cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
   void sort_by_pixel(const std::vector<Reach>& reaches);
