@@ -6,6 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "motion/corners.h"
+#include "motion/differentiator.h"
+
 namespace airtruth::calibration {
 namespace {
 
@@ -76,9 +79,7 @@ std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
   if (k < kReach || k + kReach >= places.size()) return std::nullopt;
   Pixel rate = Pixel::Zero();
   for (int j = 1; j <= kReach; ++j) {
-    const double window = 0.5 * (1 + std::cos(kPi * j / (kReach + 1)));
-    const double weight = (j % 2 == 1 ? 1.0 : -1.0) / j * window;
-    rate += weight *
+    rate += motion::differentiator_weight(j, kReach) *
             (places[k + static_cast<std::size_t>(j)] - places[k - static_cast<std::size_t>(j)]);
   }
   return rate;
@@ -88,18 +89,13 @@ void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& mov
   if (crops_.size() >= kMostFrames) return;
   places_.push_back((places_.empty() ? Pixel(0, 0) : places_.back()) + moved.value_or(Pixel(0, 0)));
   known_.push_back(moved.has_value());
-  const image::Plane& luma = frame.luma();
-  const int width = std::min(kWidth, luma.width);
-  const int height = std::min(kHeight, luma.height);
-  const int x0 = (luma.width - width) / 2;
-  const int y0 = (luma.height - height) / 2;
-  cv::Mat crop(height, width, CV_8UC1);
-  double sum = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      crop.at<unsigned char>(y, x) = luma.row(y0 + y)[x0 + x];
-      sum += crop.at<unsigned char>(y, x);
-    }
+  const cv::Mat luma = motion::luma_of(frame);
+  const int width = std::min(kWidth, luma.cols);
+  const int height = std::min(kHeight, luma.rows);
+  const int x0 = (luma.cols - width) / 2;
+  const int y0 = (luma.rows - height) / 2;
+  cv::Mat crop = luma(cv::Rect(x0, y0, width, height)).clone();
+  const double sum = cv::sum(crop)[0];
   // The own aircraft is never blurred by the camera's shake: it is made even.
   if (own_aircraft_ != nullptr)
     for (int y = 0; y < height; ++y)

@@ -10,6 +10,7 @@
 
 #include "geometry/transform.h"
 #include "image/colour.h"
+#include "motion/corners.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -125,12 +126,7 @@ class StepModel {
 void EdgeMeter::add(const image::Picture& frame,
                     const std::optional<Homography>& frame_from_before) {
   if (edges_.size() >= kMostEdges) return;
-  const image::Plane& plane = frame.luma();
-  const cv::Mat grey(plane.height,
-                     plane.width,
-                     CV_8UC1,
-                     const_cast<std::uint8_t*>(plane.row(0)),
-                     static_cast<std::size_t>(plane.stride));
+  const cv::Mat grey = motion::luma_of(frame);
   cv::Mat gx, gy, size;
   cv::Sobel(grey, gx, CV_32F, 1, 0);
   cv::Sobel(grey, gy, CV_32F, 0, 1);

@@ -34,7 +34,7 @@ constexpr double kStrongest = 4;
 constexpr double kStep = 1.02;
 constexpr int kParts = 3;
 constexpr double kModelError = 0.15;  // of the value: woods are not the same everywhere
-constexpr double kLeastKnown = 0.5;  // of the value: a larger error is no answer
+constexpr double kLeastKnown = 0.5;   // of the value: a larger error is no answer
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

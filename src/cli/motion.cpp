@@ -85,15 +85,15 @@ void measure(const Arguments& arguments, Context& context) {
       sequence::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
-  const sequence::GyroUse gyro = sequence::bridge_by_gyro(arguments.video, all);
-  if (gyro.fit)
+  const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<motion::GyroSample>();
+  if (const auto fit = sequence::bridge_by_gyro(gyro, all))
     console.result(
         fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
                     "measured follow it",
-                    gyro.fit->correlation,
-                    gyro.fit->offset_s,
-                    degrees(gyro.fit->rms_radps)));
-  else if (gyro.has_gyro)
+                    fit->correlation,
+                    fit->offset_s,
+                    degrees(fit->rms_radps)));
+  else if (!gyro.empty())
     console.warning("the video's gyro does not agree with its motion; it is not used");
   if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
   write_file(arguments.out, motion::csv_from_motion(all));

@@ -59,15 +59,7 @@ class Matte {
   image::Ycc chroma_change(int cx, int cy) const;
   bool move_chroma(int cx, int cy, const image::Ycc& change);
   void mark_block(int cx, int cy);
-  struct Reach {
-    PixelBox patch;
-    std::vector<std::uint8_t> is_own;
-    bool contains(int x, int y) const {
-      return is_own[static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +
-                    static_cast<std::size_t>(x - patch.x)] != 0;
-    }
-  };
-  Reach with_halo(const std::vector<float>& coverage) const;
+  std::vector<std::uint8_t> with_halo(const std::vector<float>& coverage) const;
   void add_coverage(std::size_t intruder, Visible& visible) const;
 
   image::Picture& picture_;
@@ -255,26 +247,25 @@ void Matte::blend() {
 
 // Where the intruder and its halo can be: pixels that it covers, and those that sharpening reaches
 // from there.
-Matte::Reach Matte::with_halo(const std::vector<float>& coverage) const {
+std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) const {
   const int halo = options_.sensor.halo_px();
-  Reach reach{layer_.patch, std::vector<std::uint8_t>(coverage.size(), 0)};
+  std::vector<std::uint8_t> reached(coverage.size(), 0);
   const PixelBox& patch = layer_.patch;
   for (int y = patch.y; y < patch.bottom(); ++y)
     for (int x = patch.x; x < patch.right(); ++x) {
       if (!(coverage[layer_.index(x, y)] > 0)) continue;
+      const int left = std::max(x - halo, patch.x);
+      const int right = std::min(x + halo, patch.right() - 1);
       for (int v = std::max(y - halo, patch.y); v <= std::min(y + halo, patch.bottom() - 1); ++v)
-        std::fill_n(reach.is_own.begin() +
-                        static_cast<std::ptrdiff_t>(layer_.index(std::max(x - halo, patch.x), v)),
-                    std::min(x + halo, patch.right() - 1) - std::max(x - halo, patch.x) + 1,
-                    std::uint8_t{1});
+        std::fill_n(&reached[layer_.index(left, v)], right - left + 1, std::uint8_t{1});
     }
-  return reach;
+  return reached;
 }
 
 void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
   const std::vector<float>& coverage = layer_.coverage[intruder];
   if (coverage.empty()) return;
-  const auto own = with_halo(coverage);
+  const std::vector<std::uint8_t> own = with_halo(coverage);
   int left = picture_.width, right = -1, top = picture_.height, bottom = -1;
   Pixel sum = Pixel::Zero();
   for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
@@ -286,7 +277,7 @@ void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
         visible.alpha_sum_px += here;
         sum += here * Pixel(x + 0.5, y + 0.5);
       }
-      if (!own.contains(x, y) || !changed_[i]) continue;
+      if (!own[i] || !changed_[i]) continue;
       ++visible.pixels;
       left = std::min(left, x);
       right = std::max(right, x);

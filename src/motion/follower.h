@@ -15,6 +15,25 @@ constexpr int kPatience = 15;  // bridged frames in a row before tracking starts
 constexpr double kCutShare =
     0.12;  // fewer survivors than this between two textured frames: the scene changed
 
+// What to do with a frame that could not be measured.
+struct Loss {
+  bool is_cut = false;
+  bool starts_anew = false;
+};
+// before, survivors: corners followed from the frame before, and those that were found again;
+// fresh: corners that the frame itself has.
+inline Loss loss_of(std::size_t fresh,
+                    std::size_t before,
+                    std::size_t survivors,
+                    int bridged_in_row,
+                    int min_inliers) {
+  const auto fewest = static_cast<std::size_t>(min_inliers);
+  const bool textured = fresh >= 2 * fewest && before >= 2 * fewest;
+  const bool cut =
+      textured && static_cast<double>(survivors) < kCutShare * static_cast<double>(before);
+  return {cut, cut || bridged_in_row >= kPatience || before < fewest};
+}
+
 class Follower {
  public:
   virtual ~Follower() = default;

@@ -123,11 +123,9 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged) {
   }
   ++bridged_in_row_;
   const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_, options_);
-  const bool textured = static_cast<int>(fresh.size()) >= 2 * options_.min_inliers &&
-                        static_cast<int>(before) >= 2 * options_.min_inliers;
-  const bool cut =
-      textured && static_cast<double>(moved.size()) < kCutShare * static_cast<double>(before);
-  if (cut || bridged_in_row_ >= kPatience || static_cast<int>(before) < options_.min_inliers) {
+  const Loss loss =
+      loss_of(fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers);
+  if (loss.starts_anew) {
     // Start anew from here; what is known of the place is carried on.
     previous_ = std::move(now);
     key_corners_ = now_corners_ = fresh;
@@ -135,7 +133,7 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged) {
     key_from_first_ = now_from_first_;
     bridged_in_row_ = 0;
   }
-  return bridged(cut ? State::kCut : State::kBridged);
+  return bridged(loss.is_cut ? State::kCut : State::kBridged);
 }
 
 }  // namespace

@@ -263,10 +263,9 @@ class Spherical : public Follower {
   FrameMotion lost(const cv::Mat& grey, Pyramid now, std::size_t before, std::size_t survivors) {
     ++bridged_in_row_;
     const auto fresh = spread_corners(grey, allowed_, options_);
-    const auto enough = static_cast<std::size_t>(2 * options_.min_inliers);
-    const bool cut = fresh.size() >= enough && before >= enough &&
-                     static_cast<double>(survivors) < kCutShare * static_cast<double>(before);
-    if (cut || bridged_in_row_ >= kPatience || static_cast<int>(before) < options_.min_inliers) {
+    const Loss loss =
+        loss_of(fresh.size(), before, survivors, bridged_in_row_, options_.min_inliers);
+    if (loss.starts_anew) {
       keys_.clear();
       links_.clear();
       make_key(grey, now, {});
@@ -274,7 +273,7 @@ class Spherical : public Follower {
       previous_ = std::move(now);
       bridged_in_row_ = 0;
     }
-    return unmeasured(cut ? State::kCut : State::kBridged);
+    return unmeasured(loss.is_cut ? State::kCut : State::kBridged);
   }
 
   lens::Lens lens_;

@@ -69,9 +69,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
   needs_change_ = needs_change;
   if (model == "rotation") lens_ = lens;
   // A gyro's clock begins with the file.
-  if (lens_ && scene.background.first_frame == 0 &&
-      !video::read_telemetry(scene.background.video).empty())
-    gyro_video_ = scene.background.video;
+  if (lens_ && scene.background.first_frame == 0) gyro_ = gyro_of(scene.background.video);
   if (!video_sha256.empty() && !none_) cache_ = cache;
   options_.seed = scene.seed;
   options_.smoothing_s = scene.motion.smoothing_s;
@@ -96,7 +94,7 @@ motion::Estimator MotionSource::estimator(int width, int height) const {
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
   against_first_ = std::move(against_first);
   std::vector<motion::FrameMotion> bridged = against_first_;
-  if (!gyro_video_.empty()) bridge_by_gyro(gyro_video_, bridged);
+  bridge_by_gyro(gyro_, bridged);
   all_ = smoothed_ ? motion::smoothed(bridged, options_) : std::move(bridged);
   ready_ = true;
 }
@@ -140,19 +138,21 @@ void MotionSource::store() const {
   }
 }
 
-GyroUse bridge_by_gyro(const fs::path& video, std::vector<motion::FrameMotion>& motion) {
-  GyroUse use;
-  if (motion.empty() || !motion.front().rotation) return use;
+std::vector<motion::GyroSample> gyro_of(const fs::path& video) {
   std::vector<motion::GyroSample> gyro;
   for (const video::TelemetryPacket& packet : video::read_telemetry(video))
     for (const motion::GyroSample& sample :
          motion::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
       gyro.push_back(sample);
-  use.has_gyro = !gyro.empty();
-  if (!use.has_gyro) return use;
-  use.fit = motion::fit_gyro(gyro, motion);
-  if (use.fit) motion = motion::bridged_by_gyro(motion, gyro, *use.fit);
-  return use;
+  return gyro;
+}
+
+std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
+                                              std::vector<motion::FrameMotion>& motion) {
+  if (gyro.empty() || motion.empty() || !motion.front().rotation) return std::nullopt;
+  const auto fit = motion::fit_gyro(gyro, motion);
+  if (fit) motion = motion::bridged_by_gyro(motion, gyro, *fit);
+  return fit;
 }
 
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,

@@ -40,7 +40,7 @@ class MotionSource {
   // True when frames must be seen once before the first motion is known (reference "smoothed", a
   // shutter, a gyroscope; not cached).
   bool needs_pass() const {
-    return (smoothed_ || needs_change_ || !gyro_video_.empty()) && !ready_ && !none_;
+    return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
   }
   // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
   void measure(video::Reader& reader,
@@ -66,8 +66,8 @@ class MotionSource {
 
   bool none_ = false;
   bool needs_change_ = false;
-  fs::path gyro_video_;             // whose gyroscope bridges what cannot be measured; empty: none
-  std::optional<lens::Lens> lens_;  // of the model rotation
+  std::vector<motion::GyroSample> gyro_;  // bridges what cannot be measured; empty: none
+  std::optional<lens::Lens> lens_;        // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
@@ -85,13 +85,13 @@ class MotionSource {
 std::string motion_model(const scene::Scene& scene, const lens::Lens& lens);
 bool is_wide(const lens::Lens& lens);
 
-// Bridges what could not be measured by the video's own gyroscope, where it has one (a GoPro's
-// telemetry) that agrees with what was; rotations only. Says what it found.
-struct GyroUse {
-  std::optional<motion::GyroFit> fit;
-  bool has_gyro = false;
-};
-GyroUse bridge_by_gyro(const fs::path& video, std::vector<motion::FrameMotion>& motion);
+// What a video's own gyroscope told (a GoPro's telemetry); empty where it has none.
+std::vector<motion::GyroSample> gyro_of(const fs::path& video);
+
+// Bridges what could not be measured by a gyroscope that agrees with what was; rotations only.
+// Says how it fits; empty, and nothing changed, where it does not.
+std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
+                                              std::vector<motion::FrameMotion>& motion);
 
 // Motion of a whole clip against its first frame, as a rotation where a lens is given; `seen` after
 // each frame. Throws Interrupted on stop.

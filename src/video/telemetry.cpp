@@ -23,6 +23,8 @@ std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path) {
       start_s = static_cast<double>(stream.start_time) * av_q2d(stream.time_base);
   }
   if (telemetry < 0) return {};
+  for (unsigned i = 0; i < input->nb_streams; ++i)
+    if (static_cast<int>(i) != telemetry) input->streams[i]->discard = AVDISCARD_ALL;
   const double base = av_q2d(input->streams[telemetry]->time_base);
   std::vector<TelemetryPacket> packets;
   const PacketPtr packet(av_packet_alloc());
