@@ -1,3 +1,23 @@
+# Headers that nearly every file reads, compiled once for libraries and once for tests. Every file includes what it
+# uses all the same: -DAIRTRUTH_PCH=OFF builds without.
+if(AIRTRUTH_PCH)
+  set(airtruth_common_headers
+              <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <sstream>
+              <string> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h>)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pch.cpp CONTENT "")
+  add_library(airtruth_pch STATIC ${PROJECT_BINARY_DIR}/pch.cpp)
+  target_link_libraries(airtruth_pch PRIVATE airtruth_options Eigen3::Eigen)
+  target_precompile_headers(airtruth_pch PRIVATE ${airtruth_common_headers})
+  if(AIRTRUTH_TESTS)
+    add_executable(airtruth_test_pch ${PROJECT_BINARY_DIR}/pch.cpp)
+    target_link_libraries(airtruth_test_pch PRIVATE airtruth_options Eigen3::Eigen GTest::gmock GTest::gtest_main)
+    if(AIRTRUTH_SANITIZE)
+      target_compile_options(airtruth_test_pch PRIVATE -O0)
+    endif()
+    target_precompile_headers(airtruth_test_pch PRIVATE ${airtruth_common_headers} <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+endif()
+
 # add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...])
 # makes the static library airtruth_NAME and, from TESTS, the program NAME_test (one ctest entry; SLOW_TESTS
@@ -18,6 +38,9 @@ function(add_module name)
   if(arg_PRIVATE_LIBRARIES)
     target_link_libraries(airtruth_${name} PRIVATE ${arg_PRIVATE_LIBRARIES})
   endif()
+  if(AIRTRUTH_PCH AND arg_SOURCES)
+    target_precompile_headers(airtruth_${name} REUSE_FROM airtruth_pch)
+  endif()
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_MODULES airtruth_${name})
   if(AIRTRUTH_TESTS)
     if(arg_TESTS)
@@ -32,6 +55,12 @@ endfunction()
 function(add_module_test target label module sources libraries)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE airtruth_${module} ${libraries} GTest::gmock GTest::gtest_main)
+  if(AIRTRUTH_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)  # what they test is optimised
+  endif()
+  if(AIRTRUTH_PCH)
+    target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
+  endif()
   add_test(NAME ${target} COMMAND ${target})
   set_tests_properties(${target} PROPERTIES
     LABELS ${label} TIMEOUT 900

@@ -13,12 +13,18 @@ target_compile_options(airtruth_options INTERFACE
   -Wno-deprecated-enum-enum-conversion -Wno-missing-field-initializers
   # The same sums everywhere: no fused multiply-add that one compiler contracts and another does not.
   -ffp-contract=off)
+target_link_libraries(airtruth_options INTERFACE fmt::fmt)
+if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
+endif()
 if(AIRTRUTH_WERROR)
   target_compile_options(airtruth_options INTERFACE -Werror)
 endif()
 if(AIRTRUTH_SANITIZE)
   target_compile_options(airtruth_options INTERFACE
-    -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+    -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+    # What AddressSanitizer sees by itself, or x86 does not mind: a quarter of the time it takes to compile.
+    -fno-sanitize=null,alignment,object-size,vptr)
   target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined)
 endif()
 if(AIRTRUTH_FUZZERS)

@@ -105,7 +105,7 @@ TEST(Pattern, StarsAndQuestionMarks) {
   EXPECT_TRUE(matches("?LR*", "1LRB737"));
   EXPECT_FALSE(matches("?", ""));
   EXPECT_TRUE(matches("*a*b*c", "xxaxxbxxabc"));
-  EXPECT_FALSE(matches(std::string(40, '*') + "b", std::string(10000, 'a')));
+  EXPECT_FALSE(matches(std::string(40, '*').append("b"), std::string(10000, 'a')));
 }
 
 class Build : public testing::Test {

@@ -59,7 +59,7 @@ std::string next_word(std::string_view& rest) {
   return word;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -111,8 +111,8 @@ std::string line_of(const Message& message) {
   line += std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) {
             return known.second == message.type;
           })->first;
-  for (const std::string& argument : message.arguments) line += " " + quoted(argument);
-  for (const auto& [key, value] : message.properties) line += " " + quoted(key + "=" + value);
+  for (const std::string& argument : message.arguments) line += " " + in_quotes(argument);
+  for (const auto& [key, value] : message.properties) line += " " + in_quotes(key + "=" + value);
   return line + "\n";
 }
 
