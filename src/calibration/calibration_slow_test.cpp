@@ -97,6 +97,18 @@ class Clip {
     writer.finish();
   }
 
+  // All of a flight, with that put into it.
+  void write(const synthetic::Flight& flight, const Injected& what) {
+    write(
+        flight,
+        [&](int k) {
+          image::Picture picture = flight.frame(k);
+          inject(picture, what, k);
+          return picture;
+        },
+        flight.options().frame_count);
+  }
+
  private:
   fs::path path_;
 };
@@ -129,14 +141,7 @@ TEST(Calibrate, MeasuresTheLensAndSensorThatWereInjected) {
     what.sensor.noise_floor = 3e-5;
     what.sensor.noise_correlation_px = seed == 1 ? 0.5 : 0.7;
     Clip clip;
-    clip.write(
-        flight,
-        [&](int k) {
-          image::Picture picture = flight.frame(k);
-          inject(picture, what, k);
-          return picture;
-        },
-        flight.options().frame_count);
+    clip.write(flight, what);
     const Calibration c = calibrate(clip.path(), {});
     expect_within(c, "optics.point_spread_px", what.point_spread_px, 0.1);
     expect_within(c, "sensor.noise_correlation_px", what.sensor.noise_correlation_px, 0.1);
@@ -165,14 +170,7 @@ TEST(Calibrate, MeasuresSharpening) {
   what.sensor.sharpening = 0.8;
   what.sensor.sharpening_px = 1.2;
   Clip clip;
-  clip.write(
-      flight,
-      [&](int k) {
-        image::Picture picture = flight.frame(k);
-        inject(picture, what, k);
-        return picture;
-      },
-      flight.options().frame_count);
+  clip.write(flight, what);
   const Calibration c = calibrate(clip.path(), {});
   expect_within(c, "optics.point_spread_px", 0.8, 0.1);
   expect_within(c, "optics.sharpening", 0.8, 0.1);

@@ -104,7 +104,8 @@ void add_synth(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--extinction", flight.extinction_per_km, "Of the air, per km; 0 is none")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   command->add_option("--shake", flight.shake_deg, "Vibration, degrees rms")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
