@@ -65,4 +65,7 @@ function(add_module_test target label module sources libraries)
   set_tests_properties(${target} PROPERTIES
     LABELS ${label} TIMEOUT 900
     ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1")
+  if(label STREQUAL slow)
+    set_tests_properties(${target} PROPERTIES COST 100)  # begun first, so that none is left alone at the end
+  endif()
 endfunction()

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
+#include "geometry/within_frame.h"
 
 namespace airtruth::motion {
 namespace {
@@ -12,6 +12,14 @@ namespace {
 // ten independent ones would together.
 const double kSightingVariance = 10 * std::pow(radians(0.3), 2);
 constexpr double kGate = 4;  // standard deviations
+
+// The shortest turn that carries one unit vector to another.
+Quaternion turn_between(const Vector3& from, const Vector3& to) {
+  const Vector3 axis = from.cross(to);
+  const double sine = axis.norm();
+  if (sine < 1e-15) return Quaternion::Identity();
+  return rotation_from_vector(std::atan2(sine, from.dot(to)) / sine * axis);
+}
 
 // Angles about x and y of the shortest turn that carries z to v.
 Eigen::Vector2d angles_of(const Vector3& v) {
@@ -36,7 +44,7 @@ Vector3 HorizonHold::up_in_reference(const Eigen::Vector2d& angles) const {
 bool HorizonHold::see(const Quaternion& cam_from_reference, const Vector3& up_in_cam) {
   const Vector3 up = (cam_from_reference.conjugate() * up_in_cam).normalized();
   if (!reference_from_up_) {
-    reference_from_up_ = Quaternion::FromTwoVectors(Vector3::UnitZ(), up);
+    reference_from_up_ = turn_between(Vector3::UnitZ(), up);
     covariance_(0, 0) = 1;  // any direction, until the first sighting has been weighed in
   }
   const Eigen::Vector2d seen = angles_of(reference_from_up_->conjugate() * up);
@@ -59,7 +67,7 @@ Quaternion HorizonHold::held(const Quaternion& cam_from_reference) const {
   if (!reference_from_up_) return cam_from_reference;
   const Eigen::Vector2d up = state_.row(0);
   const Eigen::Vector2d strayed = state_.colwise().sum();
-  const Quaternion turn = Quaternion::FromTwoVectors(up_in_reference(up), up_in_reference(strayed));
+  const Quaternion turn = turn_between(up_in_reference(up), up_in_reference(strayed));
   return (cam_from_reference * turn).normalized();
 }
 

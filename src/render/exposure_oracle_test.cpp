@@ -277,9 +277,12 @@ void compare_all(const Setting& setting,
 TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
   const aircraft::Mesh mesh = toy();
   const Model model(mesh);
-  for (const Setting& setting : settings())
-    for (const double size_px : {5.0, 20.0, 60.0, 400.0})
-      compare_all(setting, mesh, model, size_px);
+  const std::vector<Setting> all = settings();
+  for (const Setting& setting : all) {
+    for (const double size_px : {5.0, 20.0, 60.0}) compare_all(setting, mesh, model, size_px);
+    // Takes long; the next setting holds all of the first.
+    if (&setting != &all[0]) compare_all(setting, mesh, model, 400);
+  }
 }
 
 }  // namespace
