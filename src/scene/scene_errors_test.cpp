@@ -75,7 +75,7 @@ TEST(SceneErrors, MillionsOfNestedBracketsEndInALine) {
 }
 
 TEST(SceneErrors, BracketsAndDotsInStringsAndCommentsDoNotNest) {
-  const std::string many = std::string(50, '[') + "a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s";
+  const std::string many = std::string(50, '[').append("a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s");
   EXPECT_EQ(message_of(Parts{.background = "[background] # " + many + "\nvideo = '" + many + "'\n" +
                                            "mask = \"\"\"" + many + "\\\"x\"\"\"\n"}
                            .text()),
