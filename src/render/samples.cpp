@@ -89,7 +89,7 @@ SampleCounts counts_for(int quality, double size_px) {
       if (size_px <= 24) return {64, 1024, 1024, 16, 8};
       if (size_px <= 64) return {16, 512, 512, 16, 4};
       // The larger, the more pixels of outline there are for one to be unlucky.
-      return {16, 256, size_px <= 128 ? 512 : 2048, 16, 4};
+      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 4};
     case 4:
       return {64, 1024, 4096, 16, 16};
     case 5:
