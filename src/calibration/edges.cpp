@@ -23,7 +23,10 @@ constexpr int kMostPerFrame = 60;
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kFewestEdges = 12;
 constexpr double kSharpestShare = 0.015;
-constexpr double kBin = 0.2;  // px
+constexpr double kAsSharp = 1.1;  // times the sharpest: within luck
+constexpr std::size_t kMostFitted = 150;
+constexpr double kMostMoved = 1.5;  // px between frames, across the edge
+constexpr double kBin = 0.2;        // px
 
 struct Found {
   double x, y;    // on the edge
@@ -73,53 +76,35 @@ std::optional<Found> straight_edge(const cv::Mat& grey, int x, int y, double gx,
   return found;
 }
 
-double phi(double x, double sigma) { return 0.5 * (1 + std::erf(x / (sigma * std::sqrt(2.0)))); }
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
-// A step of light from `low` to `high` (0..1, coded) through a Gaussian, coded, then an unsharp
-// mask; scaled to 0..1 and sampled finely.
-class StepModel {
- public:
-  StepModel(double sigma, double amount, double radius, double low, double high) {
-    const double dark = double(image::linear_from_srgb(static_cast<float>(low)));
-    const double bright = double(image::linear_from_srgb(static_cast<float>(high)));
-    for (int i = 0; i < kCount; ++i) {
-      const double light = dark + (bright - dark) * phi(place(i), sigma);
-      coded_.at(static_cast<std::size_t>(i)) =
-          (double(image::srgb_from_linear(static_cast<float>(light))) - low) / (high - low);
-    }
-    if (amount <= 0) return;
-    const int reach = static_cast<int>(std::ceil(3 * radius / kFine));
-    std::vector<double> kernel;
-    double total = 0;
-    for (int j = -reach; j <= reach; ++j) {
-      kernel.push_back(std::exp(-0.5 * (j * kFine / radius) * (j * kFine / radius)));
-      total += kernel.back();
-    }
-    const auto sharp = coded_;
-    for (int i = 0; i < kCount; ++i) {
-      double soft = 0;
-      for (int j = -reach; j <= reach; ++j)
-        soft += kernel[static_cast<std::size_t>(j + reach)] *
-                sharp[static_cast<std::size_t>(std::clamp(i + j, 0, kCount - 1))];
-      const auto k = static_cast<std::size_t>(i);
-      coded_[k] += amount * (sharp[k] - soft / total);
+// Edges laid over one another, for the eye.
+EdgeProfile profile_of(const std::vector<const StepEdge*>& edges, const StepResponse& response) {
+  constexpr int kBins = static_cast<int>(2 * kAcross / kBin);
+  std::array<std::vector<double>, kBins> bins;
+  std::vector<double> lows, highs;
+  for (const StepEdge* edge : edges) {
+    lows.push_back(edge->low), highs.push_back(edge->high);
+    for (const auto& [place, height] : edge->samples) {
+      const int bin = static_cast<int>(std::floor((place + kAcross) / kBin));
+      if (bin >= 0 && bin < kBins) bins[static_cast<std::size_t>(bin)].push_back(height);
     }
   }
-
-  double at(double x) const {
-    const double p = std::clamp((x + kHalf) / kFine, 0.0, kCount - 1.001);
-    const auto i = static_cast<std::size_t>(p);
-    const double t = p - double(i);
-    return (1 - t) * coded_[i] + t * coded_[i + 1];
+  EdgeProfile profile;
+  profile.edges = static_cast<int>(edges.size());
+  for (int b = 0; b < kBins; ++b) {
+    auto& heights = bins[static_cast<std::size_t>(b)];
+    if (heights.size() < 5) continue;
+    profile.place_px.push_back((b + 0.5) * kBin - kAcross);
+    profile.height.push_back(median(std::move(heights)));
   }
-
- private:
-  static constexpr double kHalf = 9;
-  static constexpr double kFine = 0.1;
-  static constexpr int kCount = static_cast<int>(2 * kHalf / kFine) + 1;
-  static double place(int i) { return i * kFine - kHalf; }
-  std::array<double, kCount> coded_{};
-};
+  profile.fitted = step_heights(response, median(lows), median(highs), profile.place_px);
+  return profile;
+}
 
 }  // namespace
 
@@ -127,6 +112,9 @@ void EdgeMeter::add(const image::Picture& frame,
                     const std::optional<Homography>& frame_from_before) {
   if (edges_.size() >= kMostEdges) return;
   const cv::Mat grey = motion::luma_of(frame);
+  const image::ColourCode code(frame.colour);
+  const double dark = double(code.ycc_from_rgb({0, 0, 0}).y);
+  const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
   cv::Mat gx, gy, size;
   cv::Sobel(grey, gx, CV_32F, 1, 0);
   cv::Sobel(grey, gy, CV_32F, 0, 1);
@@ -184,7 +172,7 @@ void EdgeMeter::add(const image::Picture& frame,
     std::array<int, 64> counts{};
     for (auto& [place, v] : samples) {
       v = (v - low) / step;
-      edge.samples.push_back({place, v});
+      edge.step.samples.push_back({place, v});
       const int bin = static_cast<int>(std::floor((place + 8) / 0.25));
       if (bin >= 0 && bin < 64)
         sums[static_cast<std::size_t>(bin)] += v, ++counts[static_cast<std::size_t>(bin)];
@@ -195,7 +183,7 @@ void EdgeMeter::add(const image::Picture& frame,
       const double place = (double(b) + 0.5) * 0.25 - 8;
       if (counts[b] > 0) area += 0.25 * std::abs(sums[b] / counts[b] - (place > 0 ? 1 : 0));
     }
-    edge.low = low, edge.high = high;
+    edge.step.low = (low - dark) / unit, edge.step.high = (high - dark) / unit;
     // The middle of the step as its own samples have it, to a twentieth of a pixel.
     double below = 0;
     bool whole = true;
@@ -206,7 +194,7 @@ void EdgeMeter::add(const image::Picture& frame,
     if (!whole) continue;
     const double middle = below - 4;
     if (std::abs(middle) > 1.5) continue;
-    for (auto& [place, v] : edge.samples) place -= middle;
+    for (auto& [place, v] : edge.step.samples) place -= middle;
     edge.width_px = area * std::sqrt(kPi / 2);
     edge.moved_px = std::numeric_limits<double>::quiet_NaN();
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
@@ -223,103 +211,36 @@ void EdgeMeter::add(const image::Picture& frame,
   }
 }
 
-std::optional<EdgeMeter::Result> EdgeMeter::result(std::string& why) {
-  if (edges_.size() < kFewestEdges) {
-    why = "the clip shows " + std::to_string(edges_.size()) + " clean straight edges; it takes " +
-          std::to_string(kFewestEdges);
-    return std::nullopt;
-  }
+std::vector<const StepEdge*> EdgeMeter::sharpest() const {
   std::vector<const Edge*> still;
   for (const Edge& edge : edges_)
-    if (!(edge.moved_px > 1.5)) still.push_back(&edge);
+    if (!(edge.moved_px > kMostMoved)) still.push_back(&edge);
   if (still.size() < kFewestEdges)
     for (const Edge& edge : edges_) still.push_back(&edge);
   std::sort(still.begin(), still.end(), [](const Edge* a, const Edge* b) {
     return a->width_px < b->width_px;
   });
   const std::size_t skip = still.size() / 100;  // narrower than the camera: luck
-  const std::size_t count =
+  const auto least =
       std::max(kFewestEdges / 2, static_cast<std::size_t>(kSharpestShare * double(still.size())));
-  constexpr int kBins = static_cast<int>(2 * 6 / kBin);
-  std::array<std::vector<double>, kBins> bins;
-  profile_ = {};
-  for (std::size_t i = skip; i < std::min(still.size(), skip + count); ++i) {
-    ++profile_.edges;
-    for (const auto& [place, v] : still[i]->samples) {
-      const int bin = static_cast<int>(std::floor((place + 6) / kBin));
-      if (bin >= 0 && bin < kBins) bins[static_cast<std::size_t>(bin)].push_back(v);
-    }
+  std::vector<const StepEdge*> sharpest;
+  for (std::size_t i = skip; i < still.size() && sharpest.size() < kMostFitted; ++i) {
+    if (sharpest.size() >= least && still[i]->width_px > kAsSharp * still[skip]->width_px) break;
+    sharpest.push_back(&still[i]->step);
   }
-  for (int b = 0; b < kBins; ++b) {
-    auto& values = bins[static_cast<std::size_t>(b)];
-    if (values.size() < 5) continue;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    profile_.place_px.push_back((b + 0.5) * kBin - 6);
-    profile_.height.push_back(*middle);
+  return sharpest;
+}
+
+std::optional<StepResponse> EdgeMeter::result(std::string& why) {
+  if (edges_.size() < kFewestEdges) {
+    why = "the clip shows " + std::to_string(edges_.size()) + " clean straight edges; it takes " +
+          std::to_string(kFewestEdges);
+    return std::nullopt;
   }
-  std::vector<double> lows, highs;
-  for (std::size_t i = skip; i < std::min(still.size(), skip + count); ++i)
-    lows.push_back(still[i]->low), highs.push_back(still[i]->high);
-  std::nth_element(
-      lows.begin(), lows.begin() + static_cast<std::ptrdiff_t>(lows.size() / 2), lows.end());
-  std::nth_element(
-      highs.begin(), highs.begin() + static_cast<std::ptrdiff_t>(highs.size() / 2), highs.end());
-  const double low = lows[lows.size() / 2] / 255, high = highs[highs.size() / 2] / 255;
-  double best = 1e300, sigma = 1, amount = 0, radius = 1, shift = 0, scale = 1, level = 0;
-  const auto misfit = [&](double s, double a, double r, double d) {
-    // The plateaus that heights are told from may lie in the halo: level and scale are free.
-    const StepModel model(s, a, r, low, high);
-    double n = 0, sm = 0, sh = 0, smm = 0, smh = 0, shh = 0;
-    for (std::size_t i = 0; i < profile_.place_px.size(); ++i) {
-      const double m = model.at(profile_.place_px[i] - d);
-      const double h = profile_.height[i];
-      n += 1, sm += m, sh += h, smm += m * m, smh += m * h, shh += h * h;
-    }
-    scale = (n * smh - sm * sh) / (n * smm - sm * sm);
-    level = (sh - scale * sm) / n;
-    if (!(scale > 0.8 && scale < 1.4)) return 1e300;
-    return shh - level * sh - scale * smh;
-  };
-  for (double s = 0.35; s < 4; s *= 1.15)
-    for (double a = 0; a <= 2.0; a += 0.25)
-      for (double r = 0.6; r <= (a > 0 ? 2.61 : 0.6); r += 0.5)
-        for (double d : {-0.3, 0.0, 0.3})
-          if (const double m = misfit(s, a, r, d); m < best)
-            best = m, sigma = s, amount = a, radius = r, shift = d;
-  std::array<double*, 4> parameters = {&sigma, &amount, &radius, &shift};
-  std::array<double, 4> steps = {0.05, 0.05, 0.12, 0.1};
-  for (int round = 0; round < 200; ++round)  // coordinate descent
-    for (std::size_t p = 0; p < 4; ++p) {
-      bool better = false;
-      for (const double sign : {1.0, -1.0}) {
-        const double before = *parameters[p];
-        *parameters[p] = before + sign * steps[p];
-        const bool allowed = sigma > 0.2 && amount >= 0 && radius > 0.3 && radius < 4;
-        const double m = allowed ? misfit(sigma, amount, radius, shift) : 1e300;
-        if (m < best) {
-          best = m, better = true;
-          break;
-        }
-        *parameters[p] = before;
-      }
-      if (!better) steps[p] *= 0.7;
-    }
-  const StepModel fitted(sigma, amount, radius, low, high);
-  misfit(sigma, amount, radius, shift);
-  for (const double place : profile_.place_px)
-    profile_.fitted.push_back(level + scale * fitted.at(place - shift));
-  // A step drawn by the renderer is a pixel wide already, and the spread is of whole pixels: each
-  // adds the variance of a pixel.
-  constexpr double kTwoPixels = 2.0 / 12;
-  const double spread = std::sqrt(std::max(0.0, sigma * sigma - kTwoPixels));
-  const double rms = std::sqrt(best / double(profile_.place_px.size()));
-  const double error = std::max(0.02, rms * 2.5 * sigma);
-  Result result;
-  result.point_spread_px = {spread, error};
-  result.sharpening = {amount < 0.03 ? 0 : amount, std::max(0.02, 3 * rms)};
-  result.sharpening_px = {radius, std::max(0.1, 6 * rms)};
-  return result;
+  const auto edges = sharpest();
+  const StepResponse response = fit_step_response(edges);
+  profile_ = profile_of(edges, response);
+  return response;
 }
 
 }  // namespace airtruth::calibration

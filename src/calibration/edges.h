@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/calibration.h"
+#include "calibration/step_response.h"
 #include "geometry/transform.h"
 
 namespace airtruth::calibration {
@@ -20,19 +21,16 @@ class EdgeMeter {
   // not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
 
-  struct Result {
-    Estimate point_spread_px, sharpening, sharpening_px;
-  };
-  std::optional<Result> result(std::string& why);
+  std::optional<StepResponse> result(std::string& why);
   const EdgeProfile& profile() const { return profile_; }
 
  private:
   struct Edge {
-    double width_px = 0;       // standard deviation of its derivative
-    double moved_px = 0;       // across itself, since the frame before; NaN: not known
-    double low = 0, high = 0;  // code values on its two sides
-    std::vector<std::pair<double, double>> samples;  // place px, height 0..1
+    double width_px = 0;  // standard deviation of its derivative
+    double moved_px = 0;  // across itself, since the frame before; NaN: not known
+    StepEdge step;
   };
+  std::vector<const StepEdge*> sharpest() const;
   const image::Mask* own_aircraft_;
   std::vector<Edge> edges_;
   EdgeProfile profile_;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "calibration/calibration.h"
+
+// A camera's answer to a step of light: a Gaussian point spread in linear light, the tone curve,
+// an unsharp mask on what is coded, each of whole pixels. Fitted to edges that were found.
+namespace airtruth::calibration {
+
+// Samples across one straight edge.
+struct StepEdge {
+  double low = 0, high = 0;                        // coded luma on its two sides, 0 to 1
+  std::vector<std::pair<double, double>> samples;  // place px from its middle, height 0..1
+};
+
+struct StepResponse {
+  Estimate point_spread_px;  // standard deviation
+  Estimate sharpening;       // amount of the mask; 0: none that could be told from nothing
+  Estimate sharpening_px;    // standard deviation of its Gaussian
+};
+
+// Every edge at its own two levels, since the tone curve bends each differently; where exactly an
+// edge lies and how high its plateaus are is solved beside it (variable projection: Golub and
+// Pereyra 1973). Errors count edges, not samples (Liang and Zeger 1986): what one edge has apart
+// from the others it has in all of its samples. Needs an edge at least.
+StepResponse fit_step_response(const std::vector<const StepEdge*>& edges);
+
+// The answer that `response` gives at `places_px` to a step between two levels, scaled to 0..1.
+std::vector<double> step_heights(const StepResponse& response,
+                                 double low,
+                                 double high,
+                                 const std::vector<double>& places_px);
+
+}  // namespace airtruth::calibration
