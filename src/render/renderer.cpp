@@ -145,7 +145,7 @@ class Refiner {
           const RayGrid& grid,
           const SampleCounts& counts,
           Canvas& canvas)
-      : actors_(actors), tracer_(tracer), grid_(grid), counts_(counts), canvas_(canvas) {
+      : actors_(actors), tracer_(tracer), counts_(counts), canvas_(canvas) {
     // Where every pixel takes as many samples as an edge, rays do it all: the oracle.
     if (counts.edge == counts.base) return;
     for (const Actor& actor : actors)
@@ -254,7 +254,6 @@ class Refiner {
 
   const std::vector<Actor>& actors_;
   const Tracer& tracer_;
-  const RayGrid& grid_;
   SampleCounts counts_;
   Canvas& canvas_;
   std::vector<std::optional<Silhouette>> silhouettes_;
