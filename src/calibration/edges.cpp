@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kAlong = 5;          // half the length of an edge, px
 constexpr double kAcross = 6;      // half the width of its profile, px
+constexpr double kPlateau = 3.5;   // px from the edge its two levels begin
 constexpr double kLeastStep = 24;  // code values
 constexpr double kStraight = 0.2;  // px that the edge's places along it may stray
 constexpr int kMostPerFrame = 60;
@@ -76,6 +77,123 @@ std::optional<Found> straight_edge(const cv::Mat& grey, int x, int y, double gx,
   return found;
 }
 
+struct Strong {
+  cv::Point at;
+  cv::Point2d slope;
+};
+
+// Where luma is steep, the steepest first.
+std::vector<Strong> strong_places(const cv::Mat& grey) {
+  cv::Mat gx, gy, size;
+  cv::Sobel(grey, gx, CV_32F, 1, 0);
+  cv::Sobel(grey, gy, CV_32F, 0, 1);
+  cv::magnitude(gx, gy, size);
+  std::vector<std::pair<float, cv::Point>> strong;
+  for (int y = 16; y < grey.rows - 16; y += 2)
+    for (int x = 16; x < grey.cols - 16; x += 2)
+      if (const float g = size.at<float>(y, x); double(g) > 4 * kLeastStep / 2)
+        strong.push_back({g, {x, y}});
+  std::sort(strong.begin(), strong.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first
+               ? a.first > b.first
+               : std::pair(a.second.y, a.second.x) < std::pair(b.second.y, b.second.x);
+  });
+  std::vector<Strong> places;
+  for (const auto& [strength, at] : strong)
+    places.push_back({at, {double(gx.at<float>(at)), double(gy.at<float>(at))}});
+  return places;
+}
+
+struct Side {  // of an edge
+  double sum = 0, squares = 0;
+  int count = 0;
+  void add(double v) { sum += v, squares += v * v, ++count; }
+  double mean() const { return sum / count; }
+  double variance() const { return std::max(0.0, squares / count - mean() * mean()); }
+};
+
+struct Step {
+  double low = 0, high = 0;                        // code values
+  double width_px = 0;                             // standard deviation of its derivative
+  std::vector<std::pair<double, double>> samples;  // place px from its middle, height 0..1
+};
+
+// Heights averaged by place, from -kHalf to kHalf.
+class Profile {
+ public:
+  void add(double place, double height) {
+    const int bin = static_cast<int>(std::floor((place + kHalf) / kWide));
+    if (bin < 0 || bin >= kBins) return;
+    sums_[static_cast<std::size_t>(bin)] += height;
+    ++counts_[static_cast<std::size_t>(bin)];
+  }
+  bool whole() const {
+    return std::none_of(counts_.begin(), counts_.end(), [](int n) { return n == 0; });
+  }
+  // Where the step has its middle; of a whole profile.
+  double middle() const {
+    double below = 0;
+    for (std::size_t b = 0; b < kBins; ++b) below += kWide * (1 - sums_[b] / counts_[b]);
+    return below - kHalf;
+  }
+  // By the integral of |height - step|: for a Gaussian sigma * sqrt(2 / pi).
+  double width_px() const {
+    double area = 0;
+    for (std::size_t b = 0; b < kBins; ++b)
+      area += kWide * std::abs(sums_[b] / counts_[b] - (b >= kBins / 2 ? 1 : 0));
+    return area * std::sqrt(kPi / 2);
+  }
+
+ private:
+  static constexpr double kHalf = 4, kWide = 0.25;
+  static constexpr int kBins = static_cast<int>(2 * kHalf / kWide);
+  std::array<double, kBins> sums_{};
+  std::array<int, kBins> counts_{};
+};
+
+// What stands across an edge, if it is a clean step. Whole pixels alone, so that nothing is
+// interpolated: the place is the pixel's own.
+std::optional<Step> step_across(const cv::Mat& grey, const Found& line) {
+  Step step;
+  Side low, high;
+  for (int t = -kAlong; t <= kAlong; ++t)
+    for (double p = -kAcross; p <= kAcross; p += 0.5) {
+      const double x = line.x - t * line.ny + p * line.nx;
+      const double y = line.y + t * line.nx + p * line.ny;
+      if (x < 1 || y < 1 || x >= grey.cols - 2 || y >= grey.rows - 2) return std::nullopt;
+      const int ix = static_cast<int>(std::lround(x));
+      const int iy = static_cast<int>(std::lround(y));
+      const double v = grey.at<unsigned char>(iy, ix);
+      const double place = (ix - line.x) * line.nx + (iy - line.y) * line.ny;
+      step.samples.push_back({place, v});
+      if (place < -kPlateau) low.add(v);
+      if (place > kPlateau) high.add(v);
+    }
+  if (low.count < 10 || high.count < 10) return std::nullopt;
+  step.low = low.mean(), step.high = high.mean();
+  const double height = step.high - step.low;
+  const double uneven = std::sqrt(std::max(low.variance(), high.variance()));
+  if (height < kLeastStep || uneven > 0.08 * height || step.high > 248 || step.low < 4)
+    return std::nullopt;
+  Profile profile;
+  for (auto& [place, v] : step.samples) {
+    v = (v - step.low) / height;
+    profile.add(place, v);
+  }
+  if (!profile.whole()) return std::nullopt;
+  step.width_px = profile.width_px();
+  const double middle = profile.middle();
+  if (std::abs(middle) > 1.5) return std::nullopt;
+  for (auto& [place, v] : step.samples) place -= middle;
+  return step;
+}
+
+double moved_across(const Found& line, const Homography& frame_from_before) {
+  const Pixel here(line.x + 0.5, line.y + 0.5);
+  const Pixel before = apply(frame_from_before.inverse(), here);
+  return std::abs((here.x() - before.x()) * line.nx + (here.y() - before.y()) * line.ny);
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -115,97 +233,25 @@ void EdgeMeter::add(const image::Picture& frame,
   const image::ColourCode code(frame.colour);
   const double dark = double(code.ycc_from_rgb({0, 0, 0}).y);
   const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
-  cv::Mat gx, gy, size;
-  cv::Sobel(grey, gx, CV_32F, 1, 0);
-  cv::Sobel(grey, gy, CV_32F, 0, 1);
-  cv::magnitude(gx, gy, size);
-  std::vector<std::pair<float, cv::Point>> strong;
-  for (int y = 16; y < grey.rows - 16; y += 2)
-    for (int x = 16; x < grey.cols - 16; x += 2)
-      if (const float g = size.at<float>(y, x); g > 4 * kLeastStep / 2)
-        strong.push_back({g, {x, y}});
-  std::sort(strong.begin(), strong.end(), [](const auto& a, const auto& b) {
-    return a.first != b.first
-               ? a.first > b.first
-               : std::pair(a.second.y, a.second.x) < std::pair(b.second.y, b.second.x);
-  });
   cv::Mat taken(grey.size(), CV_8UC1, cv::Scalar(0));
   int count = 0;
-  for (const auto& [strength, at] : strong) {
+  for (const auto& [at, slope] : strong_places(grey)) {
     if (count >= kMostPerFrame) break;
     if (taken.at<unsigned char>(at) != 0) continue;
     cv::circle(taken, at, 8, cv::Scalar(255), cv::FILLED);
+    const auto line = straight_edge(grey, at.x, at.y, slope.x, slope.y);
+    if (!line) continue;
+    auto step = step_across(grey, *line);
+    if (!step) continue;
+    Edge edge;
+    edge.width_px = step->width_px;
+    edge.step = {(step->low - dark) / unit, (step->high - dark) / unit, std::move(step->samples)};
     // The own aircraft's edges are as good as others for sharpness; its mask says that they do not
     // move.
-    const auto found =
-        straight_edge(grey, at.x, at.y, double(gx.at<float>(at)), double(gy.at<float>(at)));
-    if (!found) continue;
-    Edge edge;
-    double low = 0, high = 0, low2 = 0, high2 = 0;
-    int low_count = 0, high_count = 0;
-    bool outside = false;
-    std::vector<std::pair<double, double>> samples;
-    for (int t = -kAlong; t <= kAlong && !outside; ++t)
-      for (double p = -kAcross; p <= kAcross; p += 0.5) {
-        const double x = found->x - t * found->ny + p * found->nx;
-        const double y = found->y + t * found->nx + p * found->ny;
-        if (x < 1 || y < 1 || x >= grey.cols - 2 || y >= grey.rows - 2) {
-          outside = true;
-          break;
-        }
-        // Whole pixels alone, so that nothing is interpolated: the place is the pixel's own.
-        const int ix = static_cast<int>(std::lround(x));
-        const int iy = static_cast<int>(std::lround(y));
-        const double v = grey.at<unsigned char>(iy, ix);
-        const double place = (ix - found->x) * found->nx + (iy - found->y) * found->ny;
-        samples.push_back({place, v});
-        if (place < -3.5) low += v, low2 += v * v, ++low_count;
-        if (place > 3.5) high += v, high2 += v * v, ++high_count;
-      }
-    if (outside || low_count < 10 || high_count < 10) continue;
-    low /= low_count, high /= high_count;
-    const double step = high - low;
-    const double uneven =
-        std::sqrt(std::max({0.0, low2 / low_count - low * low, high2 / high_count - high * high}));
-    if (step < kLeastStep || uneven > 0.08 * step || high > 248 || low < 4) continue;
-    std::array<double, 64> sums{};
-    std::array<int, 64> counts{};
-    for (auto& [place, v] : samples) {
-      v = (v - low) / step;
-      edge.step.samples.push_back({place, v});
-      const int bin = static_cast<int>(std::floor((place + 8) / 0.25));
-      if (bin >= 0 && bin < 64)
-        sums[static_cast<std::size_t>(bin)] += v, ++counts[static_cast<std::size_t>(bin)];
-    }
-    // Width by the integral of |height - step|: for a Gaussian sigma * sqrt(2 / pi).
-    double area = 0;
-    for (std::size_t b = 16; b < 48; ++b) {
-      const double place = (double(b) + 0.5) * 0.25 - 8;
-      if (counts[b] > 0) area += 0.25 * std::abs(sums[b] / counts[b] - (place > 0 ? 1 : 0));
-    }
-    edge.step.low = (low - dark) / unit, edge.step.high = (high - dark) / unit;
-    // The middle of the step as its own samples have it, to a twentieth of a pixel.
-    double below = 0;
-    bool whole = true;
-    for (std::size_t b = 16; b < 48; ++b) {
-      if (counts[b] == 0) whole = false;
-      below += counts[b] > 0 ? 0.25 * (1 - sums[b] / counts[b]) : 0;
-    }
-    if (!whole) continue;
-    const double middle = below - 4;
-    if (std::abs(middle) > 1.5) continue;
-    for (auto& [place, v] : edge.step.samples) place -= middle;
-    edge.width_px = area * std::sqrt(kPi / 2);
-    edge.moved_px = std::numeric_limits<double>::quiet_NaN();
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
-    if (own) {
-      edge.moved_px = 0;
-    } else if (frame_from_before) {
-      const Pixel here(found->x + 0.5, found->y + 0.5);
-      const Pixel before = apply(frame_from_before->inverse(), here);
-      edge.moved_px =
-          std::abs((here.x() - before.x()) * found->nx + (here.y() - before.y()) * found->ny);
-    }
+    edge.moved_px = own                 ? 0
+                    : frame_from_before ? moved_across(*line, *frame_from_before)
+                                        : std::numeric_limits<double>::quiet_NaN();
     edges_.push_back(std::move(edge));
     ++count;
   }

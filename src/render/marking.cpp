@@ -29,27 +29,33 @@ Bilinear scaled(const std::array<double, 4>& corner, double scale) {
 #define AIRTRUTH_VECTORS
 #endif
 
-// Marks the samples on the inner side of all three (an unused one is +1 everywhere); true where
-// every sample is marked by now.
+// Marks the samples that are inside; true where every sample is marked by now.
+template <typename Inside>
+[[gnu::always_inline]] inline bool mark_where(int n, std::int32_t* covered, const Inside& inside) {
+  std::int32_t all = -1;
+  for (int i = 0; i < n; ++i) {
+    const std::int32_t now = covered[i] | -static_cast<std::int32_t>(inside(i));
+    covered[i] = now;
+    all &= now;
+  }
+  return all == -1;
+}
+
+// Inside: on the inner side of all three (an unused one is +1 everywhere).
 AIRTRUTH_VECTORS
 bool mark_all(
     const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = sides[0];
   const Bilinear q = sides[1];
   const Bilinear r = sides[2];
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
+  return mark_where(n, covered, [=](int i) {
     const float x = px[i];
     const float y = py[i];
     const float u = (p.a + p.b * x) + y * (p.c + p.d * x);
     const float v = (q.a + q.b * x) + y * (q.c + q.d * x);
     const float w = (r.a + r.b * x) + y * (r.c + r.d * x);
-    const std::int32_t inside = -static_cast<std::int32_t>((u >= 0) & (v >= 0) & (w >= 0));
-    const std::int32_t now = covered[i] | inside;
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
+    return (u >= 0) & (v >= 0) & (w >= 0);
+  });
 }
 
 // The same for the only side that crosses the pixel.
@@ -57,14 +63,8 @@ AIRTRUTH_VECTORS
 bool mark_one(
     const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = *side;
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float u = (p.a + p.b * px[i]) + py[i] * (p.c + p.d * px[i]);
-    const std::int32_t now = covered[i] | -static_cast<std::int32_t>(u >= 0);
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
+  return mark_where(
+      n, covered, [=](int i) { return (p.a + p.b * px[i]) + py[i] * (p.c + p.d * px[i]) >= 0; });
 }
 
 // A side that goes straight over a pixel and evenly through its exposure: a + b x + c y + d t.
@@ -94,20 +94,15 @@ bool mark_even(const Bilinear* sides,
   const Bilinear p = sides[0];
   const Bilinear q = sides[1];
   const Bilinear r = sides[2];
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
+  return mark_where(n, covered, [=](int i) {
     const float x = px[i];
     const float y = py[i];
     const float t = pt[i];
     const float u = (p.a + p.b * x) + (p.c * y + p.d * t);
     const float v = (q.a + q.b * x) + (q.c * y + q.d * t);
     const float w = (r.a + r.b * x) + (r.c * y + r.d * t);
-    const std::int32_t inside = -static_cast<std::int32_t>((u >= 0) & (v >= 0) & (w >= 0));
-    const std::int32_t now = covered[i] | inside;
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
+    return (u >= 0) & (v >= 0) & (w >= 0);
+  });
 }
 
 AIRTRUTH_VECTORS
@@ -118,14 +113,8 @@ bool mark_one_even(const Bilinear* side,
                    int n,
                    std::int32_t* covered) {
   const Bilinear p = *side;
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    const float u = (p.a + p.b * px[i]) + (p.c * py[i] + p.d * pt[i]);
-    const std::int32_t now = covered[i] | -static_cast<std::int32_t>(u >= 0);
-    covered[i] = now;
-    all &= now;
-  }
-  return all == -1;
+  return mark_where(
+      n, covered, [=](int i) { return (p.a + p.b * px[i]) + (p.c * py[i] + p.d * pt[i]) >= 0; });
 }
 
 // The same for sides that are not; an unused one is 1 everywhere.
@@ -156,12 +145,7 @@ bool mark_swept(const Swept* sides,
   alignas(64) std::array<float, PixelSamples::kMost> least;
   std::fill_n(least.begin(), n, 1.0F);
   for (int k = 0; k < count; ++k) side_values(sides + k, px, py, pt, n, least.data());
-  std::int32_t all = -1;
-  for (int i = 0; i < n; ++i) {
-    covered[i] |= -static_cast<std::int32_t>(least[static_cast<std::size_t>(i)] >= 0);
-    all &= covered[i];
-  }
-  return all == -1;
+  return mark_where(n, covered, [&](int i) { return least[static_cast<std::size_t>(i)] >= 0; });
 }
 
 }  // namespace
