@@ -316,6 +316,16 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
   EXPECT_EQ(c.notes.at("shutter.readout"), "down");
 }
 
+// The flight as it is, through its own lens.
+Calibration calibrate_flight(const synthetic::FlightOptions& o, Options options) {
+  const synthetic::Flight flight(o);
+  Clip clip;
+  clip.write(
+      flight, [&](int k) { return flight.frame(k); }, o.frame_count);
+  options.lens = o.lens;
+  return calibrate(clip.path(), options);
+}
+
 TEST(Calibrate, FindsTheSun) {
   for (const auto& [azimuth, elevation] : {std::pair(20.0, 25.0), std::pair(-35.0, 40.0)}) {
     synthetic::FlightOptions o = ideal(8);
@@ -326,13 +336,7 @@ TEST(Calibrate, FindsTheSun) {
     o.cloud_cover = 0.3;
     o.own_aircraft = false;
     o.frame_count = 24;
-    const synthetic::Flight flight(o);
-    Clip clip;
-    clip.write(
-        flight, [&](int k) { return flight.frame(k); }, o.frame_count);
-    Options options;
-    options.lens = o.lens;
-    const Calibration c = calibrate(clip.path(), options);
+    const Calibration c = calibrate_flight(o, {});
     ASSERT_TRUE(c.values.contains("light.sun_azimuth_deg"))
         << c.missing.at("light.sun_azimuth_deg");
     const double off =
@@ -357,14 +361,9 @@ TEST(Calibrate, MeasuresTheAir) {
     o.shake_deg = 0.1;
     o.extinction_per_km = extinction_per_km;
     o.linear_light = true;
-    const synthetic::Flight flight(o);
-    Clip clip;
-    clip.write(
-        flight, [&](int k) { return flight.frame(k); }, o.frame_count);
     Options options;
-    options.lens = o.lens;
     options.altitude_m = o.altitude_m;
-    const Calibration c = calibrate(clip.path(), options);
+    const Calibration c = calibrate_flight(o, options);
     EXPECT_FALSE(c.notes.contains("air.extinction_per_km")) << c.notes.at("air.extinction_per_km");
     expect_within(c, "air.extinction_per_km", extinction_per_km, 0.1);
     // The sky at the horizon, over the azimuths that the lens sees.

@@ -293,9 +293,7 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
       const float s = still.at<float>(y, x);
       const float m = moving.at<float>(y, x);
       unsigned char& label = labels.at<unsigned char>(y, x);
-      if (e.brightest.at<float>(y, x) < kBlack)
-        label = cv::GC_FGD;
-      else if (m > 1.8F * s + noise)
+      if (e.brightest.at<float>(y, x) < kBlack || m > 1.8F * s + noise)
         label = cv::GC_FGD;
       else if (s > 1.3F * m + noise)
         label = cv::GC_BGD;
