@@ -18,8 +18,9 @@ constexpr std::size_t kFewest = 200;
 
 AirMeter::AirMeter(const lens::Lens& lens,
                    const image::Mask* own_aircraft,
-                   std::optional<double> altitude_m)
-    : lens_(lens), own_aircraft_(own_aircraft), altitude_m_(altitude_m) {}
+                   std::optional<double> altitude_m,
+                   const image::ToneCurve& tone)
+    : lens_(lens), own_aircraft_(own_aircraft), altitude_m_(altitude_m), tone_(tone) {}
 
 void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_world) {
   const image::ColourCode code(picture.colour);
@@ -36,7 +37,7 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
       if (is_sky ? x / kGroundStep % kSkyStep != 0 || y / kGroundStep % kSkyStep != 0
                  : !altitude_m_)
         continue;
-      const image::Rgb linear = image::linear_at(picture, code, x, y);
+      const image::Rgb linear = image::linear_at(picture, code, x, y, tone_);
       const SeenLight seen{std::atan2(direction.y(), direction.x()), elevation_rad, linear};
       if (!is_sky) {
         patches.add(seen);

@@ -16,7 +16,8 @@ class AirMeter {
  public:
   AirMeter(const lens::Lens& lens,
            const image::Mask* own_aircraft,
-           std::optional<double> altitude_m);
+           std::optional<double> altitude_m,
+           const image::ToneCurve& tone);
   // cam_from_world: north-east-down, with the heading that the caller knows.
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
@@ -42,6 +43,7 @@ class AirMeter {
   lens::Lens lens_;
   const image::Mask* own_aircraft_;
   std::optional<double> altitude_m_;
+  image::ToneCurve tone_;
   std::vector<SeenLight> seen_;
   std::vector<SkySample> sky_;
   std::size_t sky_count_ = 0;

@@ -39,8 +39,8 @@ class Session {
   Session(const fs::path& video, const Options& options)
       : options_(options),
         reader_(video, {options.first_frame, options.frame_count, 0, true}, options.warn),
-        noise_(options.own_aircraft),
-        edges_(options.own_aircraft),
+        noise_(options.own_aircraft, options.tone),
+        edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),
         planar_(reader_.info().width, reader_.info().height, {}, options.own_aircraft) {
     const video::StreamInfo& info = reader_.info();
@@ -48,6 +48,7 @@ class Session {
     result_.width = info.width;
     result_.height = info.height;
     result_.frame_rate_hz = info.frame_rate.value();
+    result_.tone = options.tone;
     if (options.lens) {
       result_.lens = lens_words(*options.lens);
       turning_.emplace(*options.lens, motion::Options{}, options.own_aircraft);
@@ -192,7 +193,10 @@ class Session {
         ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
     }
     tint_sky(lens, found);
-    AirMeter air(lens, options_.own_aircraft, options_.lens ? options_.altitude_m : std::nullopt);
+    AirMeter air(lens,
+                 options_.own_aircraft,
+                 options_.lens ? options_.altitude_m : std::nullopt,
+                 options_.tone);
     const auto first_from_level = levelled(ups);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       // With a lens all frames share one attitude; without, each has its own horizon.

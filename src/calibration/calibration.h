@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "image/layer.h"
 #include "image/picture.h"
+#include "image/tone_curve.h"
 #include "lens/lens.h"
 #include "scene/scene.h"
 
@@ -28,6 +29,7 @@ struct Options {
   const image::Mask* own_aircraft = nullptr;
   std::optional<double> altitude_m;  // above the ground: with it terrain tells the extinction
   double heading_deg = 0;            // of the camera in the first frame, for the sun's azimuth
+  image::ToneCurve tone;             // under which light is measured: one clip cannot tell it
   std::int64_t first_frame = 0;
   std::optional<std::int64_t> frame_count;
   Warn warn;
@@ -70,6 +72,7 @@ struct Calibration {
   std::int64_t frames = 0;
   double frame_rate_hz = 0;
   std::string lens;
+  image::ToneCurve tone;  // as it was given
   // By key, as in a scene: "sensor.noise_gain", "air.extinction_per_km" (three), ...
   std::map<std::string, std::vector<Estimate>> values;
   std::map<std::string, std::string> missing;  // key: why not

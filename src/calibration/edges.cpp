@@ -201,7 +201,9 @@ double median(std::vector<double> values) {
 }
 
 // Edges laid over one another, for the eye.
-EdgeProfile profile_of(const std::vector<const StepEdge*>& edges, const StepResponse& response) {
+EdgeProfile profile_of(const std::vector<const StepEdge*>& edges,
+                       const StepResponse& response,
+                       const image::ToneCurve& tone) {
   constexpr int kBins = static_cast<int>(2 * kAcross / kBin);
   std::array<std::vector<double>, kBins> bins;
   std::vector<double> lows, highs;
@@ -220,7 +222,7 @@ EdgeProfile profile_of(const std::vector<const StepEdge*>& edges, const StepResp
     profile.place_px.push_back((b + 0.5) * kBin - kAcross);
     profile.height.push_back(median(std::move(heights)));
   }
-  profile.fitted = step_heights(response, median(lows), median(highs), profile.place_px);
+  profile.fitted = step_heights(response, median(lows), median(highs), profile.place_px, tone);
   return profile;
 }
 
@@ -284,8 +286,8 @@ std::optional<StepResponse> EdgeMeter::result(std::string& why) {
     return std::nullopt;
   }
   const auto edges = sharpest();
-  const StepResponse response = fit_step_response(edges);
-  profile_ = profile_of(edges, response);
+  const StepResponse response = fit_step_response(edges, tone_);
+  profile_ = profile_of(edges, response, tone_);
   return response;
 }
 

@@ -16,7 +16,8 @@ namespace airtruth::calibration {
 // sharpening.
 class EdgeMeter {
  public:
-  explicit EdgeMeter(const image::Mask* own_aircraft) : own_aircraft_(own_aircraft) {}
+  EdgeMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
+      : own_aircraft_(own_aircraft), tone_(tone) {}
   // frame_from_before: the picture's motion, which tells a sharp edge from a blurred one; empty:
   // not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
@@ -32,6 +33,7 @@ class EdgeMeter {
   };
   std::vector<const StepEdge*> sharpest() const;
   const image::Mask* own_aircraft_;
+  image::ToneCurve tone_;
   std::vector<Edge> edges_;
   EdgeProfile profile_;
 };

@@ -158,10 +158,10 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
   struct Row {
     double x, y, blocks;
   };
-  const composite::Sensor unit{.noise_floor = 1};
+  const composite::Sensor unit{.noise_floor = 1, .tone = tone_};
   std::vector<Row> rows;
   for (const NoisePoint& p : curve) {
-    const double x = double(image::linear_from_srgb(static_cast<float>(p.luma)));
+    const double x = double(tone_.linear_from_coded_clamped(static_cast<float>(p.luma)));
     const double codes = double(composite::noise_sigma(
         static_cast<float>(p.luma), static_cast<float>(codes_per_unit_), unit));
     const double y = p.sigma_codes * p.sigma_codes / (codes * codes);

@@ -13,7 +13,8 @@ namespace airtruth::calibration {
 // plane is taken off each block first.
 class NoiseMeter {
  public:
-  explicit NoiseMeter(const image::Mask* own_aircraft) : own_aircraft_(own_aircraft) {}
+  NoiseMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
+      : own_aircraft_(own_aircraft), tone_(tone) {}
   void add(const image::Picture& frame, const image::Picture& next);
 
   struct Result {
@@ -33,6 +34,7 @@ class NoiseMeter {
   std::vector<Block> chosen() const;
 
   const image::Mask* own_aircraft_;
+  image::ToneCurve tone_;
   double codes_per_unit_ = 255;
   std::vector<Block> blocks_;
 };

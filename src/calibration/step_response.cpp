@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "geometry/transform.h"
-#include "image/colour.h"
+#include "image/tone_curve.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -23,14 +23,6 @@ constexpr double kStep = 1e-10;                         // of the unknowns, squa
 // one.
 constexpr double kUsualAmount = 0.0, kUsualAmountSpread = 0.6;
 constexpr double kUsualRadius = 1, kUsualRadiusSpread = 0.25;  // px
-
-// sRGB as image::linear_from_srgb has it, in double precision for the fit's slopes.
-double linear(double coded) {
-  return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
-}
-double coded(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 // The second integral of a Gaussian's step.
 double bend(double x, double sigma) {
@@ -52,12 +44,13 @@ struct Parameters {
 // Sampled finely; heights 0..1 far from the step, places from the middle of what is coded.
 class StepModel {
  public:
-  StepModel(const Parameters& p, double low, double high) {
-    const double dark = linear(low);
-    const double bright = linear(high);
+  StepModel(const Parameters& p, double low, double high, const image::ToneCurve& tone) {
+    const double dark = tone.linear_from_coded(low);
+    const double bright = tone.linear_from_coded(high);
     for (int i = 0; i < kCount; ++i) {
       const double light = dark + (bright - dark) * step_through(place(i), p.spread_px);
-      heights_.at(static_cast<std::size_t>(i)) = (coded(light) - low) / (high - low);
+      heights_.at(static_cast<std::size_t>(i)) =
+          (tone.coded_from_linear(light) - low) / (high - low);
     }
     if (p.amount != 0) sharpen(p.amount, std::hypot(p.radius_px, std::sqrt(1.0 / 12)));
     for (const double height : heights_) middle_ += kFine * (1 - height);
@@ -110,7 +103,8 @@ class Misfit {
   using JacobianType = Eigen::MatrixXd;
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
-  explicit Misfit(const std::vector<const StepEdge*>& edges) : edges_(edges) {
+  Misfit(const std::vector<const StepEdge*>& edges, const image::ToneCurve& tone)
+      : edges_(edges), tone_(tone) {
     for (const StepEdge* edge : edges) count_ += static_cast<int>(edge->samples.size());
   }
   // Beyond it a sample is an outlier, and counts as its distance alone (Huber 1964).
@@ -136,7 +130,7 @@ class Misfit {
     int first = 0;
     for (const StepEdge* edge : edges_) {
       const auto n = static_cast<int>(edge->samples.size());
-      residuals.segment(first, n) = left_of(*edge, StepModel(p, edge->low, edge->high));
+      residuals.segment(first, n) = left_of(*edge, StepModel(p, edge->low, edge->high, tone_));
       first += n;
     }
     residuals[first] = usual_ * (x[1] - kUsualAmount) / kUsualAmountSpread;
@@ -163,6 +157,7 @@ class Misfit {
   }
 
   const std::vector<const StepEdge*>& edges_;
+  image::ToneCurve tone_;
   int count_ = 0;
   double limit_ = 1e300;
   double usual_ = 0;
@@ -261,9 +256,10 @@ double common_misfit(const std::vector<const StepEdge*>& edges,
 
 }  // namespace
 
-StepResponse fit_step_response(const std::vector<const StepEdge*>& edges) {
+StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
+                               const image::ToneCurve& tone) {
   check(!edges.empty(), "a step response needs an edge");
-  Misfit misfit(edges);
+  Misfit misfit(edges, tone);
   Eigen::VectorXd x = best_fit(misfit);
   const double wrong = common_misfit(edges, misfit, x);
   misfit.set_usual(wrong * std::sqrt(double(misfit.values())));
@@ -286,11 +282,13 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges) {
 std::vector<double> step_heights(const StepResponse& response,
                                  double low,
                                  double high,
-                                 const std::vector<double>& places_px) {
+                                 const std::vector<double>& places_px,
+                                 const image::ToneCurve& tone) {
   const StepModel model(
       {response.point_spread_px.value, response.sharpening.value, response.sharpening_px.value},
       low,
-      high);
+      high,
+      tone);
   std::vector<double> heights;
   for (const double place : places_px) heights.push_back(model.at(place).first);
   return heights;

@@ -26,12 +26,14 @@ struct StepResponse {
 // edge lies and how high its plateaus are is solved beside it (variable projection: Golub and
 // Pereyra 1973). Errors count edges, not samples (Liang and Zeger 1986): what one edge has apart
 // from the others it has in all of its samples. Needs an edge at least.
-StepResponse fit_step_response(const std::vector<const StepEdge*>& edges);
+StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
+                               const image::ToneCurve& tone);
 
 // The answer that `response` gives at `places_px` to a step between two levels, scaled to 0..1.
 std::vector<double> step_heights(const StepResponse& response,
                                  double low,
                                  double high,
-                                 const std::vector<double>& places_px);
+                                 const std::vector<double>& places_px,
+                                 const image::ToneCurve& tone);
 
 }  // namespace airtruth::calibration

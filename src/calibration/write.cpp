@@ -57,6 +57,7 @@ std::string toml_from(const Calibration& c) {
                       c.height,
                       c.frames);
   if (!c.lens.empty()) text += fmt::format("lens = \"{}\"\n", c.lens);
+  if (c.tone.gamma != 0) text += fmt::format("gamma = {}\n", c.tone.gamma);
   std::string table;
   for (const Key& key : kKeys) {
     const std::string name = std::string(key.table) + "." + key.key;

@@ -25,6 +25,7 @@ struct CalibrateArguments {
   std::string plot;
   std::optional<double> altitude_m;
   double heading_deg = 0;
+  double gamma = 0;
   bool overwrite = false;
 };
 
@@ -41,6 +42,7 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   options.own_aircraft = mask ? &*mask : nullptr;
   options.altitude_m = arguments.altitude_m;
   options.heading_deg = arguments.heading_deg;
+  options.tone.gamma = arguments.gamma;
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -101,6 +103,11 @@ void add_calibrate(CLI::App& app, Context& context) {
                    "Where the camera looks in the first frame, degrees from north: for the sun")
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
+  command
+      ->add_option("--gamma",
+                   arguments->gamma,
+                   "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
+      ->check(CLI::Range(1.2, 3.0));
   command->add_option("--plot", arguments->plot, "Draw what was measured here (.png)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
   command->callback([arguments, &context] { calibrate(*arguments, context); });

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "base/error.h"
 #include "composite/transfer_curve.h"
@@ -12,9 +14,12 @@
 namespace airtruth::composite {
 namespace {
 
-const TransferCurve& transfer_curve() {
-  static const TransferCurve curve;
-  return curve;
+// Made once for each curve.
+const TransferCurve& transfer_curve(const image::ToneCurve& tone) {
+  static std::mutex mutex;
+  static std::map<double, TransferCurve> curves;
+  const std::lock_guard lock(mutex);
+  return curves.try_emplace(tone.gamma, tone).first->second;
 }
 
 std::uint8_t code(float value) {
@@ -65,7 +70,7 @@ class Matte {
   image::Picture& picture_;
   const image::Layer& layer_;
   const MatteOptions& options_;
-  const TransferCurve& curve_ = transfer_curve();
+  const TransferCurve& curve_;
   image::ColourCode colour_code_;
   int log2_width_;
   int log2_height_;
@@ -82,6 +87,7 @@ Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOpti
     : picture_(picture),
       layer_(layer),
       options_(options),
+      curve_(transfer_curve(options.sensor.tone)),
       colour_code_(picture.colour),
       log2_width_(image::log2_chroma_width(picture.colour.chroma)),
       log2_height_(image::log2_chroma_height(picture.colour.chroma)),

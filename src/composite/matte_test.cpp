@@ -102,6 +102,32 @@ TEST(Matte, HalfWhiteOverBlackIsHalfInLinearLight) {
   EXPECT_EQ(picture.planes[0].row(1)[1], 0);
 }
 
+// The same through a camera's own curve: 1.055 / sqrt(2) - 0.055 of 255 for an exponent of 2.
+TEST(Matte, HalfWhiteOverBlackThroughTheCamerasOwnCurve) {
+  Picture picture = image::picture_from_rgb8(image::make_rgb8(8, 8),
+                                             {Chroma::k420, Matrix::kBt601, Range::kFull});
+  MatteOptions options;
+  options.sensor.tone.gamma = 2;
+  composite_matte(picture, plain_layer({2, 2, 4, 4}, {0.5f, 0.5f, 0.5f, 0.5f}), options);
+  EXPECT_EQ(picture.planes[0].row(3)[3], 176);
+}
+
+// What hardly covers changes no code, however dark, whatever the curve.
+TEST(Matte, ATraceOfALayerLeavesEveryGreyAsItWas) {
+  for (const double gamma : {0.0, 1.2, 3.0}) {
+    Picture picture = image::make_picture(256, 8, {Chroma::k420, Matrix::kBt601, Range::kFull});
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 256; ++x) picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(x);
+    for (std::size_t p : {1u, 2u})
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 128; ++x) picture.planes[p].row(y)[x] = 128;
+    MatteOptions options;
+    options.sensor.tone.gamma = gamma;
+    composite_matte(picture, plain_layer({0, 0, 256, 8}, {0, 0, 0, 1e-5f}), options);
+    for (int x = 0; x < 256; ++x) EXPECT_EQ(picture.planes[0].row(4)[x], x) << gamma;
+  }
+}
+
 // A black veil of alpha 1/4 leaves 3/4 of the light of code 200 per channel.
 TEST(Matte, VeilScalesTheLightOfEachChannel) {
   for (const Colour& colour : every_colour()) {

@@ -125,11 +125,11 @@ void quantise(std::vector<float>& change, const PixelBox& patch, const Sensor& s
 
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {
   const float bounded = std::clamp(luma, 0.0F, 1.0F);
-  const float light = image::linear_from_srgb(bounded);
+  const float light = sensor.tone.linear_from_coded_clamped(bounded);
   // Slope of the coded value over light, by a small difference.
   constexpr float kStep = 0.004F;
-  const float low = image::linear_from_srgb(std::max(0.0F, bounded - kStep));
-  const float high = image::linear_from_srgb(std::min(1.0F, bounded + kStep));
+  const float low = sensor.tone.linear_from_coded_clamped(bounded - kStep);
+  const float high = sensor.tone.linear_from_coded_clamped(bounded + kStep);
   const float width = std::min(1.0F, bounded + kStep) - std::max(0.0F, bounded - kStep);
   const float slope = width / std::max(high - low, 1e-6F);
   const double variance = sensor.noise_gain * static_cast<double>(light) + sensor.noise_floor;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "image/tone_curve.h"
 
 // What a camera does to its samples after the light has come: sharpening, noise, the codec's
 // quantiser. All on luma, in code values, on a patch of the frame.
@@ -20,6 +21,7 @@ struct Sensor {
   double noise_gain = 0;
   double noise_floor = 0;
   double noise_correlation_px = 0;
+  image::ToneCurve tone;
   // Step of the quantiser of the codec's transform, in luma code values; 0: none.
   double codec_step = 0;
 

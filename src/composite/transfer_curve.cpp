@@ -2,18 +2,6 @@
 #include "composite/transfer_curve.h"
 
 namespace airtruth::composite {
-namespace {
-
-double exact_linear(double coded) {
-  return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
-}
-
-double exact_coded(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-}  // namespace
-
 template <typename Function>
 TransferCurve::Table TransferCurve::tabulate(float high, int entries, Function function) {
   Table table;
@@ -23,9 +11,13 @@ TransferCurve::Table TransferCurve::tabulate(float high, int entries, Function f
   return table;
 }
 
-TransferCurve::TransferCurve()
-    : decode_(tabulate(2.5f, 2560, exact_linear)),  // 8-bit Y'CbCr reaches from -1.3 to 2.3
-      encode_(tabulate(1.0f, 4096, exact_coded)),
-      encode_bright_(tabulate(10.0f, 2048, exact_coded)) {}
+TransferCurve::TransferCurve(const image::ToneCurve& tone) {
+  const auto linear = [&](double coded) { return tone.linear_from_coded(coded); };
+  const auto coded = [&](double light) { return tone.coded_from_linear(light); };
+  decode_ = tabulate(2.5f, 2560, linear);  // 8-bit Y'CbCr reaches from -1.3 to 2.3
+  // A higher exponent bends more near black.
+  encode_ = tabulate(1.0f, tone.gamma == 0 ? 4096 : 65536, coded);
+  encode_bright_ = tabulate(10.0f, 2048, coded);
+}
 
 }  // namespace airtruth::composite

@@ -5,14 +5,17 @@
 #include <cmath>
 #include <vector>
 
+#include "image/tone_curve.h"
+
 namespace airtruth::composite {
 
-// sRGB's curve by tables, continued beyond [0, 1]: f(-x) = -f(x), and the same power law above 1.
+// A tone curve by tables, continued beyond [0, 1]: f(-x) = -f(x), and the same power law above 1.
 // Video can hold such values (blacker than black, colours outside of the RGB cube), and they must
-// survive a blend unclamped. Within 2e-5 of the exact curve, which is 1/200 of a code value.
+// survive a blend unclamped. sRGB's is within 2e-5 of the exact curve, which is 1/200 of a code
+// value.
 class TransferCurve {
  public:
-  TransferCurve();
+  explicit TransferCurve(const image::ToneCurve& tone = {});
   float linear_from_coded(float coded) const { return odd(decode_, coded); }
   float coded_from_linear(float linear) const {
     return odd(std::abs(linear) <= 1 ? encode_ : encode_bright_, linear);

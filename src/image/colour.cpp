@@ -65,7 +65,7 @@ Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int he
   return result;
 }
 
-Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y) {
+Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y, const ToneCurve& tone) {
   Ycc ycc;
   ycc.y = picture.planes[0].row(y)[x];
   if (picture.plane_count == 3) {
@@ -75,7 +75,7 @@ Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y) {
     ycc.cr = picture.planes[2].row(cy)[cx];
   }
   Rgb rgb = code.rgb_from_ycc(ycc);
-  for (float& c : rgb) c = linear_from_srgb(c);
+  for (float& c : rgb) c = tone.linear_from_coded_clamped(c);
   return rgb;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "image/picture.h"
+#include "image/tone_curve.h"
 
 // Between a picture's samples and linear light.
 //
@@ -62,7 +63,8 @@ inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
 }
 
 // Linear light of one pixel, chroma held over its block.
-Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y);
+Rgb linear_at(
+    const Picture& picture, const ColourCode& code, int x, int y, const ToneCurve& tone = {});
 
 // The whole picture as packed sRGB, chroma held over its block, for previews and stills.
 Rgb8 rgb8_from_picture(const Picture& picture);

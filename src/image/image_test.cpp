@@ -18,6 +18,29 @@ TEST(Srgb, MatchesTheStandardAtKnownPoints) {
   }
 }
 
+TEST(ToneCurve, IsSrgbsUnlessItHasAnExponent) {
+  const ToneCurve srgb;
+  EXPECT_NEAR(srgb.linear_from_coded(0.5), 0.21404114, 1e-8);
+  EXPECT_NEAR(srgb.coded_from_linear(0.18), 0.46135613, 1e-8);
+  // Its exponent is 2.4; the standard rounds where the line ends.
+  for (double coded = 0; coded <= 1; coded += 0.01)
+    EXPECT_NEAR(ToneCurve{2.4}.linear_from_coded(coded), srgb.linear_from_coded(coded), 2e-6);
+}
+
+TEST(ToneCurve, OfAnyExponentIsSmoothAndTurnsBack) {
+  for (const double gamma : {1.2, 1.8, 2.2, 3.0}) {
+    const ToneCurve tone{gamma};
+    EXPECT_DOUBLE_EQ(tone.coded_from_linear(1), 1);
+    EXPECT_NEAR(tone.coded_from_linear(0.5), 1.055 * std::pow(0.5, 1 / gamma) - 0.055, 1e-12);
+    for (double coded = 0; coded <= 1.5; coded += 0.01)
+      EXPECT_NEAR(tone.coded_from_linear(tone.linear_from_coded(coded)), coded, 1e-12) << gamma;
+    const double end = 0.055 / (gamma - 1), step = 1e-6;
+    const double below = tone.linear_from_coded(end) - tone.linear_from_coded(end - step);
+    const double above = tone.linear_from_coded(end + step) - tone.linear_from_coded(end);
+    EXPECT_NEAR(above / below, 1, 1e-4) << gamma;
+  }
+}
+
 // Rec. BT.709-6, item 3.4: red at 100 % in 8-bit limited range is Y 63, Cb 102, Cr 240.
 TEST(ColourCode, RedIsWhereTheStandardPutsIt) {
   const Ycc red =

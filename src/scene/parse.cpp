@@ -86,13 +86,15 @@ CameraFile parse_camera_file(std::string_view text, const fs::path& file) {
                          file.string(),
                          {"clip", "shutter", "air", "optics", "sensor", "light", "uncertainty"});
   CameraFile camera;
-  const TableReader clip = root.table("clip", {"video", "width", "height", "frames", "lens"});
+  const TableReader clip =
+      root.table("clip", {"video", "width", "height", "frames", "lens", "gamma"});
   camera.width = static_cast<int>(clip.whole("width", 1, 1 << 16).value_or(0));
   camera.height = static_cast<int>(clip.whole("height", 1, 1 << 16).value_or(0));
   if (camera.width == 0 || camera.height == 0)
     throw Error("[clip] has no width and height; expected a file that airtruth calibrate wrote",
                 {file.string()});
   camera.lens = clip.text("lens").value_or("");
+  camera.gamma = clip.number("gamma", kGamma);
   camera.model = camera_model_in(root);
   if (!camera.model.automatic.empty())
     throw Error(camera.model.automatic.front() + " is \"auto\"; expected a value in a camera file",

@@ -87,6 +87,7 @@ struct CameraModel {
   std::optional<double> noise_floor;  // + noise_floor
   std::optional<double> noise_correlation_px;
   std::optional<double> codec_step;  // of the quantiser, in luma code values
+  std::optional<double> gamma;       // exponent of the tone curve; else sRGB's curve
   // Keys that said "auto", as "air.airlight".
   std::vector<std::string> automatic;
 };
@@ -157,6 +158,7 @@ struct CameraFile {
   int height = 0;
   std::string
       lens;  // "" where none was given; else name and focal length, as lens_words() has them
+  std::optional<double> gamma;  // of the tone curve that was measured under
   std::optional<double> sun_azimuth_deg;
   std::optional<double> sun_elevation_deg;
 };

@@ -198,7 +198,7 @@ TEST(CameraModel, IsReadAndWrittenBackTheSame) {
       "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n"
       "[shutter]\nexposure_s = \"auto\"\nreadout_s = 0.016\nreadout = \"up\"\n"
       "[air]\nextinction_per_km = [0.1, 0.2, 0.3]\nairlight = \"auto\"\n"
-      "[optics]\npoint_spread_px = 0.7\n[sensor]\nnoise_gain = 4e-4\ncodec_step = 8\n"
+      "[optics]\npoint_spread_px = 0.7\n[sensor]\nnoise_gain = 4e-4\ncodec_step = 8\ngamma = 2.2\n"
       "[realism]\nfile = \"c.toml\"\nauto = true\nfallback = true\n"
       "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[1, 2, 3], [4, 5, 6]]\nspeed_mps "
       "= 5\n";
@@ -207,6 +207,7 @@ TEST(CameraModel, IsReadAndWrittenBackTheSame) {
             (std::vector<std::string>{"shutter.exposure_s", "air.airlight"}));
   EXPECT_FALSE(scene.camera_model.exposure_s);
   EXPECT_EQ(scene.camera_model.readout_s, 0.016);
+  EXPECT_EQ(scene.camera_model.gamma, 2.2);
   EXPECT_EQ(scene.realism.file, fs::path("/f/c.toml"));
   const std::string written = toml_from_scene(scene);
   EXPECT_EQ(toml_from_scene(parse_scene(written, "/f/s.toml")), written);
@@ -229,16 +230,19 @@ TEST(CameraModel, WhatIsOutOfRangeIsSaidAtItsPlace) {
             "s.toml:6:14: exposure_s is 2; expected seconds from 0 to 1");
   EXPECT_EQ(said("[shutter]\nexposure_s = 0.1\nangle_deg = 90").substr(0, 10), "s.toml:7:1");
   EXPECT_NE(said("[sensor]\nnoise_gian = 1").find("did you mean 'noise_gain'"), std::string::npos);
+  EXPECT_EQ(said("[sensor]\ngamma = 1"), "s.toml:6:9: gamma is 1; expected a number from 1.2 to 3");
   EXPECT_NE(said("[optics]\npoint_spread_px = \"much\"").find("is a string"), std::string::npos);
 }
 
 TEST(CameraFile, IsReadStrictly) {
   const CameraFile file = parse_camera_file(
-      "[clip]\nwidth = 640\nheight = 480\nlens = \"pinhole 500.0 px\"\n[optics]\npoint_spread_px = "
+      "[clip]\nwidth = 640\nheight = 480\nlens = \"pinhole 500.0 px\"\ngamma = "
+      "1.8\n[optics]\npoint_spread_px = "
       "1.2\n[light]\nsun_azimuth_deg = 30\nsun_elevation_deg = 20\n",
       "c.toml");
   EXPECT_EQ(file.width, 640);
   EXPECT_EQ(file.model.point_spread_px, 1.2);
+  EXPECT_EQ(file.gamma, 1.8);
   EXPECT_EQ(file.sun_azimuth_deg, 30);
   EXPECT_THROW(parse_camera_file("[optics]\npoint_spread_px = 1\n", "c.toml"), Error);
   EXPECT_THROW(parse_camera_file("[clip]\nwidth = 1\nheight = 1\n[optics]\nspread = 1\n", "c.toml"),

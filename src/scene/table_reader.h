@@ -35,6 +35,7 @@ struct Limits {
 inline constexpr Limits kFinite{};
 inline constexpr Limits kAboveZero{.expected = "a number above 0", .low = 0, .without_low = true};
 inline constexpr Limits kNotNegative{.expected = "a number not below 0", .low = 0};
+inline constexpr Limits kGamma{.expected = "a number from 1.2 to 3", .low = 1.2, .high = 3};
 inline constexpr Limits kTurn{.expected = "degrees from -360 to 360", .low = -360, .high = 360};
 inline constexpr Limits kPitch{.expected = "degrees from -90 to 90", .low = -90, .high = 90};
 

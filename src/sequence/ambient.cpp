@@ -35,6 +35,7 @@ float brightness(const Rgb& linear) {
 }
 
 std::vector<Block> blocks_of(const image::Picture& picture,
+                             const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
@@ -50,7 +51,7 @@ std::vector<Block> blocks_of(const image::Picture& picture,
     for (int x = step / 2; x < picture.width; x += step) {
       if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
       Block block;
-      block.linear = image::linear_at(picture, code, x, y);
+      block.linear = image::linear_at(picture, code, x, y, tone);
       block.brightness = brightness(block.linear);
       block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
       blocks.push_back(block);
@@ -153,7 +154,7 @@ std::array<float, 3> floats(const std::array<double, 3>& v) {
 Ambient AmbientEstimator::next(const image::Picture& picture, const std::optional<PixelBox>& near) {
   const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
   if (all_stated) return with_scene({});
-  std::vector<Block> blocks = blocks_of(picture, own_aircraft_, near);
+  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, near);
   std::vector<Rgb> colours;
   for (const Block& block : blocks) colours.push_back(block.linear);
   follow_exposure(colours);

@@ -7,6 +7,7 @@
 
 #include "image/layer.h"
 #include "image/picture.h"
+#include "image/tone_curve.h"
 #include "scene/scene.h"
 
 // What light falls on the intruder, taken from the background where the scene does not state it.
@@ -28,10 +29,16 @@ struct Ambient {
   std::array<float, 3> airlight{};  // the background around the intruder: where haze leads to
 };
 
+inline image::ToneCurve tone_of(const scene::CameraModel& model) {
+  return {model.gamma.value_or(0)};
+}
+
 class AmbientEstimator {
  public:
-  AmbientEstimator(const scene::Light& light, const image::Mask* own_aircraft)
-      : light_(light), own_aircraft_(own_aircraft) {}
+  AmbientEstimator(const scene::Light& light,
+                   const image::ToneCurve& tone,
+                   const image::Mask* own_aircraft)
+      : light_(light), tone_(tone), own_aircraft_(own_aircraft) {}
 
   // Frames in order. `near`: the intruders' box, where one is in view.
   Ambient next(const image::Picture& picture, const std::optional<PixelBox>& near);
@@ -41,6 +48,7 @@ class AmbientEstimator {
   void follow_exposure(const std::vector<std::array<float, 3>>& blocks);
 
   scene::Light light_;
+  image::ToneCurve tone_;
   const image::Mask* own_aircraft_;
   std::optional<Ambient> smooth_;
   std::vector<std::array<float, 3>> blocks_before_;

@@ -21,6 +21,7 @@ composite::Sensor sensor_of(const scene::CameraModel& model) {
   sensor.noise_floor = model.noise_floor.value_or(0);
   sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
   sensor.codec_step = model.codec_step.value_or(0);
+  sensor.tone = tone_of(model);
   return sensor;
 }
 

@@ -67,7 +67,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   const auto mask = read_mask(scene, size);
   const image::Mask* mask_ptr = mask ? &*mask : nullptr;
   const auto painter = make_painter(scene, world, mask_ptr, {});
-  AmbientEstimator ambient(scene.light, mask_ptr);
+  AmbientEstimator ambient(scene.light, tone_of(scene.camera_model), mask_ptr);
   const std::string& codec = scene.output.video;
   Recomposition result;
   const auto fault = [&](const annotation::Frame& truth, const std::string& what) {

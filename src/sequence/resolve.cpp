@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "calibration/calibration.h"
 #include "scene/camera_keys.h"
+#include "sequence/ambient.h"
 #include "sequence/world.h"
 
 namespace airtruth::sequence {
@@ -27,6 +28,11 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
   if (!file.lens.empty() && file.lens != lens)
     throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
                 {path.string()});
+  if (scene.camera_model.gamma && scene.camera_model.gamma != file.gamma)
+    throw Error(fmt::format("was measured with {}; the scene's is {}",
+                            file.gamma ? fmt::format("gamma {}", *file.gamma) : "sRGB's tone curve",
+                            *scene.camera_model.gamma),
+                {path.string()});
   return file;
 }
 
@@ -39,6 +45,7 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   how.own_aircraft = mask;
   if (!scene.camera.path_file && scene.camera.position_ned_m.z() < 0)
     how.altitude_m = -scene.camera.position_ned_m.z();
+  how.tone = tone_of(scene.camera_model);
   how.heading_deg = scene.camera.attitude_yaw_pitch_roll_deg.yaw_deg;
   how.first_frame = scene.background.first_frame;
   how.frame_count = scene.background.frame_count;
@@ -52,7 +59,7 @@ void refuse_with_chroma_key(const scene::Scene& scene) {
   if (scene.composite.method != "chroma-key") return;
   scene::CameraModel model = scene.camera_model;
   bool any = scene.realism.file || scene.realism.automatic || model.angle_deg || model.readout ||
-             !model.automatic.empty();
+             model.gamma || !model.automatic.empty();
   scene::for_each_camera_key([&](const char*, const auto& value) { any = any || value; }, model);
   if (any)
     throw Error(
@@ -99,6 +106,7 @@ scene::Scene resolved(const scene::Scene& scene,
       model,
       file.model);
   if (!model.readout) model.readout = file.model.readout;
+  if (!model.gamma) model.gamma = file.gamma;
   std::optional<double> azimuth = file.sun_azimuth_deg;
   std::optional<double> elevation = file.sun_elevation_deg;
   if (measure) {

@@ -67,7 +67,7 @@ class Run {
                 video_sha256_,
                 mask_ptr(),
                 cache_of(options)),
-        ambient_(scene_.light, mask_ptr()),
+        ambient_(scene_.light, tone_of(scene_.camera_model), mask_ptr()),
         painter_(make_painter(scene_, world_, mask_ptr(), options)),
         staged_(folder, options.overwrite) {
     scene_.motion.model = motion_model(scene_, world_.lens);

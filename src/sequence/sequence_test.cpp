@@ -385,6 +385,12 @@ TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid)
             std::string::npos);
   EXPECT_NE(said("[realism]\nfile = \"lens.toml\"\n").find("through the lens 'fisheye 99.0 px'"),
             std::string::npos);
+  write_file(root_ / "tone.toml",
+             std::string("[clip]\nwidth = ") + std::to_string(kWidth) +
+                 "\nheight = " + std::to_string(kHeight) + "\n[optics]\npoint_spread_px = 1\n");
+  EXPECT_NE(said("[sensor]\ngamma = 2\n[realism]\nfile = \"tone.toml\"\n")
+                .find("was measured with sRGB's tone curve; the scene's is 2"),
+            std::string::npos);
   // FFV1 tells no quantiser.
   const std::string why = said("[sensor]\ncodec_step = \"auto\"\n");
   EXPECT_NE(why.find("sensor.codec_step cannot be measured"), std::string::npos) << why;
