@@ -40,9 +40,10 @@ void inject(image::Picture& picture, const Injected& what, std::int64_t frame) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) luma.push_back((picture.planes[0].row(y)[x] - dark) / unit);
   if (what.point_spread_px > 0) {
-    for (float& v : luma) v = image::linear_from_srgb(v);
+    const image::ToneCurve& tone = what.sensor.tone;
+    for (float& v : luma) v = tone.linear_from_coded_clamped(v);
     composite::blur(luma, width, height, composite::gaussian(what.point_spread_px));
-    for (float& v : luma) v = image::srgb_from_linear(v);
+    for (float& v : luma) v = static_cast<float>(tone.coded_from_linear(double(v)));
   }
   for (float& v : luma) v *= unit;
   composite::sharpen(luma, width, height, what.sensor);
@@ -164,9 +165,12 @@ TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
     what.sensor.noise_gain = 4e-4;
     what.sensor.noise_floor = 3e-5;
     what.sensor.noise_correlation_px = seed == 1 ? 0.5 : 0.7;
+    what.sensor.tone.gamma = seed == 1 ? 0 : 1.8;
+    Options options;
+    options.tone = what.sensor.tone;
     Clip clip;
     clip.write(flight, what);
-    const Calibration c = calibrate(clip.path(), {});
+    const Calibration c = calibrate(clip.path(), options);
     expect_within(c, "sensor.noise_correlation_px", what.sensor.noise_correlation_px, 0.1);
     // The curve as a whole: gain and floor trade against one another where little is dark.
     for (const NoisePoint& p : c.noise) {
@@ -188,6 +192,7 @@ TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
 
 TEST(Calibrate, MeasuresTheEdgesThatWereInjected) {
   synthetic::FlightOptions o = ideal(3);
+  o.frame_count = 12;
   o.shake_deg = 0;
   o.own_aircraft = false;
   const synthetic::Flight flight(o);

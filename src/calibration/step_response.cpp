@@ -182,8 +182,8 @@ double cost(const Misfit& misfit, const Eigen::VectorXd& x) {
 Eigen::VectorXd best_fit(Misfit& misfit) {
   Eigen::VectorXd best;
   double least = 1e300;
-  for (const double spread : {0.5, 1.0, 2.0})
-    for (const double radius : {0.8, 1.6, 2.6}) {
+  for (const double spread : {0.5, 1.5})
+    for (const double radius : {0.8, 2.0}) {
       const auto x = fitted(misfit, Misfit::unknowns({spread, 0.4, radius}));
       if (const double c = cost(misfit, x); c < least) least = c, best = x;
     }
