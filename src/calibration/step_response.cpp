@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kLeastSpread = 0.05, kMostSpread = 5;  // px
 constexpr double kLeastRadius = 0.3, kMostRadius = 4;   // px
-constexpr double kStep = 1e-10;                         // of the unknowns, squared
+constexpr double kUnit = 0.05;                          // px: unknowns are logarithms of so much
+constexpr double kStep = 1e-8;                          // of the unknowns, squared
 // Cameras' masks, where edges are not clean enough to part a narrow strong one from a wide weak
 // one.
 constexpr double kUsualAmount = 0.0, kUsualAmountSpread = 0.6;
@@ -61,8 +62,8 @@ class StepModel {
   std::pair<double, double> at(double x) const {
     const double p = std::clamp((x + middle_ + kHalf) / kFine, 0.0, kCount - 1.001);
     const auto i = static_cast<std::size_t>(p);
-    const double rise = heights_[i + 1] - heights_[i];
-    return {heights_[i] + (p - double(i)) * rise, rise / kFine};
+    const double t = p - double(i);
+    return {(1 - t) * heights_[i] + t * heights_[i + 1], (1 - t) * slope(i) + t * slope(i + 1)};
   }
 
  private:
@@ -70,9 +71,13 @@ class StepModel {
   static constexpr double kFine = 0.1;
   static constexpr int kCount = static_cast<int>(2 * kHalf / kFine) + 1;
   static double place(int i) { return i * kFine - kHalf; }
+  double slope(std::size_t i) const {
+    const std::size_t before = i > 0 ? i - 1 : i, after = std::min<std::size_t>(i + 1, kCount - 1);
+    return (heights_[after] - heights_[before]) / (double(after - before) * kFine);
+  }
 
   void sharpen(double amount, double radius) {
-    const int reach = static_cast<int>(std::ceil(3.5 * radius / kFine));
+    const int reach = static_cast<int>(std::ceil(4.5 * radius / kFine));
     std::vector<double> kernel;
     double total = 0;
     for (int j = -reach; j <= reach; ++j) {
@@ -115,12 +120,12 @@ class Misfit {
   void leave_out_the_mask() { masked_ = false; }
 
   Parameters parameters(const Eigen::VectorXd& x) const {
-    return {std::clamp(x[0], kLeastSpread, kMostSpread),
+    return {std::clamp(kUnit * std::exp(x[0]), kLeastSpread, kMostSpread),
             masked_ ? x[1] : 0,
-            masked_ ? std::clamp(x[2], kLeastRadius, kMostRadius) : kUsualRadius};
+            masked_ ? std::clamp(kUnit * std::exp(x[2]), kLeastRadius, kMostRadius) : kUsualRadius};
   }
   static Eigen::VectorXd unknowns(const Parameters& p) {
-    return Eigen::Vector3d(p.spread_px, p.amount, p.radius_px);
+    return Eigen::Vector3d(std::log(p.spread_px / kUnit), p.amount, std::log(p.radius_px / kUnit));
   }
 
   int inputs() const { return 3; }
@@ -134,7 +139,7 @@ class Misfit {
       first += n;
     }
     residuals[first] = usual_ * (x[1] - kUsualAmount) / kUsualAmountSpread;
-    residuals[first + 1] = usual_ * (x[2] - kUsualRadius) / kUsualRadiusSpread;
+    residuals[first + 1] = usual_ * (p.radius_px - kUsualRadius) / kUsualRadiusSpread;
     for (double& r : residuals.head(first))
       if (std::abs(r) > limit_)
         r = std::copysign(std::sqrt(2 * limit_ * std::abs(r) - limit_ * limit_), r);
@@ -182,7 +187,7 @@ double cost(const Misfit& misfit, const Eigen::VectorXd& x) {
 Eigen::VectorXd best_fit(Misfit& misfit) {
   Eigen::VectorXd best;
   double least = 1e300;
-  for (const double spread : {0.5, 1.5})
+  for (const double spread : {0.5, 1.0, 2.0})
     for (const double radius : {0.8, 2.0}) {
       const auto x = fitted(misfit, Misfit::unknowns({spread, 0.4, radius}));
       if (const double c = cost(misfit, x); c < least) least = c, best = x;
@@ -267,15 +272,17 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   Eigen::Matrix3d covariance = covariance_of(edges, misfit, x, wrong);
   StepResponse response;
   response.sharpening = {x[1], std::sqrt(covariance(1, 1))};
-  response.sharpening_px = {misfit.parameters(x).radius_px, std::sqrt(covariance(2, 2))};
+  const double radius_px = misfit.parameters(x).radius_px;
+  response.sharpening_px = {radius_px, radius_px * std::sqrt(covariance(2, 2))};
   if (x[1] <= 0) {  // no camera's mask softens
     misfit.leave_out_the_mask();
-    x = fitted(misfit, Misfit::unknowns({x[0], 0, kUsualRadius}));
+    x = fitted(misfit, Misfit::unknowns({misfit.parameters(x).spread_px, 0, kUsualRadius}));
     covariance = covariance_of(edges, misfit, x, wrong);
     response.sharpening.value = 0;
     response.sharpening_px = {kUsualRadius, kUsualRadiusSpread};
   }
-  response.point_spread_px = {misfit.parameters(x).spread_px, std::sqrt(covariance(0, 0))};
+  const double spread_px = misfit.parameters(x).spread_px;
+  response.point_spread_px = {spread_px, spread_px * std::sqrt(covariance(0, 0))};
   return response;
 }
 
