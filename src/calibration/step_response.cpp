@@ -139,7 +139,7 @@ class Misfit {
       first += n;
     }
     residuals[first] = usual_ * (x[1] - kUsualAmount) / kUsualAmountSpread;
-    residuals[first + 1] = usual_ * (p.radius_px - kUsualRadius) / kUsualRadiusSpread;
+    residuals[first + 1] = usual_ * (kUnit * std::exp(x[2]) - kUsualRadius) / kUsualRadiusSpread;
     for (double& r : residuals.head(first))
       if (std::abs(r) > limit_)
         r = std::copysign(std::sqrt(2 * limit_ * std::abs(r) - limit_ * limit_), r);
@@ -268,7 +268,10 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   Eigen::VectorXd x = best_fit(misfit);
   const double wrong = common_misfit(edges, misfit, x);
   misfit.set_usual(wrong * std::sqrt(double(misfit.values())));
+  const Eigen::VectorXd usual =
+      fitted(misfit, Misfit::unknowns({misfit.parameters(x).spread_px, 0.5, kUsualRadius}));
   x = fitted(misfit, x);
+  if (cost(misfit, usual) < cost(misfit, x)) x = usual;
   Eigen::Matrix3d covariance = covariance_of(edges, misfit, x, wrong);
   StepResponse response;
   response.sharpening = {x[1], std::sqrt(covariance(1, 1))};
