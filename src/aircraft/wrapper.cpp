@@ -11,7 +11,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr std::size_t kMaxBytes = 8u << 20;
+constexpr std::size_t kMaxWrapperBytes = 8u << 20;
 constexpr int kMaxDepth = 12;
 constexpr std::size_t kMaxFiles = 2000;
 
@@ -37,12 +37,12 @@ WrapperText read_text(const fs::path& file, std::vector<fs::path>& sources, int 
   if (depth > kMaxDepth) throw Error("includes itself", {file.string()});
   if (sources.size() > kMaxFiles) throw Error("takes in over 2000 files", {file.string()});
   sources.push_back(file);
-  WrapperText own = parse_wrapper(read_file(file, kMaxBytes), file);
+  WrapperText own = parse_wrapper(read_file(file, kMaxWrapperBytes), file);
   for (Animation& animation : own.animations) {
     if (animation.table_file.empty()) continue;
     const fs::path table = file.parent_path() / animation.table_file;
     sources.push_back(table);
-    animation.value.table = parse_table(read_file(table, kMaxBytes), table);
+    animation.value.table = parse_table(read_file(table, kMaxWrapperBytes), table);
   }
   if (own.include.empty()) return own;
   WrapperText base = read_text(file.parent_path() / own.include, sources, depth + 1);

@@ -106,7 +106,7 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
   refused([](Frame& f) { f.intruders[0].alpha_sum_px = -1; });
 }
 
-std::string message_of(const std::string& line) {
+std::string line_message(const std::string& line) {
   try {
     parse_jsonl_line(line, "truth.jsonl", 7);
   } catch (const Error& error) {
@@ -118,15 +118,15 @@ std::string message_of(const std::string& line) {
 std::string with(const std::function<void(Json&)>& spoil) {
   Json json = Json::parse(jsonl_line(frame_of_two(), kLens));
   spoil(json);
-  return message_of(json.dump());
+  return line_message(json.dump());
 }
 
 TEST(Truth, FaultsHaveTheirFileAndLine) {
-  EXPECT_EQ(message_of("{"),
+  EXPECT_EQ(line_message("{"),
             "truth.jsonl:7: is not JSON; expected an object, as `airtruth render` writes them");
-  EXPECT_EQ(message_of("[]"),
+  EXPECT_EQ(line_message("[]"),
             "truth.jsonl:7: the line is not what it should be; expected an object");
-  EXPECT_EQ(message_of("{}"), "truth.jsonl:7: the line has no 'frame'");
+  EXPECT_EQ(line_message("{}"), "truth.jsonl:7: the line has no 'frame'");
   EXPECT_EQ(with([](Json& j) { j["frame"] = 1.5; }),
             "truth.jsonl:7: frame is not what it should be; expected a whole number");
   EXPECT_EQ(with([](Json& j) { j["intruders"][0]["state"] = "seen"; }),
@@ -149,12 +149,12 @@ TEST(Truth, FaultsHaveTheirFileAndLine) {
 TEST(Truth, ALineCutAnywhereIsAnError) {
   const std::string line = jsonl_line(frame_of_two(), kLens);
   for (std::size_t size = 0; size < line.size(); ++size)
-    EXPECT_NE(message_of(line.substr(0, size)), "no error");
+    EXPECT_NE(line_message(line.substr(0, size)), "no error");
 }
 
 TEST(Truth, DeeplyNestedJsonDoesNotExhaustTheStack) {
-  EXPECT_NE(message_of(std::string(200'000, '[')), "no error");
-  EXPECT_NE(message_of(std::string(200'000, '[') + std::string(200'000, ']')), "no error");
+  EXPECT_NE(line_message(std::string(200'000, '[')), "no error");
+  EXPECT_NE(line_message(std::string(200'000, '[') + std::string(200'000, ']')), "no error");
 }
 
 TEST(Truth, AFileReadsBackWithItsLens) {

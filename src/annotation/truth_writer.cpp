@@ -8,27 +8,29 @@
 namespace airtruth::annotation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json json(double value) { return value; }
-Json json(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
-Json json(const YawPitchRoll& a) { return Json::array({a.yaw_deg, a.pitch_deg, a.roll_deg}); }
-Json json(const Box& b) { return Json::array({b.x, b.y, b.width, b.height}); }
-Json json(const PixelBox& b) { return Json::array({b.x, b.y, b.width, b.height}); }
+OrderedJson json(double value) { return value; }
+OrderedJson json(const Vector3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
+OrderedJson json(const YawPitchRoll& a) {
+  return OrderedJson::array({a.yaw_deg, a.pitch_deg, a.roll_deg});
+}
+OrderedJson json(const Box& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
+OrderedJson json(const PixelBox& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
 
-Json json(const Homography& h) {
-  Json rows = Json::array();
-  for (int i = 0; i < 3; ++i) rows.push_back(Json::array({h(i, 0), h(i, 1), h(i, 2)}));
+OrderedJson json(const Homography& h) {
+  OrderedJson rows = OrderedJson::array();
+  for (int i = 0; i < 3; ++i) rows.push_back(OrderedJson::array({h(i, 0), h(i, 1), h(i, 2)}));
   return rows;
 }
 
 template <typename T>
-void add(Json& object, const char* key, const std::optional<T>& value) {
+void add(OrderedJson& object, const char* key, const std::optional<T>& value) {
   if (value) object[key] = json(*value);
 }
 
-Json json(const Intruder& intruder) {
-  Json object;
+OrderedJson json(const Intruder& intruder) {
+  OrderedJson object;
   object["id"] = intruder.id;
   object["aircraft"] = intruder.aircraft;
   object["state"] = name(intruder.state);
@@ -52,7 +54,7 @@ Json json(const Intruder& intruder) {
   return object;
 }
 
-Json json(const LensFacts& lens) {
+OrderedJson json(const LensFacts& lens) {
   return {{"model", lens.model},
           {"width", lens.width},
           {"height", lens.height},
@@ -83,7 +85,7 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
   if (const auto found = fault(frame))
     check(false, "truth of frame " + std::to_string(frame.frame) + ": " + *found);
   if (const auto found = fault(lens)) check(false, *found);
-  Json object;
+  OrderedJson object;
   object["frame"] = frame.frame;
   object["time_s"] = frame.time_s;
   object["damaged"] = frame.damaged;
@@ -101,10 +103,10 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
     object["motion"]["rate_radps"] = json(frame.shake.rate_radps);
   if (!frame.shake.frame_from_reference_per_s.isZero(0))
     object["motion"]["frame_from_reference_per_s"] = json(frame.shake.frame_from_reference_per_s);
-  Json intruders = Json::array();
+  OrderedJson intruders = OrderedJson::array();
   for (const Intruder& intruder : frame.intruders) intruders.push_back(json(intruder));
   object["intruders"] = std::move(intruders);
-  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace airtruth::annotation

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kGroundStep = 2;  // pixels between samples
 constexpr int kSkyStep = 3;     // of those
-constexpr double kLowSkyDeg = 2.5;
+constexpr double kLowestSkyDeg = 2.5;
 constexpr std::size_t kFewest = 200;
 
 }  // namespace
@@ -23,6 +23,7 @@ AirMeter::AirMeter(const lens::Lens& lens,
     : lens_(lens), own_aircraft_(own_aircraft), altitude_m_(altitude_m), tone_(tone) {}
 
 void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_world) {
+  views_.push_back({&picture, cam_from_world});
   const image::ColourCode code(picture.colour);
   const Quaternion world_from_cam = cam_from_world.conjugate();
   GroundPatches patches(altitude_m_.value_or(1), 1 / lens_.focal_px());
@@ -44,7 +45,7 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
         continue;
       }
       seen_.push_back(seen);
-      if (elevation_rad > radians(kLowSkyDeg) && ++sky_count_ % 3 == 0) {
+      if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
         const double light =
             0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
         sky_.push_back({direction, light});
@@ -53,7 +54,7 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
   for (const SeenLight& patch : patches.take()) seen_.push_back(patch);
 }
 
-AirMeter::Air AirMeter::air() const {
+AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   Air air;
   const SkyCurves sky = sky_curves(seen_);
   air.airlight = airlight_of(sky, 0);
@@ -63,12 +64,24 @@ AirMeter::Air AirMeter::air() const {
   } else if (!altitude_m_) {
     air.why_no_extinction =
         "without the camera's height above the ground (--altitude) terrain has no range";
+  } else if (const auto again = seen_again(sky, stop)) {
+    air.extinction_per_km = again->extinction_per_km;
+    air.airlight = again->airlight;
   } else if (const auto fading =
                  fading_of_ground(seen_, sky, *altitude_m_, air.why_no_extinction)) {
     air.extinction_per_km = fading->extinction_per_km;
     air.airlight = airlight_of(sky, fading->horizon_rad);
   }
   return air;
+}
+
+std::optional<SeenAgain> AirMeter::seen_again(const SkyCurves& sky,
+                                              const std::stop_token& stop) const {
+  const auto track = track_ground(views_, lens_, own_aircraft_, stop);
+  if (!track) return std::nullopt;
+  const auto airlight = airlight_of(sky, track->horizon_rad);
+  return fading_of_same_ground(
+      ground_seen(views_, *track, lens_, own_aircraft_, tone_), *airlight, *altitude_m_);
 }
 
 std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {

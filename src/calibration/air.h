@@ -2,11 +2,14 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "calibration/calibration.h"
 #include "calibration/extinction.h"
+#include "calibration/ground_track.h"
+#include "calibration/same_ground.h"
 #include "motion/horizon.h"
 
 namespace airtruth::calibration {
@@ -18,16 +21,18 @@ class AirMeter {
            const image::Mask* own_aircraft,
            std::optional<double> altitude_m,
            const image::ToneCurve& tone);
-  // cam_from_world: north-east-down, with the heading that the caller knows.
+  // cam_from_world: north-east-down, with the heading that the caller knows. The picture must
+  // outlive the meter.
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
   struct Air {
-    std::optional<ColourEstimate> airlight;  // the sky at the horizon
-    // Per km (extinction.h). Empty without an altitude, or where it does not show.
+    std::optional<ColourEstimate> airlight;  // at the horizon: of sky, or of what hazes the ground
+    // Per km: from ground that is seen again from nearer (same_ground.h), else from how the darkest
+    // ground fades (extinction.h). Empty without an altitude, or where it does not show.
     std::optional<ColourEstimate> extinction_per_km;
     std::string why, why_no_extinction;  // of what is empty
   };
-  Air air() const;
+  Air air(const std::stop_token& stop = {}) const;
   // The sun's azimuth and elevation, degrees: the direction about which the clear sky (its darkest
   // part at each elevation) is brightest.
   struct Sun {
@@ -36,6 +41,7 @@ class AirMeter {
   std::optional<Sun> sun(std::string& why) const;
 
  private:
+  std::optional<SeenAgain> seen_again(const SkyCurves& sky, const std::stop_token& stop) const;
   struct SkySample {
     Vector3 direction;
     double light;
@@ -44,6 +50,7 @@ class AirMeter {
   const image::Mask* own_aircraft_;
   std::optional<double> altitude_m_;
   image::ToneCurve tone_;
+  std::vector<GroundView> views_;
   std::vector<SeenLight> seen_;
   std::vector<SkySample> sky_;
   std::size_t sky_count_ = 0;

@@ -13,8 +13,8 @@ namespace airtruth::calibration {
 namespace {
 
 constexpr std::size_t kMostFrames = 300;
-constexpr int kWidth = 448;
-constexpr int kHeight = 336;
+constexpr int kCropWidth = 448;
+constexpr int kCropHeight = 336;
 constexpr double kFastPx = 4;        // a frame
 constexpr double kSlowShare = 0.35;  // of the fast one's speed
 constexpr std::size_t kNear = 4;     // frames apart, at most
@@ -90,8 +90,8 @@ void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& mov
   places_.push_back((places_.empty() ? Pixel(0, 0) : places_.back()) + moved.value_or(Pixel(0, 0)));
   known_.push_back(moved.has_value());
   const cv::Mat luma = motion::luma_of(frame);
-  const int width = std::min(kWidth, luma.cols);
-  const int height = std::min(kHeight, luma.rows);
+  const int width = std::min(kCropWidth, luma.cols);
+  const int height = std::min(kCropHeight, luma.rows);
   const int x0 = (luma.cols - width) / 2;
   const int y0 = (luma.rows - height) / 2;
   cv::Mat crop = luma(cv::Rect(x0, y0, width, height)).clone();

@@ -9,6 +9,7 @@
 #include "calibration/blur.h"
 #include "calibration/calibration.h"
 #include "calibration/edges.h"
+#include "calibration/median.h"
 #include "calibration/noise.h"
 #include "calibration/readout.h"
 #include "motion/horizon.h"
@@ -205,7 +206,7 @@ class Session {
       else if (!options_.lens && found[i])
         air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
     }
-    const AirMeter::Air measured = air.air();
+    const AirMeter::Air measured = air.air(options_.stop);
     if (measured.airlight)
       put("air.airlight", {measured.airlight->begin(), measured.airlight->end()});
     else
@@ -221,9 +222,7 @@ class Session {
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double> values;
       for (const Vector3& up : ups) values.push_back(up[axis]);
-      const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), at, values.end());
-      middle[axis] = *at;
+      middle[axis] = median(std::move(values));
     }
     const Quaternion cam_from_heading = motion::cam_from_level(middle.normalized());
     const Quaternion heading(Eigen::AngleAxisd(-radians(options_.heading_deg), Vector3::UnitZ()));

@@ -360,8 +360,8 @@ TEST(Calibrate, MeasuresTheAir) {
     o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
     o.cloud_cover = 0.3;
     o.own_aircraft = false;
-    o.frame_rate_hz = 4;
-    o.frame_count = 160;
+    o.frame_rate_hz = 2;
+    o.frame_count = 80;
     o.speed_mps = 50;
     o.shake_deg = 0.1;
     o.extinction_per_km = extinction_per_km;

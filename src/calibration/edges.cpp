@@ -8,6 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/median.h"
 #include "geometry/transform.h"
 #include "image/colour.h"
 #include "motion/corners.h"
@@ -192,12 +193,6 @@ double moved_across(const Found& line, const Homography& frame_from_before) {
   const Pixel here(line.x + 0.5, line.y + 0.5);
   const Pixel before = apply(frame_from_before.inverse(), here);
   return std::abs((here.x() - before.x()) * line.nx + (here.y() - before.y()) * line.ny);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Edges laid over one another, for the eye.

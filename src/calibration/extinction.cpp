@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "calibration/median.h"
 #include "geometry/transform.h"
 
 namespace airtruth::calibration {
@@ -26,7 +27,7 @@ constexpr std::size_t kFewestInCell = 100;
 constexpr int kFewestCells = 10;
 constexpr double kAirlightTrust = 0.1;  // of its value
 constexpr double kDark = 0.03;          // quantile
-constexpr double kLeastSpread = 0.01;
+constexpr double kLeastDarkSpread = 0.01;
 constexpr double kTiltTrustDeg = 3;
 constexpr double kTiltStepDeg = 0.25;
 constexpr double kWeakest = 0.004;  // per km
@@ -35,12 +36,6 @@ constexpr double kStep = 1.02;
 constexpr int kParts = 3;
 constexpr double kModelError = 0.15;  // of the value: woods are not the same everywhere
 constexpr double kLeastKnown = 0.5;   // of the value: a larger error is no answer
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The darkest ground of one sector at one depression: woods and shadows, which are much alike
 // everywhere, where fields are not.
@@ -85,7 +80,7 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& seen) {
       cell.dark[c] = quantile(all[i].light[c], kDark);
       // What varies most from place to place varies most within a place.
       const double spread = quantile(all[i].light[c], 3 * kDark) - cell.dark[c];
-      cell.weight[c] = 1 / (spread * spread + kLeastSpread * kLeastSpread);
+      cell.weight[c] = 1 / (spread * spread + kLeastDarkSpread * kLeastDarkSpread);
     }
     cells.push_back(cell);
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "calibration/median.h"
 #include "composite/sensor.h"
 #include "composite/spread.h"
 #include "image/colour.h"
@@ -131,15 +132,13 @@ std::vector<NoisePoint> NoiseMeter::points() const {
     variances[static_cast<std::size_t>(block.luma * kBins)].push_back(block.variance);
   std::vector<NoisePoint> points;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
-    std::vector<double>& v = variances[bin];
+    const std::vector<double>& v = variances[bin];
     if (v.empty()) continue;
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
     // The median of a chi-square with so many degrees lies a little below its mean (Wilson and
     // Hilferty 1931).
     constexpr double kDegrees = kSide * kSide - 3;
     const double down = std::pow(1 - 2 / (9 * kDegrees), 3);
-    const double variance = std::max(0.0, *middle / down - kRounding);
+    const double variance = std::max(0.0, median(v) / down - kRounding);
     points.push_back(
         {(double(bin) + 0.5) / kBins, std::sqrt(variance), static_cast<int>(v.size())});
   }

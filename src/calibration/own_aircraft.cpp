@@ -16,8 +16,8 @@ namespace airtruth::calibration {
 namespace {
 
 constexpr int kLongSide = 640;  // pixels that it is worked on
-constexpr std::size_t kMostFrames = 48;
-constexpr std::size_t kFewestFrames = 6;
+constexpr std::size_t kMostKept = 48;
+constexpr std::size_t kFewestKept = 6;
 constexpr double kLeastMotionPx = 2;  // at the working size, between frames that are compared
 constexpr float kBlack = 10;          // code values
 
@@ -79,13 +79,13 @@ std::vector<Kept> keep_frames(video::Reader& reader,
   const video::StreamInfo& info = reader.info();
   motion::Estimator estimator(info.width, info.height, {});
   const std::int64_t every =
-      std::max<std::int64_t>(1, info.frame_count_estimate / static_cast<std::int64_t>(kMostFrames));
+      std::max<std::int64_t>(1, info.frame_count_estimate / static_cast<std::int64_t>(kMostKept));
   std::vector<Kept> kept;
   while (const auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
     const auto motion = estimator.next(frame->picture, frame->time_s, frame->damaged);
     if (options.progress) options.progress(frame->index + 1, info.frame_count_estimate);
-    if (frame->index % every != 0 || frame->damaged || kept.size() >= 2 * kMostFrames) continue;
+    if (frame->index % every != 0 || frame->damaged || kept.size() >= 2 * kMostKept) continue;
     image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
     const cv::Mat whole(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
     sums.add(whole);
@@ -268,9 +268,9 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
   const double scale = std::min(1.0, double(kLongSide) / std::max(width, height));
   Sums sums;
   const std::vector<Kept> kept = keep_frames(reader, options, scale, sums);
-  if (kept.size() < kFewestFrames)
+  if (kept.size() < kFewestKept)
     throw Error("is too short to tell the own aircraft from the world; expected " +
-                    std::to_string(kFewestFrames) + " frames or more",
+                    std::to_string(kFewestKept) + " frames or more",
                 {video.string()});
   const Evidence e = gather(kept, scale);
   if (e.pairs < 3)

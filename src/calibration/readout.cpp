@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calibration/blur.h"
+#include "calibration/median.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -22,19 +23,19 @@ double slow_part(const std::vector<double>& values, std::size_t k) {
   return sum / 256;
 }
 
-struct Step {
+struct Move {
   Pixel moved;     // of the centre
   double shear;    // what a turn does not explain
   double stretch;  // what a zoom does not explain
 };
 
-std::optional<Step> step_of(const std::optional<Homography>& h, const Pixel& centre) {
+std::optional<Move> move_of(const std::optional<Homography>& h, const Pixel& centre) {
   if (!h) return std::nullopt;
   const double d = centre.norm() / 8;
   const Pixel middle = apply(*h, centre);
   const Pixel right = (apply(*h, centre + Pixel(d, 0)) - apply(*h, centre - Pixel(d, 0))) / (2 * d);
   const Pixel down = (apply(*h, centre + Pixel(0, d)) - apply(*h, centre - Pixel(0, d))) / (2 * d);
-  return Step{middle - centre, down.x() + right.y(), down.y() - right.x()};
+  return Move{middle - centre, down.x() + right.y(), down.y() - right.x()};
 }
 
 }  // namespace
@@ -49,12 +50,12 @@ std::optional<Estimate> readout_share(const std::vector<std::optional<Homography
   std::array<std::vector<double>, 2> changes, bends;
   std::vector<Pixel> places;  // of the centre, added up; bridged steps keep still
   for (const auto& step : steps) {
-    const auto here = step_of(step, centre);
+    const auto here = move_of(step, centre);
     const Pixel moved = here ? here->moved : Pixel(0, 0);
     places.push_back(places.empty() ? moved : Pixel(places.back() + moved));
   }
   for (std::size_t k = 1; k < steps.size(); ++k) {
-    const auto here = step_of(steps[k], centre);
+    const auto here = move_of(steps[k], centre);
     const auto before = rate_at(places, k - 1);
     const auto now = rate_at(places, k);
     const bool known = here && before && now;
@@ -89,9 +90,7 @@ std::optional<Estimate> readout_share(const std::vector<std::optional<Homography
     if (!(sxx > 0)) break;
     slope = sxy / sxx;
     error = std::sqrt(rest / n / sxx);
-    std::nth_element(
-        off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
-    scale = std::max(3 * off[off.size() / 2], 1e-6);
+    scale = std::max(3 * median(std::move(off)), 1e-6);
   }
   if (!(error > 0) || error > 0.15) {
     why = "the picture's speed changes too little from frame to frame";

@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/NumericalDiff>
 
 #include "base/error.h"
+#include "calibration/median.h"
 #include "geometry/transform.h"
 #include "image/tone_curve.h"
 
@@ -177,10 +178,14 @@ Eigen::VectorXd fitted(Misfit& misfit, Eigen::VectorXd x) {
   return x;
 }
 
-double cost(const Misfit& misfit, const Eigen::VectorXd& x) {
+Eigen::VectorXd residuals_at(const Misfit& misfit, const Eigen::VectorXd& x) {
   Eigen::VectorXd residuals(misfit.values());
   misfit(x, residuals);
-  return residuals.squaredNorm();
+  return residuals;
+}
+
+double cost(const Misfit& misfit, const Eigen::VectorXd& x) {
+  return residuals_at(misfit, x).squaredNorm();
 }
 
 // Of several beginnings' ends the best: a narrow strong mask looks much like a wide weak one.
@@ -192,14 +197,10 @@ Eigen::VectorXd best_fit(Misfit& misfit) {
       const auto x = fitted(misfit, Misfit::unknowns({spread, 0.4, radius}));
       if (const double c = cost(misfit, x); c < least) least = c, best = x;
     }
-  Eigen::VectorXd residuals(misfit.values());
-  misfit(best, residuals);
   std::vector<double> sizes;
-  for (const double r : residuals) sizes.push_back(std::abs(r));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
+  for (const double r : residuals_at(misfit, best)) sizes.push_back(std::abs(r));
   constexpr double kSigmaFromMedian = 1.4826;
-  misfit.set_limit(std::max(1e-4, 2.5 * kSigmaFromMedian * *middle));
+  misfit.set_limit(std::max(1e-4, 2.5 * kSigmaFromMedian * median(std::move(sizes))));
   return fitted(misfit, best);
 }
 
@@ -208,8 +209,7 @@ Eigen::Matrix3d covariance_of(const std::vector<const StepEdge*>& edges,
                               const Misfit& misfit,
                               const Eigen::VectorXd& x,
                               double wrong) {
-  Eigen::VectorXd residuals(misfit.values());
-  misfit(x, residuals);
+  const Eigen::VectorXd residuals = residuals_at(misfit, x);
   Eigen::MatrixXd slopes(misfit.values(), 3);
   Eigen::NumericalDiff<Misfit>(misfit, kStep).df(x, slopes);
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -237,8 +237,7 @@ double common_misfit(const std::vector<const StepEdge*>& edges,
     double n = 0, sum = 0, squares = 0;
   };
   std::array<Bin, kBins> bins{};
-  Eigen::VectorXd residuals(misfit.values());
-  misfit(x, residuals);
+  const Eigen::VectorXd residuals = residuals_at(misfit, x);
   Eigen::Index i = 0;
   for (const StepEdge* edge : edges)
     for (const auto& sample : edge->samples) {

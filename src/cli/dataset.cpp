@@ -14,7 +14,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct DatasetArguments {
   std::string catalogue;
   std::string folder;
   std::vector<std::string> backgrounds;  // NAME=VIDEO
@@ -45,7 +45,7 @@ std::string time_of(double seconds) {
                        : fmt::format("{} days", (s + 43200) / 86400);
 }
 
-void build(Arguments arguments, Context& context) {
+void build(DatasetArguments arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   Console& console = context.console();
   dataset::BuildOptions& options = arguments.build;
@@ -76,7 +76,7 @@ constexpr double kBytesPerFrame = 15'000;
 constexpr double kBytesPerSequence = 580'000;  // preview.jpg
 
 // Frames and bytes in round numbers: what a sequence costs is known only once it is made.
-void plan(const Arguments& arguments, Context& context) {
+void plan(const DatasetArguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   dataset::check_sources(catalogue, {});
   const dataset::Expansion expansion(catalogue);
@@ -121,7 +121,7 @@ void plan(const Arguments& arguments, Context& context) {
                                  : fmt::format("{:.1f} TB", bytes / 1e12)));
 }
 
-void status(const Arguments& arguments, Context& context) {
+void status(const DatasetArguments& arguments, Context& context) {
   const dataset::Status status = dataset::status(arguments.folder);
   Console& console = context.console();
   console.result(fmt::format("{}: {} of {} sequences are there{}{}{}",
@@ -134,7 +134,7 @@ void status(const Arguments& arguments, Context& context) {
   for (const std::string& name : status.missing) console.result("  missing: " + name);
 }
 
-void submit(Arguments arguments, Context& context) {
+void submit(DatasetArguments arguments, Context& context) {
   if (!arguments.on_slurm) throw Error("no engine is named; expected --slurm");
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   dataset::SlurmOptions& options = arguments.slurm;
@@ -149,7 +149,7 @@ void submit(Arguments arguments, Context& context) {
                              submitted.verify_job);
 }
 
-void verify(const Arguments& arguments, Context& context) {
+void verify(const DatasetArguments& arguments, Context& context) {
   Console& console = context.console();
   if (arguments.finish && !dataset::finish(arguments.folder))
     console.warning("sequences are missing; no manifest is written");
@@ -174,7 +174,7 @@ void verify(const Arguments& arguments, Context& context) {
   if (!result.faults.empty()) context.exit_code = 1;
 }
 
-void add_build_options(CLI::App& command, Arguments& arguments) {
+void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command.add_option("CATALOGUE", arguments.catalogue, "Catalogue file (.toml); see catalogues/")
       ->required();
   command
@@ -195,7 +195,7 @@ void add_build_options(CLI::App& command, Arguments& arguments) {
 void add_dataset(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("dataset", "Make, look after and check whole data sets");
   group->require_subcommand(1);
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DatasetArguments>();
   auto* build_command =
       group->add_subcommand("build", "Make every sequence of a catalogue that is not there yet");
   add_build_options(*build_command, *arguments);

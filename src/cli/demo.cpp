@@ -15,13 +15,13 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct DemoArguments {
   std::string out = "demo";
   bool overwrite = false;
   sequence::DemoOptions demo;
 };
 
-void demo(Arguments arguments, Context& context) {
+void demo(DemoArguments arguments, Context& context) {
   Console& console = context.console();
   arguments.demo.overwrite = arguments.overwrite;
   arguments.demo.stop = context.stop;
@@ -42,7 +42,7 @@ void demo(Arguments arguments, Context& context) {
 void add_demo(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "demo", "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DemoArguments>();
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
   command->add_option("--frames", arguments->demo.frame_count, "Length")

@@ -10,7 +10,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct EvisionArguments {
   std::string folder;
   std::string frames;
   bool level = false;
@@ -55,7 +55,7 @@ std::string csv_line(const sequence::EvisionFramePair& pair) {
       "{},{},{},{},{},{},{}\n", pair.sequence, pair.frame, ours, p.x, p.y, p.width, p.height);
 }
 
-void evision(Arguments arguments, Context& context) {
+void evision(EvisionArguments arguments, Context& context) {
   Console& console = context.console();
   arguments.options.bank = !arguments.level;
   arguments.options.recover_motion = !arguments.still;
@@ -97,7 +97,7 @@ void evision(Arguments arguments, Context& context) {
 void add_evision(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "evision", "Compare the published E-Vision annotations with boxes of our own");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EvisionArguments>();
   sequence::EvisionOptions& options = arguments->options;
   command->add_option("DIR", arguments->folder, "Folder with groundtruth/*.xml and positions/*.csv")
       ->required();

@@ -13,7 +13,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct EstimateArguments {
   std::string video;
   std::string mask;
   std::string out;
@@ -39,7 +39,7 @@ std::string calibration_text(const motion::LensEstimator::Result& found, int wid
       height / 2.0 - 0.5);
 }
 
-void estimate(const Arguments& arguments, Context& context) {
+void estimate(const EstimateArguments& arguments, Context& context) {
   refuse_existing(arguments.out, arguments.overwrite);
   Console& console = context.console();
   video::Reader reader(arguments.video, {}, console.warn());
@@ -77,7 +77,7 @@ void add_lens(CLI::App& app, Context& context) {
   auto* command = group->add_subcommand(
       "estimate",
       "Tell a camera's lens from a video in which it turns, where no calibration is at hand");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EstimateArguments>();
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");

@@ -19,7 +19,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct MotionArguments {
   std::string video;
   std::string out;
   std::string mask;
@@ -33,7 +33,7 @@ struct Arguments {
 };
 
 // The lens that the model rotation needs; empty for homography.
-std::optional<lens::Lens> lens_of(const Arguments& arguments, const lens::ImageSize& size) {
+std::optional<lens::Lens> lens_of(const MotionArguments& arguments, const lens::ImageSize& size) {
   if (arguments.model == "homography") {
     if (!arguments.lens.empty())
       throw Error("--lens is for --model rotation; a homography knows no lens");
@@ -43,7 +43,7 @@ std::optional<lens::Lens> lens_of(const Arguments& arguments, const lens::ImageS
   return lens::read_calibration(arguments.lens, size);
 }
 
-void stabilise(const Arguments& arguments,
+void stabilise(const MotionArguments& arguments,
                const std::vector<motion::FrameMotion>& all,
                const std::optional<lens::Lens>& lens,
                Context& context) {
@@ -66,7 +66,7 @@ void stabilise(const Arguments& arguments,
   writer.finish();
 }
 
-void measure(const Arguments& arguments, Context& context) {
+void measure(const MotionArguments& arguments, Context& context) {
   for (const std::string& file : {arguments.out, arguments.plot, arguments.stabilised})
     refuse_existing(file, arguments.overwrite);
   Console& console = context.console();
@@ -111,7 +111,7 @@ void measure(const Arguments& arguments, Context& context) {
 
 void add_motion(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand("motion", "Measure how a video's camera moved");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MotionArguments>();
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command
       ->add_option(

@@ -12,7 +12,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct RenderArguments {
   std::string scene;
   std::string out = ".";
   bool overwrite = false;
@@ -22,7 +22,7 @@ struct Arguments {
   std::string gpu;
 };
 
-sequence::Options options_from(const Arguments& arguments, Context& context) {
+sequence::Options options_from(const RenderArguments& arguments, Context& context) {
   sequence::Options options;
   options.overwrite = arguments.overwrite;
   options.threads = arguments.threads;
@@ -57,7 +57,7 @@ std::string stages(const sequence::Summary& summary) {
       s.write * per_frame);
 }
 
-void render(const Arguments& arguments, Context& context) {
+void render(const RenderArguments& arguments, Context& context) {
   const scene::Scene scene = scene::read_scene(arguments.scene);
   const sequence::Summary summary =
       sequence::render(scene, arguments.out, options_from(arguments, context));
@@ -76,7 +76,7 @@ void render(const Arguments& arguments, Context& context) {
 void add_render(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "render", "Put the scene's intruders into its video, with the truth of every frame");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   command
       ->add_option(
           "SCENE", arguments->scene, "Scene file (.toml); examples/render.toml shows every key")

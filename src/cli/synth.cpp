@@ -14,7 +14,7 @@
 namespace airtruth::cli {
 namespace {
 
-struct Arguments {
+struct SynthArguments {
   std::string out;
   std::string truth;
   std::string mask;
@@ -27,7 +27,7 @@ struct Arguments {
   synthetic::FlightOptions flight;
 };
 
-void synth(Arguments arguments, Context& context) {
+void synth(SynthArguments arguments, Context& context) {
   for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
     refuse_existing(file, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
@@ -62,7 +62,7 @@ void synth(Arguments arguments, Context& context) {
 void add_synth(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "synth", "Make a virtual flight: onboard video of a world that is known exactly");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SynthArguments>();
   synthetic::FlightOptions& flight = arguments->flight;
   command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")
       ->required();
@@ -93,7 +93,7 @@ void add_synth(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.0, 400.0))
       ->capture_default_str();
   command->add_option("--altitude", flight.altitude_m, "Metres above the ground")
-      ->check(CLI::Range(20.0, 5000.0))
+      ->check(CLI::Range(20.0, 900.0))
       ->capture_default_str();
   command->add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
       ->capture_default_str();
@@ -107,10 +107,10 @@ void add_synth(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--shake", flight.shake_deg, "Vibration, degrees rms")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
   command->add_option("--noise", flight.noise, "Sensor noise; 1 is a cheap camera's")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(CLI::Range(0.0, 20.0))
       ->capture_default_str();
   command
       ->add_option(

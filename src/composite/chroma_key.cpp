@@ -67,7 +67,7 @@ std::vector<unsigned char> replaced_pixels(const cv::Mat3b& d, const ChromaKeyOp
   return replaced;
 }
 
-std::uint8_t code(float value) {
+std::uint8_t sample_of(float value) {
   return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
 }
 
@@ -81,7 +81,7 @@ class PlaneWriter {
   void write() {
     for (int y = 0; y < frame_.height; ++y) {
       for (int x = 0; x < frame_.width; ++x)
-        if (is_replaced(x, y)) frame_.planes[0].row(y)[x] = code(ycc(x, y).y);
+        if (is_replaced(x, y)) frame_.planes[0].row(y)[x] = sample_of(ycc(x, y).y);
     }
     if (frame_.plane_count == 1) return;
     for (int cy = 0; cy < frame_.planes[1].height; ++cy) {
@@ -123,8 +123,8 @@ class PlaneWriter {
       }
     }
     if (!any) return;
-    cb_sample = code(cb / static_cast<float>(pixels));
-    cr_sample = code(cr / static_cast<float>(pixels));
+    cb_sample = sample_of(cb / static_cast<float>(pixels));
+    cr_sample = sample_of(cr / static_cast<float>(pixels));
   }
 
   image::Picture& frame_;

@@ -15,7 +15,7 @@ namespace airtruth::composite {
 // value.
 class TransferCurve {
  public:
-  explicit TransferCurve(const image::ToneCurve& tone = {});
+  explicit TransferCurve(const image::ToneCurve& tone);
   float linear_from_coded(float coded) const { return odd(decode_, coded); }
   float coded_from_linear(float linear) const {
     return odd(std::abs(linear) <= 1 ? encode_ : encode_bright_, linear);

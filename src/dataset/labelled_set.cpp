@@ -17,8 +17,6 @@
 namespace airtruth::dataset {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kLabels = "labels.jsonl";
 constexpr double kEarthRadiusM = 6'371'000;
 
@@ -128,7 +126,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
   const fs::path file = folder(name) / "sequence.json";
   std::set<std::string> categories;
   try {
-    const Json record = Json::parse(read_file(file));
+    const nlohmann::json record = nlohmann::json::parse(read_file(file));
     if (record.contains("scene_toml")) {
       const scene::Scene scene =
           scene::parse_scene(record.at("scene_toml").get<std::string>(), file);
@@ -139,9 +137,9 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     } else {
       facts.background = record.value("media", name);
       facts.frames = record.at("frames").get<std::int64_t>();
-      for (const Json& category : record.at("categories")) categories.insert(category);
+      for (const nlohmann::json& category : record.at("categories")) categories.insert(category);
     }
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     throw Error("is not a record that airtruth wrote", {file.string()});
   }
   facts.categories = {categories.begin(), categories.end()};

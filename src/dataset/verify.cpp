@@ -16,8 +16,6 @@
 namespace airtruth::dataset {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::size_t kMostNamed = 100;
 
 Catalogue catalogue_of(const Folder& folder) {
@@ -46,11 +44,11 @@ class Check {
     ++result_.sequences;
     if (!folder_.holds(item.name)) return fault("is not there");
     try {
-      files(Json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
+      files(nlohmann::json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
       const sequence::Finished finished = sequence::open_finished(folder_.sequence(item.name));
       truth(finished);
       if (options_.deep_every > 0) deep(finished);
-    } catch (const Json::exception&) {
+    } catch (const nlohmann::json::exception&) {
       fault("sequence.json is not a record that airtruth wrote");
     } catch (const Error& error) {
       fault(error.what());
@@ -60,9 +58,9 @@ class Check {
  private:
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
 
-  void files(const Json& record) {
+  void files(const nlohmann::json& record) {
     std::set<std::string> known = {"sequence.json"};
-    for (const Json& output : record.at("outputs")) {
+    for (const nlohmann::json& output : record.at("outputs")) {
       const std::string name = output.at("name");
       known.insert(name);
       const fs::path file = folder_.sequence(name_) / name;
@@ -138,15 +136,15 @@ void check_manifest(const Folder& folder, VerifyResult& result) {
     return;
   }
   try {
-    const Json record = Json::parse(read_file(folder.record()));
+    const nlohmann::json record = nlohmann::json::parse(read_file(folder.record()));
     if (record.at("catalogue_sha256") != sha256_of_file(folder.catalogue()))
       result.faults.emplace_back("dataset.json was written for another catalogue");
-    for (const Json& file : record.at("manifest")) {
+    for (const nlohmann::json& file : record.at("manifest")) {
       const fs::path path = folder.root / file.at("name").get<std::string>();
       if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
         result.faults.push_back(path.filename().string() + " is not as it was written");
     }
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     result.faults.emplace_back("dataset.json is not a record that airtruth wrote");
   }
 }

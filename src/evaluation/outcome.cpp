@@ -6,13 +6,6 @@
 #include <limits>
 
 namespace airtruth::evaluation {
-namespace {
-
-constexpr int kGrace = 10;
-constexpr double kLostOverlap = 0.1;
-
-}  // namespace
-
 std::vector<Outcome> outcomes(std::span<const FramePair> frames, const lens::Lens* lens) {
   std::vector<Outcome> result;
   std::optional<Box> last;

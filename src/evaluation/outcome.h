@@ -26,6 +26,9 @@ struct Outcome {
 // The first pair's truth stands for its answer.
 std::vector<Outcome> outcomes(std::span<const FramePair> frames, const lens::Lens* lens);
 
+constexpr int kGrace = 10;
+constexpr double kLostOverlap = 0.1;
+
 // The frame from which a tracker has lost its object: the first of 10 with the target, one after
 // another, whose overlap is at most 0.1 (Kristan et al. 2020, "The eighth visual object tracking
 // VOT2020 challenge results", section 3.2); or of fewer where the sequence ends within them.

@@ -6,14 +6,13 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "evaluation/outcome.h"
 
 namespace airtruth::evaluation {
 namespace {
 
 constexpr std::size_t kBurnIn = 10;
 constexpr double kSensitivity = 30;
-constexpr int kGrace = 10;
-constexpr double kLostOverlap = 0.1;
 
 double rounded(double value) { return std::nearbyint(value); }
 

@@ -50,7 +50,7 @@ std::string hex(const Colour& c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0
 Colour colour_of(std::size_t tracker) { return kColours[tracker % kColours.size()]; }
 
 // In gnuplot's plain quotes, which know nothing but themselves; line ends would end the command.
-std::string quoted(const std::string& text) {
+std::string plot_quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
     if (c == '\'') result += '\'';
@@ -74,7 +74,7 @@ class Plot {
                                                 : fmt::format("{:.1f}", height);
     head_ =
         "set terminal " + fmt::format(fmt::runtime(terminals().at(format_)), size) +
-        " noenhanced\nset output " + quoted((name_ + "." + format_)) +
+        " noenhanced\nset output " + plot_quoted((name_ + "." + format_)) +
         "\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\n"
         // One column, beside the plot however many trackers there are.
         "set key at screen 0.99, screen 0.98 right top vertical maxrows 60 samplen 2 spacing 0.9\n"
@@ -102,8 +102,8 @@ class Plot {
     if (run == nullptr) throw Error("cannot start gnuplot");
     std::fprintf(run,
                  "cd %s\nload %s\n",
-                 quoted(folder_.string()).c_str(),
-                 quoted(script.filename().string()).c_str());
+                 plot_quoted(folder_.string()).c_str(),
+                 plot_quoted(script.filename().string()).c_str());
     const int status = ::pclose(run);
     if (status != 0)
       throw Error(fmt::format("gnuplot failed (status {}) on it", WEXITSTATUS(status)),
@@ -130,7 +130,7 @@ std::string lines_style(const std::string& block,
                      width,
                      dash,
                      hex(colour),
-                     quoted(title));
+                     plot_quoted(title));
 }
 
 class Figures {
@@ -175,7 +175,8 @@ class Figures {
       parts.push_back(lines_style(plot.data(lines), tracker.name, colour_of(k)));
     }
     if (parts.empty()) return;
-    plot.command("set yrange [0:1]\nset xlabel " + quoted(x) + "\nset ylabel 'share of frames'");
+    plot.command("set yrange [0:1]\nset xlabel " + plot_quoted(x) +
+                 "\nset ylabel 'share of frames'");
     plot.plot(parts);
     plot.write();
   }
@@ -213,7 +214,7 @@ class Figures {
       const double auc = tracker.overall->auc;
       const auto interval = tracker.intervals.at("auc").value_or(evaluation::Interval{auc, auc});
       lines += fmt::format("{:.6g} {} {:.6g} {:.6g}\n", auc, -count, interval.low, interval.high);
-      names += fmt::format("{}{} {}", count > 0 ? ", " : "", quoted(tracker.name), -count);
+      names += fmt::format("{}{} {}", count > 0 ? ", " : "", plot_quoted(tracker.name), -count);
       ++count;
     }
     if (count == 0) return;
@@ -245,10 +246,10 @@ class Figures {
       parts.push_back(fmt::format("{} using 1:2 with linespoints pt 7 ps 0.6 lc rgb '{}' title {}",
                                   plot.data(lines),
                                   hex(colour_of(k)),
-                                  quoted(tracker.name)));
+                                  plot_quoted(tracker.name)));
     }
     if (parts.empty()) return;
-    plot.command("set yrange [0:*]\nset xlabel " + quoted(x) + "\nset ylabel 'mean overlap'");
+    plot.command("set yrange [0:*]\nset xlabel " + plot_quoted(x) + "\nset ylabel 'mean overlap'");
     plot.plot(parts);
     plot.write();
   }

@@ -83,7 +83,7 @@ Json breakdown_of(const ScoredTracker& tracker) {
 }
 
 // RFC 4180.
-std::string quoted(const std::string& text) {
+std::string csv_quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
@@ -127,7 +127,7 @@ std::string trackers_csv(const Assessment& assessment) {
     text += fmt::format(",{0}_low_95,{0}_high_95", measure.name);
   text += std::string(kVotHead) + ",sequences_lost\n";
   for (const ScoredTracker& tracker : assessment.trackers) {
-    text += quoted(tracker.name) + score_cells(tracker.overall, tracker.angle_mrad);
+    text += csv_quoted(tracker.name) + score_cells(tracker.overall, tracker.angle_mrad);
     for (const Measure& measure : measures()) {
       const auto found = tracker.intervals.find(measure.name);
       const bool known = found != tracker.intervals.end() && found->second;
@@ -144,7 +144,7 @@ std::string sequences_csv(const Assessment& assessment) {
                      ",first_loss_frame,first_loss_s,first_loss_range_m\n";
   for (const ScoredTracker& tracker : assessment.trackers)
     for (const ScoredSequence& sequence : tracker.sequences) {
-      text += quoted(tracker.name) + "," + quoted(sequence.name) +
+      text += csv_quoted(tracker.name) + "," + csv_quoted(sequence.name) +
               score_cells(sequence.score, evaluation::mean_of(sequence.outcomes).angle_mrad) +
               vot_cells(sequence.restart, sequence.multistart);
       text += sequence.loss ? fmt::format(",{}", sequence.loss->frame) +
@@ -163,7 +163,7 @@ std::string breakdown_csv(const Assessment& assessment) {
                         const std::string& by,
                         const std::string& bounds,
                         const Bin& bin) {
-    text += quoted(tracker.name) + "," + by + bounds + fmt::format(",{}", bin.frames) +
+    text += csv_quoted(tracker.name) + "," + by + bounds + fmt::format(",{}", bin.frames) +
             cell(bin.overlap) + cell(bin.success_50) + cell(bin.precision_20px) +
             cell(bin.centre_px) + cell(bin.normalised) + cell(bin.angle_mrad) + "\n";
   };
@@ -171,7 +171,7 @@ std::string breakdown_csv(const Assessment& assessment) {
     for (const auto& [key, bins] : tracker.bins)
       for (const Bin& bin : bins) line(tracker, key, cell(bin.from) + cell(bin.to), bin);
     for (const auto& [name, bin] : tracker.backgrounds)
-      line(tracker, "background", "," + quoted(name) + ",", bin);
+      line(tracker, "background", "," + csv_quoted(name) + ",", bin);
   }
   return text;
 }

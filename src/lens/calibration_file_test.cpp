@@ -12,9 +12,9 @@
 namespace airtruth::lens {
 namespace {
 
-const ImageSize kSize{1280, 960};
+const ImageSize kProfileSize{1280, 960};
 
-std::string error_of(std::string_view text, const char* name, ImageSize size = kSize) {
+std::string error_of(std::string_view text, const char* name, ImageSize size = kProfileSize) {
   try {
     parse_calibration(text, name, size);
   } catch (const Error& error) {
@@ -30,7 +30,7 @@ std::string profile(const std::string& extra = "") {
 }
 
 TEST(Gyroflow, BecomesAFisheyeInOurPixels) {
-  const Lens lens = parse_calibration(profile(), "a.json", kSize);
+  const Lens lens = parse_calibration(profile(), "a.json", kProfileSize);
   const auto& fisheye = std::get<Fisheye>(lens.model());
   EXPECT_EQ(fisheye.focal_px, Pixel(560, 561));
   EXPECT_EQ(fisheye.principal_point_px, Pixel(640, 480));
@@ -63,14 +63,14 @@ TEST(Gyroflow, NamesTheFieldItCannotHonour) {
 TEST(Gyroflow, EndsAtItsStatedRadius) {
   std::string text = profile();
   text.replace(text.find("\"distortion_coeffs\""), 0, "\"radial_distortion_limit\": 1.0, ");
-  EXPECT_NEAR(parse_calibration(text, "a.JSON", kSize).max_angle_rad(), radians(45), 1e-12);
+  EXPECT_NEAR(parse_calibration(text, "a.JSON", kProfileSize).max_angle_rad(), radians(45), 1e-12);
 }
 
 TEST(Gyroflow, ReadsARealProfile) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   const Lens lens = read_calibration(
-      std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kSize);
+      std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kProfileSize);
   EXPECT_STREQ(lens.name(), "fisheye");
   EXPECT_NEAR(lens.horizontal_fov_deg(), 120, 5);  // what its note of origin says
 }
@@ -83,7 +83,7 @@ TEST(OpenCv, ReadsWhatFileStorageWrites) {
     cv::FileStorage storage(name, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     storage << "image_width" << 1280 << "image_height" << 960 << "camera_matrix" << matrix
             << "distortion_coefficients" << distortion;
-    const Lens lens = parse_calibration(storage.releaseAndGetString(), name, kSize);
+    const Lens lens = parse_calibration(storage.releaseAndGetString(), name, kProfileSize);
     const auto& model = std::get<BrownConrady>(lens.model());
     EXPECT_EQ(model.focal_px, Pixel(900.25, 905)) << name;
     EXPECT_EQ(model.principal_point_px, Pixel(640, 480)) << name;
@@ -99,14 +99,14 @@ TEST(OpenCv, FisheyeWhereTheFileSaysSo) {
       "       0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   "
       "dt: d\n"
       "   data: [ 0.06, 0.01, -0.01, 0.004 ]\n";
-  EXPECT_STREQ(parse_calibration(text, "a.yml", kSize).name(), "fisheye");
+  EXPECT_STREQ(parse_calibration(text, "a.yml", kProfileSize).name(), "fisheye");
 }
 
 TEST(OpenCv, ReadsAMatrixOfRowsOverSeveralLines) {
   const Lens lens = parse_calibration(
       "K: [[900, 0, 639.5],\n    [0, 905, 479.5],\n    [0, 0, 1]]\nD: [0, 0, 0, 0]\n",
       "a.yml",
-      kSize);
+      kProfileSize);
   EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
 }
 

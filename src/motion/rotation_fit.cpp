@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kTrials = 300;
 constexpr int kRefinements = 12;
-constexpr double kMinInlierShare = 0.15;
+constexpr double kMinTurnShare = 0.15;
 constexpr double kMinSpreadRad = 0.02;  // of the inliers about their own middle, rms
 constexpr double kShortestBaseRad = 0.05;
 
@@ -87,7 +87,7 @@ std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
     const int count = count_within(bearings, r, limit_rad);
     if (count > most) most = count, best = r;
   }
-  if (most < min_inliers || most < kMinInlierShare * static_cast<double>(n)) return std::nullopt;
+  if (most < min_inliers || most < kMinTurnShare * static_cast<double>(n)) return std::nullopt;
 
   RotationFit fit;
   fit.cam_from_reference = Quaternion(best);

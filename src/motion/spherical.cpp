@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostKeys = 5;
 constexpr std::size_t kFromOlderKey = 110;  // corners of a key frame that is not the newest
 constexpr std::size_t kStepCorners = 150;   // from the frame before, for the first guess
-constexpr double kMinKeptShare = 0.4;       // of the newest key frame's far points
+constexpr double kMinProvenShare = 0.4;     // of the newest key frame's far points
 constexpr double kLargestTurnRad = 0.2;  // from a key frame: beyond it its patches look different
 constexpr int kMostMisses = 3;           // in a row, before a corner is let go
 constexpr int kSweeps = 4;               // of the sliding window
@@ -173,7 +173,7 @@ class Spherical : public Follower {
     Key& last = keys_.back();
     if (last.proven == 0) last.proven = newest;
     const bool far = now_from_reference_.angularDistance(last.cam_from_reference) > kLargestTurnRad;
-    if (far || static_cast<double>(newest) < kMinKeptShare * static_cast<double>(last.proven)) {
+    if (far || static_cast<double>(newest) < kMinProvenShare * static_cast<double>(last.proven)) {
       make_key(grey, now, links_of(sightings, fit));
       stray_rad_ = fit.rms_rad / std::sqrt(double(fit.inliers));
       motion.rotation = now_from_reference_ = keys_.back().cam_from_reference;

@@ -239,11 +239,11 @@ Scene scene_of(const Setting& setting,
   return scene;
 }
 
-// Every pixel of the patch: alpha, the box of what is seen, the centroid.
-void compare_all(const Setting& setting,
-                 const aircraft::Mesh& mesh,
-                 const Model& model,
-                 double size_px) {
+// Every pixel of the patch: the box of what is seen and the centroid; the worst alpha is returned.
+double compare_all(const Setting& setting,
+                   const aircraft::Mesh& mesh,
+                   const Model& model,
+                   double size_px) {
   const std::string where = fmt::format("{} at {} px", setting.name, size_px);
   const Scene scene = scene_of(setting, mesh, model, size_px);
   const image::Layer layer = render(scene.view, {}, {scene.instance}, {scene.search});
@@ -269,9 +269,9 @@ void compare_all(const Setting& setting,
     }
   const double off = (centroid / sum - oracle_centroid / oracle_sum).norm();
   std::printf("%s: alpha within %.4f, centroid within %.4f px\n", where.c_str(), worst, off);
-  EXPECT_LE(worst, 1.0 / 64) << where;
   EXPECT_LT(off, 0.05) << where;
-  ASSERT_TRUE(box && oracle_box && surely && perhaps) << where;
+  EXPECT_TRUE(box && oracle_box && surely && perhaps) << where;
+  if (!box || !oracle_box || !surely || !perhaps) return worst;
   EXPECT_EQ(bounds(*box, *surely), *box) << where;
   EXPECT_EQ(bounds(*box, *perhaps), *perhaps) << where;
   // The other road to the box.
@@ -284,6 +284,7 @@ void compare_all(const Setting& setting,
   EXPECT_LE(frame(scene.exact->right(), scene.view.width), oracle_box->right() + 1.05) << where;
   EXPECT_GE(frame(scene.exact->bottom(), scene.view.height), oracle_box->bottom() - 1) << where;
   EXPECT_LE(frame(scene.exact->bottom(), scene.view.height), oracle_box->bottom() + 1.05) << where;
+  return worst;
 }
 
 TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
@@ -291,10 +292,12 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
   const Model model(mesh);
   const std::vector<Setting> all = settings();
   for (const Setting& setting : all) {
-    for (const double size_px : {5.0, 20.0, 60.0}) compare_all(setting, mesh, model, size_px);
+    for (const double size_px : {5.0, 20.0, 60.0})
+      EXPECT_LT(compare_all(setting, mesh, model, size_px), 1.0 / 64) << setting.name;
     // Takes long: once through every lens, with blur and rolling shutter.
-    if (setting.shutter.exposure_s > 0 && setting.shutter.readout_s > 0)
-      compare_all(setting, mesh, model, 400);
+    if (setting.shutter.exposure_s > 0 && setting.shutter.readout_s > 0) {
+      EXPECT_LT(compare_all(setting, mesh, model, 400), 1.0 / 64) << setting.name;
+    }
   }
 }
 
@@ -303,8 +306,9 @@ TEST(Exposure, ARealAircraftAgreesWithBruteForce) {
   const aircraft::Aircraft airliner = aircraft::load_aircraft("738/738-Ryanair");
   const Model model(airliner.mesh);
   const std::vector<Setting> all = settings();
-  compare_all(all[2], airliner.mesh, model, 20);
-  compare_all(all[4], airliner.mesh, model, 60);
+  EXPECT_LT(compare_all(all[2], airliner.mesh, model, 20), 1.0 / 64);
+  // 64 of brute force's 4,096 places, which is the most that it may be.
+  EXPECT_LE(compare_all(all[4], airliner.mesh, model, 60), 1.0 / 64);
 }
 
 }  // namespace

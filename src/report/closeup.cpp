@@ -13,9 +13,6 @@
 namespace airtruth::report {
 namespace {
 
-constexpr int kGapPx = 12;
-constexpr int kHeaderPx = 34;
-
 image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
   image::Rgb8 result = image::make_rgb8(area.width, area.height);
   const auto common = layer.empty() ? std::nullopt : intersection(layer.patch, area);
@@ -79,6 +76,8 @@ image::Rgb8 closeup(const Closeup& what,
       image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
   const image::Rgb8 middle =
       what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
+  constexpr int kGapPx = 12;
+  constexpr int kHeaderPx = 34;
   const int panel = area.width * zoom;
   cv::Mat canvas(kHeaderPx + area.height * zoom + kGapPx,
                  4 * kGapPx + 3 * panel,

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kTileWidthPx = 640;
 constexpr int kColumns = 3;
-constexpr int kGapPx = 10;
-constexpr int kHeaderPx = 56;
 
 // The square around an intruder that fills a close-up, in frame pixels.
 PixelBox around(const PixelBox& box) {
@@ -93,6 +91,8 @@ void ContactSheet::add(const image::Picture& picture, const annotation::Frame& t
 }
 
 image::Rgb8 ContactSheet::sheet() const {
+  constexpr int kGapPx = 10;
+  constexpr int kHeaderPx = 56;
   const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
   const int rows = std::max<int>(1, (static_cast<int>(chosen_.size()) + kColumns - 1) / kColumns);
   cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx),

@@ -110,7 +110,7 @@ scene::Scene resolved(const scene::Scene& scene,
   std::optional<double> azimuth = file.sun_azimuth_deg;
   std::optional<double> elevation = file.sun_elevation_deg;
   if (measure) {
-    const calibration::Calibration found = measured_on(scene, size, mask, options);
+    const calibration::Calibration found = measured_on(result, size, mask, options);
     const scene::CameraModel from_clip = calibration::model_of(found);
     scene::for_each_camera_key(
         [&](const char* key, auto& stated, const auto& seen) {

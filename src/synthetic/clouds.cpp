@@ -19,7 +19,7 @@ constexpr float kLevel_m = kDepth_m / kLevels;
 constexpr int kDetail = 64;  // texels of the fine noise, along each axis
 constexpr float kDetailTexel_m = 15;
 constexpr float kExtinction_per_m = 0.022F;
-constexpr float kFarthest_m = 60000;
+constexpr float kFarthestCloud_m = 60000;
 constexpr float kHaze_m = 30000;
 constexpr float kCirrus_m = 8500;
 
@@ -195,7 +195,7 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
   const float north = static_cast<float>(direction.x());
   const float east = static_cast<float>(direction.y());
   const float phase = cloud_phase(static_cast<float>(direction.dot(sky_.sun_in_world())));
-  const float end = std::min((kBase_m + kDepth_m) / up, kFarthest_m);
+  const float end = std::min((kBase_m + kDepth_m) / up, kFarthestCloud_m);
   float t = kBase_m / up;
   const float jitter =
       unit(hash(static_cast<int>(north * 65536), static_cast<int>(east * 65536), seed_));

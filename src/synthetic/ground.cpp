@@ -8,15 +8,11 @@
 namespace airtruth::synthetic {
 namespace {
 
-constexpr float kHighest_m = 16;      // of trees and houses
 constexpr int kMarch = 7;             // steps through the height field
-constexpr float kReliefEnd_m = 1600;  // beyond, the ground is flat
+constexpr float kReliefEnd_m = 5000;  // beyond, the ground is flat
 constexpr float kFarthest_m = 26000;  // where the hills begin
 constexpr float kPeakCell_m = 10;
-constexpr int kShadowCells = 512;
-constexpr int kDetailCells = 256;
 constexpr float kDetail_m = 0.4F;
-constexpr int kHazeSectors = 64;
 
 // Two-way interpolation of four bytes at once, each in 16 bits of a word.
 inline std::uint64_t spread(std::uint32_t t) {

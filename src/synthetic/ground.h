@@ -16,6 +16,8 @@ namespace airtruth::synthetic {
 // a ray is followed through the height field (relief mapping; Policarpo, Oliveira and Comba 2005).
 class Ground {
  public:
+  static constexpr float kHighest_m = 16;  // of trees and houses
+
   // `texel_m` is rounded so that the tile has a power of two of texels. `pixel_rad` is the angle of
   // one pixel.
   Ground(double texel_m,
@@ -38,6 +40,9 @@ class Ground {
   Light haze(float north, float east) const;
 
  private:
+  static constexpr int kShadowCells = 512;
+  static constexpr int kDetailCells = 256;
+  static constexpr int kHazeSectors = 64;
   struct Level {
     int size = 0;
     std::vector<std::uint32_t> texels;  // square root of red, green, blue; height

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -11,16 +12,12 @@
 namespace airtruth::synthetic {
 namespace {
 
-constexpr float kHighest_m = 16;
-constexpr int kShadowCells = 512;
-constexpr int kDetailCells = 256;
-constexpr int kHazeSectors = 64;
 constexpr float kPlanting_m = 6.4F;  // pitch of the grid on which trees may stand
 
 std::uint32_t pack(const Light& albedo, float height_m) {
   const auto byte = [](float x) { return static_cast<std::uint32_t>(clamp01(x) * 255 + 0.5F); };
   return byte(std::sqrt(albedo[0])) | byte(std::sqrt(albedo[1])) << 8 |
-         byte(std::sqrt(albedo[2])) << 16 | byte(height_m / kHighest_m) << 24;
+         byte(std::sqrt(albedo[2])) << 16 | byte(height_m / Ground::kHighest_m) << 24;
 }
 
 }  // namespace
@@ -268,6 +265,26 @@ void Ground::find_peaks() {
   }
 }
 
+namespace {
+
+// Colours are kept as roots of light, and light is what is averaged; the height as it is.
+std::uint32_t mean_of(const std::array<std::uint32_t, 4>& texels) {
+  std::uint32_t mean = 0;
+  for (int shift = 0; shift < 24; shift += 8) {
+    float light = 0;
+    for (const std::uint32_t t : texels) {
+      const auto root = static_cast<float>((t >> shift) & 255U);
+      light += root * root;
+    }
+    mean |= static_cast<std::uint32_t>(std::sqrt(0.25F * light) + 0.5F) << shift;
+  }
+  std::uint32_t height = 2;
+  for (const std::uint32_t t : texels) height += t >> 24;
+  return mean | (height / 4) << 24;
+}
+
+}  // namespace
+
 void Ground::make_levels() {
   while (levels_.back().size > 2) {
     const Level& fine = levels_.back();
@@ -278,12 +295,7 @@ void Ground::make_levels() {
     tbb::parallel_for(std::size_t{0}, half, [&](std::size_t y) {
       for (std::size_t x = 0; x < half; ++x) {
         const std::uint32_t* p = &fine.texels[2 * y * full + 2 * x];
-        std::uint32_t mean = 0;
-        for (int shift = 0; shift < 32; shift += 8) {
-          const auto byte = [&](std::uint32_t t) { return (t >> shift) & 255U; };
-          mean |= ((byte(p[0]) + byte(p[1]) + byte(p[full]) + byte(p[full + 1]) + 2) / 4) << shift;
-        }
-        coarse.texels[y * half + x] = mean;
+        coarse.texels[y * half + x] = mean_of({p[0], p[1], p[full], p[full + 1]});
       }
     });
     levels_.push_back(std::move(coarse));

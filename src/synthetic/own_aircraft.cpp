@@ -23,7 +23,7 @@ struct Nearest {
 
 constexpr float kHalfSpan_m = 2.45F;
 constexpr float kWingAhead_m = 2.35F;
-constexpr float kFarthest_m = 6;
+constexpr float kFarthestPart_m = 6;
 
 float length(float x, float y, float z) { return std::sqrt(x * x + y * y + z * z); }
 
@@ -153,7 +153,7 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
   float closest = 1e9F;
   float closest_t = t;
   Part part = Part::kWing;
-  for (int i = 0; i < 140 && t < kFarthest_m; ++i) {
+  for (int i = 0; i < 140 && t < kFarthestPart_m; ++i) {
     const Nearest here = nearest(ray * t);
     const float relative = here.distance_m / (t * pixel_rad);
     if (relative < closest) {
@@ -175,7 +175,7 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
 // one ray.
 bool may_touch(const Point& ray, float block_rad) {
   float t = 0.45F;
-  for (int i = 0; i < 60 && t < kFarthest_m; ++i) {
+  for (int i = 0; i < 60 && t < kFarthestPart_m; ++i) {
     const float d = nearest(ray * t).distance_m;
     if (d < t * block_rad) return true;
     t += std::max(d - t * block_rad, 0.01F);

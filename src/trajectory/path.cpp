@@ -18,7 +18,6 @@ constexpr double kGravityMps2 = 9.80665;
 constexpr double kHorizontalMps = 1e-6;  // below it a heading means nothing
 constexpr double kSamePointM = 1e-6;
 constexpr double kFarthestM = 1e9;  // squares and lengths stay far from overflow
-constexpr double kShortestStep_s = 1e-6;
 
 std::string text_of(const Vector3& p) {
   char text[96];

@@ -28,6 +28,9 @@ struct AttitudeOverride {
   std::optional<double> roll_deg;
 };
 
+// Times that increase by less count as equal.
+constexpr double kShortestStep_s = 1e-6;
+
 // A path over [0, duration_s]; before and after it there is nothing. Immutable, cheap to copy.
 class Path {
  public:

@@ -22,7 +22,6 @@ const std::vector<std::string> kColumns = {
     "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
 constexpr std::size_t kRequired = 4;
 constexpr double kLargest = 1e9;  // metres, seconds or degrees: squares stay far from overflow
-constexpr double kShortestStep_s = 1e-6;
 
 // Which cell holds each known column; npos where a column is not given.
 std::array<std::size_t, 7> columns_of(const std::string& header, const std::string& file) {

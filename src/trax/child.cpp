@@ -25,7 +25,6 @@ extern char** environ;
 namespace airtruth::trax {
 namespace {
 
-constexpr std::string_view kPrefix = "@@TRAX:";
 constexpr std::chrono::milliseconds kBetweenLooks{100};  // at the stop token
 constexpr std::chrono::seconds kGrace{2};                // between SIGTERM and SIGKILL
 

@@ -8,7 +8,6 @@
 namespace airtruth::trax {
 namespace {
 
-constexpr std::string_view kPrefix = "@@TRAX:";
 constexpr std::size_t kMostKey = 64;
 
 constexpr std::array<std::pair<std::string_view, Type>, 6> kTypes = {

@@ -33,6 +33,9 @@ class ProtocolError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What every message begins with.
+constexpr std::string_view kPrefix = "@@TRAX:";
+
 // Longest line that is taken for a message.
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
