@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/median.h"
 #include "base/seed.h"
 #include "base/suggest.h"
 
@@ -104,6 +105,18 @@ TEST(Utf8, FindsTheFirstFault) {
   EXPECT_EQ(utf8_fault("\xc0\xaf"), 0u);       // overlong
   EXPECT_EQ(utf8_fault("a\xed\xa0\x80"), 1u);  // surrogate
   EXPECT_EQ(utf8_fault("a\xe2\x82"), 1u);      // cut short
+}
+
+TEST(Median, IsTheUpperOfTwoMiddleValues) {
+  EXPECT_EQ(median(std::vector<double>{3}), 3);
+  EXPECT_EQ(median(std::vector<double>{5, 1, 3}), 3);
+  EXPECT_EQ(median(std::vector<double>{7, 1, 5, 3}), 5);
+  EXPECT_EQ(median(std::vector<std::uint8_t>{255, 0, 254}), 254);
+  const std::vector<float> kept{2, 1};
+  EXPECT_EQ(median(kept), 2.0F);
+  EXPECT_EQ(kept, (std::vector<float>{2, 1}));
+  EXPECT_EQ(median_or_0(std::vector<float>{}), 0.0F);
+  EXPECT_EQ(median_or_0(kept), 2.0F);
 }
 
 TEST(PartPath, HidesAndKeepsTheExtension) {

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "calibration/air.h"
 #include "calibration/blur.h"
 #include "calibration/calibration.h"
 #include "calibration/edges.h"
-#include "calibration/median.h"
 #include "calibration/noise.h"
 #include "calibration/readout.h"
 #include "motion/horizon.h"

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "calibration/median.h"
+#include "base/median.h"
 #include "geometry/transform.h"
 
 namespace airtruth::calibration {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "calibration/median.h"
+#include "base/median.h"
 #include "composite/sensor.h"
 #include "composite/spread.h"
 #include "image/colour.h"

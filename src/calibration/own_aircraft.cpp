@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "image/colour.h"
 #include "motion/motion.h"
 #include "video/reader.h"
@@ -180,10 +181,7 @@ float middle_of(const cv::Mat& values, const cv::Mat& where) {
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
       if (where.at<unsigned char>(y, x) != 0) chosen.push_back(values.at<float>(y, x));
-  if (chosen.empty()) return 0;
-  const auto middle = chosen.begin() + static_cast<std::ptrdiff_t>(chosen.size() / 2);
-  std::nth_element(chosen.begin(), middle, chosen.end());
-  return *middle;
+  return median_or_0(std::move(chosen));
 }
 
 // A region is kept where it reaches the picture's border (it carries the camera) and enough of it

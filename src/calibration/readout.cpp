@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
 #include "calibration/blur.h"
-#include "calibration/median.h"
 
 namespace airtruth::calibration {
 namespace {

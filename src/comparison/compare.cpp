@@ -10,6 +10,7 @@
 #include "annotation/truth.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/median.h"
 #include "comparison/comparison.h"
 #include "comparison/looks.h"
 #include "comparison/place.h"
@@ -67,12 +68,6 @@ struct FigureRow {
   image::Rgb8 real, made;  // crops at 1x
 };
 
-double middle(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 double spread(std::vector<double> values) {
   if (values.size() < 3) return 0;
   std::sort(values.begin(), values.end());
@@ -83,7 +78,7 @@ template <typename Get>
 Pair pair_of(const std::string& name, const std::vector<Compared>& all, const Get& get) {
   std::vector<double> real, made;
   for (const Compared& c : all) real.push_back(get(c.real)), made.push_back(get(c.made));
-  return {name, middle(real), spread(real), middle(made), spread(made)};
+  return {name, median_or_0(real), spread(real), median_or_0(made), spread(made)};
 }
 
 // How much the contrast changes from one compared frame to the next.
@@ -95,9 +90,9 @@ Pair flicker_of(const std::vector<Compared>& all) {
     made.push_back(std::abs(all[i].made.contrast - all[i - 1].made.contrast));
   }
   return {"flicker of contrast, frame to frame",
-          middle(real),
+          median_or_0(real),
           spread(real),
-          middle(made),
+          median_or_0(made),
           spread(made)};
 }
 
@@ -229,8 +224,8 @@ class Comparing {
       within.push_back(distance(all_[i].real.histogram,
                                 all_[(i + all_.size() / 2) % all_.size()].real.histogram));
     }
-    result.colour_distance = middle(between);
-    result.colour_distance_within = middle(within);
+    result.colour_distance = median_or_0(between);
+    result.colour_distance_within = median_or_0(within);
     const fs::path& part = staged_.path();
     video::write_still(part / "figure.png", figure_of(figure_));
     write_file(part / "comparison.md", table_of(result));

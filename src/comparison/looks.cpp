@@ -6,18 +6,12 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "base/median.h"
 #include "geometry/transform.h"
 #include "image/colour.h"
 
 namespace airtruth::comparison {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<double> values_where(const cv::Mat& values, const cv::Mat& mask) {
   std::vector<double> result;
@@ -36,10 +30,10 @@ cv::Mat silhouette_of(const cv::Mat& grey) {
     for (int x = 0; x < grey.cols; ++x)
       if (x < rim || y < rim || x >= grey.cols - rim || y >= grey.rows - rim)
         around.push_back(double(grey.at<float>(y, x)));
-  const double level = median(around);
+  const double level = median_or_0(around);
   std::vector<double> off;
   for (const double v : around) off.push_back(std::abs(v - level));
-  const double limit = std::max(5.0, 3.5 * 1.4826 * median(off));
+  const double limit = std::max(5.0, 3.5 * 1.4826 * median_or_0(std::move(off)));
   cv::Mat mask(grey.size(), CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < grey.rows; ++y)
     for (int x = 0; x < grey.cols; ++x)
@@ -103,7 +97,7 @@ double edge_width(const cv::Mat& grey, const cv::Mat& silhouette) {
       };
       widths.push_back(kStep * (crossing(0.9) - crossing(0.1)));
     }
-  return median(widths);
+  return median_or_0(std::move(widths));
 }
 
 double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
@@ -112,7 +106,7 @@ double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
   cv::filter2D(grey, laplacian, CV_32F, kernel);
   std::vector<double> values = values_where(laplacian, mask);
   for (double& v : values) v = std::abs(v);
-  return 1.4826 * median(values) / 6;  // of unit white noise: 1 (Immerkaer 1996)
+  return 1.4826 * median_or_0(std::move(values)) / 6;  // of unit white noise: 1 (Immerkaer 1996)
 }
 
 double fine_share(const cv::Mat& grey) {
@@ -178,8 +172,8 @@ Looks looks_of(const Patch& patch) {
   if (cv::countNonZero(inside) < 6) inside = patch.silhouette;
   cv::dilate(patch.silhouette, wide, kernel, {-1, -1}, 3);
   cv::bitwise_not(wide, around);
-  looks.contrast =
-      median(values_where(patch.grey, patch.silhouette)) - median(values_where(patch.grey, around));
+  looks.contrast = median_or_0(values_where(patch.grey, patch.silhouette)) -
+                   median_or_0(values_where(patch.grey, around));
   looks.edge_width_px = edge_width(patch.grey, patch.silhouette);
   looks.noise = laplacian_deviation(patch.grey, inside);
   looks.background_noise = laplacian_deviation(patch.grey, around);

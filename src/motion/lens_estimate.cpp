@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/median.h"
 #include "motion/corners.h"
 #include "motion/rotation_fit.h"
 
@@ -127,9 +128,7 @@ struct LensEstimator::Impl {
       begin(grey);
       return;
     }
-    const auto middle = far.begin() + static_cast<std::ptrdiff_t>(far.size() / 2);
-    std::nth_element(far.begin(), middle, far.end());
-    if (*middle < kFarShare * size.width) return;
+    if (median(std::move(far)) < kFarShare * size.width) return;
     Pair pair;
     for (std::size_t i = 0; i < now.size(); ++i)
       pair.push_back({{begun[i].x + 0.5, begun[i].y + 0.5}, {now[i].x + 0.5, now[i].y + 0.5}});

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "image/colour.h"
 #include "report/draw.h"
 
@@ -77,12 +78,11 @@ double contrast(const image::Picture& picture, const PixelBox& box) {
       if (!box.contains(x, y)) outside.push_back(picture.luma().row(y)[x]);
   const auto inside = intersection(box, *around);
   if (outside.empty() || !inside) return 0;
-  std::nth_element(outside.begin(), outside.begin() + std::ssize(outside) / 2, outside.end());
-  const double median = outside[outside.size() / 2];
+  const double background = median(std::move(outside));
   double sum = 0;
   for (int y = inside->y; y < inside->bottom(); ++y)
     for (int x = inside->x; x < inside->right(); ++x) {
-      const double off = picture.luma().row(y)[x] - median;
+      const double off = picture.luma().row(y)[x] - background;
       sum += off * off;
     }
   return std::sqrt(sum / (double(inside->width) * inside->height));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/median.h"
 #include "image/colour.h"
 
 namespace airtruth::sequence {
@@ -81,9 +82,7 @@ Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now)
           now[i][c] < kBrightest)
         ratios.push_back(now[i][c] / before[i][c]);
     if (ratios.size() < kFewest) continue;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    change[c] = *middle;
+    change[c] = median(std::move(ratios));
   }
   return change;
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/median.h"
 #include "lens/calibration_file.h"
 #include "motion/lens_estimate.h"
 #include "motion/motion.h"
@@ -58,18 +59,10 @@ TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
                   corner_error_px(measured, truth, options.width, options.height));
   }
   std::sort(between_frames.begin(), between_frames.end());
-  const double median = between_frames[between_frames.size() / 2];
   std::printf("frame to frame: median %.3f px, 95 %% below %.3f px\n",
-              median,
+              median(between_frames),
               between_frames[between_frames.size() * 95 / 100]);
-  EXPECT_LT(median, 0.3);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(),
-                   values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
+  EXPECT_LT(median(between_frames), 0.3);
 }
 
 // Where a far point at the image's edge is predicted, from where it was in the first frame, and

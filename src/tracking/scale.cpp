@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "base/median.h"
 #include "tracking/view.h"
 
 namespace airtruth::tracking {
@@ -85,8 +86,7 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   std::vector<float> sorted = off;
   std::erase(sorted, INFINITY);
   if (sorted.empty()) return {};
-  std::nth_element(sorted.begin(), sorted.begin() + std::ssize(sorted) / 2, sorted.end());
-  const float most = std::min(kMostReturnPx, sorted[sorted.size() / 2]);
+  const float most = std::min(kMostReturnPx, median(std::move(sorted)));
   Flow flow;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (off[i] <= most) {
@@ -104,8 +104,7 @@ std::optional<double> median_ratio(const Flow& flow) {
       if (const double apart = cv::norm(flow.from[a] - flow.from[b]); apart >= kLeastApartPx)
         ratios.push_back(cv::norm(flow.to[a] - flow.to[b]) / apart);
   if (ratios.size() < kLeastPairs) return std::nullopt;
-  std::nth_element(ratios.begin(), ratios.begin() + std::ssize(ratios) / 2, ratios.end());
-  return ratios[ratios.size() / 2];
+  return median(std::move(ratios));
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace airtruth {
+
+// The upper one of two middle values. There is at least one value.
+template <class T>
+T median(std::vector<T> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+template <class T>
+T median_or_0(std::vector<T> values) {
+  return values.empty() ? T{0} : median(std::move(values));
+}
+
+}  // namespace airtruth
