@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "calibration/calibration.h"
+#include "composite/sensor.h"
+#include "synthetic/flight.h"
+#include "video/writer.h"
+
+// For tests: virtual flights as clips, with something in them that is to be measured out again.
+namespace airtruth::calibration {
+
+struct Injected {
+  double point_spread_px = 0;
+  composite::Sensor sensor;
+};
+
+// Its file is removed with it.
+class Clip {
+ public:
+  Clip();
+  ~Clip();
+  Clip(const Clip&) = delete;
+  Clip& operator=(const Clip&) = delete;
+  const fs::path& path() const { return path_; }
+
+  void write(const synthetic::Flight& flight,
+             const std::function<image::Picture(int)>& frame,
+             int count,
+             video::Format format = video::Format::kMkv,
+             int quality = 18);
+  // All of a flight, with that put into it; over painted panels, as airfields have them.
+  void write(const synthetic::Flight& flight, const Injected& what, bool panels = false);
+
+ private:
+  fs::path path_;
+};
+
+// 30 frames of 960 x 720, through an ideal sensor.
+synthetic::FlightOptions ideal(std::uint64_t seed);
+
+// `share`: of the truth, by which the value may be off.
+void expect_within(const Calibration& c, const std::string& key, double truth, double share);
+
+}  // namespace airtruth::calibration
