@@ -6,11 +6,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "calibration/ground_patches.h"
+
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kGroundStep = 2;  // pixels between samples
-constexpr int kSkyStep = 3;     // of those
+constexpr int kFirstSky = 1, kSkyStep = 6;  // pixels
 constexpr double kLowestSkyDeg = 2.5;
 constexpr std::size_t kFewest = 200;
 
@@ -26,37 +27,27 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
   views_.push_back({&picture, cam_from_world});
   const image::ColourCode code(picture.colour);
   const Quaternion world_from_cam = cam_from_world.conjugate();
-  GroundPatches patches(altitude_m_.value_or(1), 1 / lens_.focal_px());
-  for (int y = kGroundStep / 2; y < picture.height; y += kGroundStep)
-    for (int x = kGroundStep / 2; x < picture.width; x += kGroundStep) {
+  for (int y = kFirstSky; y < picture.height; y += kSkyStep)
+    for (int x = kFirstSky; x < picture.width; x += kSkyStep) {
       if (own_aircraft_ != nullptr && !own_aircraft_->is_free(x, y)) continue;
       const auto ray = lens_.ray_from_pixel({x + 0.5, y + 0.5});
       if (!ray) continue;
       const Vector3 direction = world_from_cam * *ray;
       const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-      const bool is_sky = elevation_rad > 0;
-      if (is_sky ? x / kGroundStep % kSkyStep != 0 || y / kGroundStep % kSkyStep != 0
-                 : !altitude_m_)
-        continue;
+      if (!(elevation_rad > 0)) continue;
       const image::Rgb linear = image::linear_at(picture, code, x, y, tone_);
-      const SeenLight seen{std::atan2(direction.y(), direction.x()), elevation_rad, linear};
-      if (!is_sky) {
-        patches.add(seen);
-        continue;
-      }
-      seen_.push_back(seen);
+      sky_light_.push_back({std::atan2(direction.y(), direction.x()), elevation_rad, linear});
       if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
         const double light =
             0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
         sky_.push_back({direction, light});
       }
     }
-  for (const SeenLight& patch : patches.take()) seen_.push_back(patch);
 }
 
 AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   Air air;
-  const SkyCurves sky = sky_curves(seen_);
+  const SkyCurves sky = sky_curves(sky_light_);
   air.airlight = airlight_of(sky, 0);
   if (!air.airlight) {
     air.why = "the horizon is not seen, and so not the sky just above it";
@@ -68,7 +59,10 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
     air.extinction_per_km = again->extinction_per_km;
     air.airlight = again->airlight;
   } else if (const auto fading =
-                 fading_of_ground(seen_, sky, *altitude_m_, air.why_no_extinction)) {
+                 fading_of_ground(ground_patches(views_, lens_, own_aircraft_, *altitude_m_, tone_),
+                                  sky,
+                                  *altitude_m_,
+                                  air.why_no_extinction)) {
     air.extinction_per_km = fading->extinction_per_km;
     air.airlight = airlight_of(sky, fading->horizon_rad);
   }

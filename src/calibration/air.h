@@ -51,7 +51,7 @@ class AirMeter {
   std::optional<double> altitude_m_;
   image::ToneCurve tone_;
   std::vector<GroundView> views_;
-  std::vector<SeenLight> seen_;
+  std::vector<SeenLight> sky_light_;
   std::vector<SkySample> sky_;
   std::size_t sky_count_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -19,7 +20,6 @@ constexpr int kSkyBands = 16;
 constexpr std::size_t kFewestInBand = 20;
 constexpr int kFewestBands = 6;
 
-constexpr double kPatchDepressionDeg = 2;
 constexpr double kLeastDepressionDeg = 0.6;
 constexpr double kMostDepressionDeg = 40;
 constexpr int kGroundBands = 14;
@@ -53,7 +53,7 @@ double quantile(std::vector<float>& values, double share) {
   return double(*at);
 }
 
-std::vector<Cell> cells_of(const std::vector<SeenLight>& seen) {
+std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
   const double low = radians(kLeastDepressionDeg);
   const double step = std::log(kMostDepressionDeg / kLeastDepressionDeg) / kGroundBands;
   struct Seen {
@@ -61,7 +61,7 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& seen) {
     std::array<std::vector<float>, 3> light;
   };
   std::vector<Seen> all(static_cast<std::size_t>(kSectors * kGroundBands));
-  for (const SeenLight& s : seen) {
+  for (const SeenLight& s : ground) {
     const double at = std::log(-s.elevation_rad / low) / step;
     if (!(at >= 0 && at < kGroundBands)) continue;
     Seen& here = all[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kGroundBands) +
@@ -161,38 +161,6 @@ int sector_of(double azimuth_rad) {
   return std::min(kSectors - 1, static_cast<int>(turn * kSectors));
 }
 
-GroundPatches::GroundPatches(double altitude_m, double pixel_rad)
-    : altitude_m_(altitude_m),
-      across_m_(altitude_m / std::sin(radians(kPatchDepressionDeg)) * pixel_rad),
-      along_m_(across_m_ / std::sin(radians(kPatchDepressionDeg))),
-      farthest_m_(altitude_m / std::sin(radians(kPatchDepressionDeg))) {}
-
-void GroundPatches::add(const SeenLight& ground) {
-  const double range_m = altitude_m_ / std::sin(-ground.elevation_rad);
-  if (range_m > farthest_m_) {
-    far_.push_back(ground);
-    return;
-  }
-  const int ring = static_cast<int>(range_m / along_m_);
-  const double middle_m = (ring + 0.5) * along_m_;
-  const int place = static_cast<int>(std::floor(ground.azimuth_rad * middle_m / across_m_));
-  Sum& sum = patches_[{ring, place}];
-  ++sum.count;
-  const double share = 1.0 / sum.count;
-  sum.mean.azimuth_rad += share * (ground.azimuth_rad - sum.mean.azimuth_rad);
-  sum.mean.elevation_rad += share * (ground.elevation_rad - sum.mean.elevation_rad);
-  for (std::size_t c = 0; c < 3; ++c)
-    sum.mean.linear[c] += static_cast<float>(share) * (ground.linear[c] - sum.mean.linear[c]);
-}
-
-std::vector<SeenLight> GroundPatches::take() {
-  std::vector<SeenLight> result = std::move(far_);
-  for (const auto& [place, sum] : patches_) result.push_back(sum.mean);
-  patches_.clear();
-  far_.clear();
-  return result;
-}
-
 double SkyCurve::at(std::size_t channel, double elevation_rad) const {
   const double x = elevation_rad / radians(kHighSkyDeg);
   const auto& p = by_channel[channel];
@@ -261,11 +229,11 @@ std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation
   return mean;
 }
 
-std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& seen,
+std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
                                        const SkyCurves& sky,
                                        double altitude_m,
                                        std::string& why) {
-  std::vector<Cell> cells = cells_of(seen);
+  std::vector<Cell> cells = cells_of(ground);
   std::erase_if(cells, [&](const Cell& c) { return !sky[static_cast<std::size_t>(c.sector)]; });
   if (cells.size() < kFewestCells) {
     why = "too little ground is seen at different distances";

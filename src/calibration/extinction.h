@@ -2,10 +2,8 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calibration/calibration.h"
@@ -25,28 +23,6 @@ struct SeenLight {
   image::Rgb linear;
 };
 int sector_of(double azimuth_rad);
-
-// Light of level ground in patches of one size, whatever their distance, so that what is far does
-// not look more alike than what is near only because a pixel holds more of it: as large as a pixel
-// is on the ground at 2 degrees below the horizon, and beyond that a pixel. One frame at a time.
-class GroundPatches {
- public:
-  GroundPatches(double altitude_m, double pixel_rad);
-  void add(const SeenLight& ground);
-  std::vector<SeenLight> take();
-
- private:
-  struct Sum {
-    int count = 0;
-    SeenLight mean;
-  };
-  double altitude_m_;
-  double across_m_;
-  double along_m_;
-  double farthest_m_;
-  std::map<std::pair<int, int>, Sum> patches_;
-  std::vector<SeenLight> far_;
-};
 
 // What an endless way through air looks like, by sector: the sky's light from 2 to 10 degrees of
 // elevation, drawn on to the horizon, where hills hide it (least squares of a parabola on medians).
@@ -76,7 +52,7 @@ struct Fading {
   ColourEstimate extinction_per_km;
   double horizon_rad = 0;  // elevation of the true horizon, as elevations are given
 };
-std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& seen,
+std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
                                        const SkyCurves& sky,
                                        double altitude_m,
                                        std::string& why);
