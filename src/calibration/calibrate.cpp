@@ -149,6 +149,10 @@ class Session {
       put("optics.sharpening", {found->sharpening});
       put("optics.sharpening_px", {found->sharpening_px});
       result_.edge = edges_.profile();
+      result_.notes["optics.point_spread_px"] =
+          fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
+                      result_.edge.spread_px,
+                      result_.edge.edges);
     } else {
       for (const char* key :
            {"optics.point_spread_px", "optics.sharpening", "optics.sharpening_px"})

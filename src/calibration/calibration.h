@@ -55,6 +55,7 @@ struct EdgeProfile {
   std::vector<double> place_px;
   std::vector<double> height;
   std::vector<double> fitted;
+  double spread_px = 0;  // from 10 to 90 % of what was fitted
   int edges = 0;
 };
 

@@ -8,7 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/median.h"
+#include "base/median.h"
 #include "geometry/transform.h"
 #include "image/colour.h"
 #include "motion/corners.h"
@@ -16,19 +16,27 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kAlong = 5;          // half the length of an edge, px
+// Half the length of an edge, px: a long one has less of what lies beside it by chance, but not
+// every clip shows enough of them.
+constexpr int kLong = 15, kShort = 5;
+constexpr std::size_t kEnoughLong = 60;
 constexpr double kAcross = 6;      // half the width of its profile, px
 constexpr double kPlateau = 3.5;   // px from the edge its two levels begin
 constexpr double kLeastStep = 24;  // code values
 constexpr double kStraight = 0.2;  // px that the edge's places along it may stray
 constexpr int kMostPerFrame = 60;
+constexpr int kApart = 8;  // px, at least
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kFewestEdges = 12;
-constexpr double kSharpestShare = 0.015;
+// Of the sharp edges the most symmetric: a line along one side of an edge looks like half a mask.
+constexpr double kSharp = 1.4;  // times the sharpest
+constexpr double kSymmetricShare = 0.25;
+constexpr std::size_t kFewestSymmetric = 40;
 constexpr double kAsSharp = 1.1;  // times the sharpest: within luck
-constexpr std::size_t kMostFitted = 150;
-constexpr double kMostMoved = 1.5;  // px between frames, across the edge
-constexpr double kBin = 0.2;        // px
+constexpr std::size_t kFewestFitted = 8, kMostFitted = 150;
+constexpr double kMostMoved =
+    10;                       // px between frames, across the edge: what that blurs is not sharp
+constexpr double kBin = 0.2;  // px
 
 struct Found {
   double x, y;    // on the edge
@@ -51,12 +59,13 @@ std::optional<double> middle_of(const cv::Mat& grey, int x, int y, bool along_x)
 }
 
 // A straight line through the edge's places on the rows (columns) beside it.
-std::optional<Found> straight_edge(const cv::Mat& grey, int x, int y, double gx, double gy) {
+std::optional<Found> straight_edge(
+    const cv::Mat& grey, int x, int y, double gx, double gy, int half_length) {
   const bool along_x = std::abs(gx) >= std::abs(gy);  // the step goes along x: walk along y
   double n = 0, sum_t = 0, sum_p = 0, sum_tt = 0, sum_tp = 0, sum_pp = 0;
   const double slope = along_x ? -gy / gx : -gx / gy;  // of the edge, places over steps
   if (std::abs(slope) > 1) return std::nullopt;
-  for (int t = -kAlong; t <= kAlong; ++t) {
+  for (int t = -half_length; t <= half_length; ++t) {
     const int shift = static_cast<int>(std::lround(slope * t));
     const int px = along_x ? x + shift : x + t;
     const int py = along_x ? y + t : y + shift;
@@ -116,6 +125,7 @@ struct Side {  // of an edge
 struct Step {
   double low = 0, high = 0;                        // code values
   double width_px = 0;                             // standard deviation of its derivative
+  double asymmetry = 0;                            // rms height that its two halves differ by
   std::vector<std::pair<double, double>> samples;  // place px from its middle, height 0..1
 };
 
@@ -137,6 +147,17 @@ class Profile {
     for (std::size_t b = 0; b < kBins; ++b) below += kWide * (1 - sums_[b] / counts_[b]);
     return below - kHalf;
   }
+  // How far from its own image turned about its middle, which a step's is through any symmetric
+  // spread and mask; a line along one of its sides' is not.
+  double asymmetry() const {
+    double squares = 0;
+    for (std::size_t b = 0; b < kBins / 2; ++b) {
+      const std::size_t o = kBins - 1 - b;
+      const double off = sums_[b] / counts_[b] + sums_[o] / counts_[o] - 1;
+      squares += off * off;
+    }
+    return std::sqrt(squares / (kBins / 2));
+  }
   // By the integral of |height - step|: for a Gaussian sigma * sqrt(2 / pi).
   double width_px() const {
     double area = 0;
@@ -154,10 +175,10 @@ class Profile {
 
 // What stands across an edge, if it is a clean step. Whole pixels alone, so that nothing is
 // interpolated: the place is the pixel's own.
-std::optional<Step> step_across(const cv::Mat& grey, const Found& line) {
+std::optional<Step> step_across(const cv::Mat& grey, const Found& line, int half_length) {
   Step step;
   Side low, high;
-  for (int t = -kAlong; t <= kAlong; ++t)
+  for (int t = -half_length; t <= half_length; ++t)
     for (double p = -kAcross; p <= kAcross; p += 0.5) {
       const double x = line.x - t * line.ny + p * line.nx;
       const double y = line.y + t * line.nx + p * line.ny;
@@ -185,8 +206,32 @@ std::optional<Step> step_across(const cv::Mat& grey, const Found& line) {
   step.width_px = profile.width_px();
   const double middle = profile.middle();
   if (std::abs(middle) > 1.5) return std::nullopt;
-  for (auto& [place, v] : step.samples) place -= middle;
+  Profile centred;
+  for (auto& [place, v] : step.samples) {
+    place -= middle;
+    centred.add(place, v);
+  }
+  if (!centred.whole()) return std::nullopt;
+  step.asymmetry = centred.asymmetry();
   return step;
+}
+
+struct FoundStep {
+  Found line;
+  Step step;
+  int half_length = 0;
+};
+
+// The longest one there is.
+std::optional<FoundStep> step_at(const cv::Mat& grey, const Strong& place) {
+  for (const int half_length : {kLong, kShort}) {
+    const auto line =
+        straight_edge(grey, place.at.x, place.at.y, place.slope.x, place.slope.y, half_length);
+    if (!line) continue;
+    if (auto step = step_across(grey, *line, half_length))
+      return FoundStep{*line, std::move(*step), half_length};
+  }
+  return std::nullopt;
 }
 
 double moved_across(const Found& line, const Homography& frame_from_before) {
@@ -217,7 +262,9 @@ EdgeProfile profile_of(const std::vector<const StepEdge*>& edges,
     profile.place_px.push_back((b + 0.5) * kBin - kAcross);
     profile.height.push_back(median(std::move(heights)));
   }
-  profile.fitted = step_heights(response, median(lows), median(highs), profile.place_px, tone);
+  const double low = median(std::move(lows)), high = median(std::move(highs));
+  profile.fitted = step_heights(response, low, high, profile.place_px, tone);
+  profile.spread_px = edge_spread_px(response, low, high, tone);
   return profile;
 }
 
@@ -232,45 +279,69 @@ void EdgeMeter::add(const image::Picture& frame,
   const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
   cv::Mat taken(grey.size(), CV_8UC1, cv::Scalar(0));
   int count = 0;
-  for (const auto& [at, slope] : strong_places(grey)) {
+  for (const Strong& place : strong_places(grey)) {
     if (count >= kMostPerFrame) break;
+    const cv::Point at = place.at;
     if (taken.at<unsigned char>(at) != 0) continue;
-    cv::circle(taken, at, 8, cv::Scalar(255), cv::FILLED);
-    const auto line = straight_edge(grey, at.x, at.y, slope.x, slope.y);
-    if (!line) continue;
-    auto step = step_across(grey, *line);
-    if (!step) continue;
+    auto found = step_at(grey, place);
+    const cv::Point along = found
+                                ? cv::Point(static_cast<int>(found->half_length * found->line.ny),
+                                            static_cast<int>(-found->half_length * found->line.nx))
+                                : cv::Point(0, 0);
+    cv::line(taken, at - along, at + along, cv::Scalar(255), 2 * kApart);
+    if (!found) continue;
+    Step& step = found->step;
     Edge edge;
-    edge.width_px = step->width_px;
-    edge.step = {(step->low - dark) / unit, (step->high - dark) / unit, std::move(step->samples)};
+    edge.width_px = step.width_px;
+    edge.asymmetry = step.asymmetry;
+    edge.is_long = found->half_length == kLong;
+    edge.step = {(step.low - dark) / unit, (step.high - dark) / unit, std::move(step.samples)};
     // The own aircraft's edges are as good as others for sharpness; its mask says that they do not
     // move.
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
     edge.moved_px = own                 ? 0
-                    : frame_from_before ? moved_across(*line, *frame_from_before)
+                    : frame_from_before ? moved_across(found->line, *frame_from_before)
                                         : std::numeric_limits<double>::quiet_NaN();
     edges_.push_back(std::move(edge));
     ++count;
   }
 }
 
-std::vector<const StepEdge*> EdgeMeter::sharpest() const {
-  std::vector<const Edge*> still;
-  for (const Edge& edge : edges_)
-    if (!(edge.moved_px > kMostMoved)) still.push_back(&edge);
-  if (still.size() < kFewestEdges)
-    for (const Edge& edge : edges_) still.push_back(&edge);
-  std::sort(still.begin(), still.end(), [](const Edge* a, const Edge* b) {
-    return a->width_px < b->width_px;
-  });
-  const std::size_t skip = still.size() / 100;  // narrower than the camera: luck
-  const auto least =
-      std::max(kFewestEdges / 2, static_cast<std::size_t>(kSharpestShare * double(still.size())));
-  std::vector<const StepEdge*> sharpest;
-  for (std::size_t i = skip; i < still.size() && sharpest.size() < kMostFitted; ++i) {
-    if (sharpest.size() >= least && still[i]->width_px > kAsSharp * still[skip]->width_px) break;
-    sharpest.push_back(&still[i]->step);
+std::vector<const EdgeMeter::Edge*> EdgeMeter::usable() const {
+  std::vector<const Edge*> still, long_ones, all;
+  for (const Edge& edge : edges_) {
+    all.push_back(&edge);
+    if (edge.moved_px > kMostMoved) continue;
+    still.push_back(&edge);
+    if (edge.is_long) long_ones.push_back(&edge);
   }
+  return long_ones.size() >= kEnoughLong ? long_ones : still.size() >= kFewestEdges ? still : all;
+}
+
+std::vector<const StepEdge*> EdgeMeter::sharpest() const {
+  std::vector<const Edge*> edges = usable();
+  const auto keep = [&](std::size_t count, std::size_t fewest) {
+    edges.resize(std::min(edges.size(), std::max(count, fewest)));
+  };
+  const auto narrower_than = [&](double width_px) {
+    return static_cast<std::size_t>(std::count_if(
+        edges.begin(), edges.end(), [&](const Edge* edge) { return edge->width_px < width_px; }));
+  };
+  const auto by_width = [](const Edge* a, const Edge* b) { return a->width_px < b->width_px; };
+  const auto by_asymmetry = [](const Edge* a, const Edge* b) {
+    return a->asymmetry < b->asymmetry;
+  };
+  std::sort(edges.begin(), edges.end(), by_width);
+  // Those that are narrower than the camera by luck.
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 100));
+  keep(narrower_than(kSharp * edges[0]->width_px), kFewestSymmetric);
+  std::sort(edges.begin(), edges.end(), by_asymmetry);
+  keep(static_cast<std::size_t>(kSymmetricShare * double(edges.size())), kFewestSymmetric);
+  std::sort(edges.begin(), edges.end(), by_width);
+  keep(narrower_than(kAsSharp * edges[0]->width_px), kFewestFitted);
+  edges.resize(std::min(edges.size(), kMostFitted));
+  std::vector<const StepEdge*> sharpest;
+  for (const Edge* edge : edges) sharpest.push_back(&edge->step);
   return sharpest;
 }
 

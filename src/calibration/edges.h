@@ -28,9 +28,12 @@ class EdgeMeter {
  private:
   struct Edge {
     double width_px = 0;  // standard deviation of its derivative
+    double asymmetry = 0;
     double moved_px = 0;  // across itself, since the frame before; NaN: not known
+    bool is_long = false;
     StepEdge step;
   };
+  std::vector<const Edge*> usable() const;
   std::vector<const StepEdge*> sharpest() const;
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;

@@ -76,12 +76,14 @@ image::Rgb8 plot(const Calibration& c) {
     cv::circle(canvas, noise.at(p.luma, p.sigma_codes), 4, kBlue, cv::FILLED, cv::LINE_AA);
   if (c.noise.empty()) nothing(canvas, noise);
 
-  const Axes edge = axes(canvas,
-                         1,
-                         0,
-                         fmt::format("step across the {} sharpest edges", c.edge.edges),
-                         "px",
-                         {-6, 6, -0.3, 1.3});
+  const Axes edge = axes(
+      canvas,
+      1,
+      0,
+      fmt::format(
+          "step across {} sharp edges: {:.2f} px from 10 to 90 %", c.edge.edges, c.edge.spread_px),
+      "px",
+      {-6, 6, -0.3, 1.3});
   for (std::size_t i = 0; i < c.edge.place_px.size(); ++i) {
     cv::circle(canvas,
                edge.at(c.edge.place_px[i], std::clamp(c.edge.height[i], -0.3, 1.3)),

@@ -10,7 +10,7 @@
 #include <unsupported/Eigen/NumericalDiff>
 
 #include "base/error.h"
-#include "calibration/median.h"
+#include "base/median.h"
 #include "geometry/transform.h"
 #include "image/tone_curve.h"
 
@@ -21,6 +21,7 @@ constexpr double kLeastSpread = 0.05, kMostSpread = 5;  // px
 constexpr double kLeastRadius = 0.3, kMostRadius = 4;   // px
 constexpr double kUnit = 0.05;                          // px: unknowns are logarithms of so much
 constexpr double kStep = 1e-8;                          // of the unknowns, squared
+constexpr double kSure = 2;                             // of its error an amount is a mask
 // Cameras' masks, where edges are not clean enough to part a narrow strong one from a wide weak
 // one.
 constexpr double kUsualAmount = 0.0, kUsualAmountSpread = 0.6;
@@ -258,6 +259,16 @@ double common_misfit(const std::vector<const StepEdge*>& edges,
                    : 0;  // along one of so many directions
 }
 
+StepModel model_of(const StepResponse& response,
+                   double low,
+                   double high,
+                   const image::ToneCurve& tone) {
+  return {{response.point_spread_px.value, response.sharpening.value, response.sharpening_px.value},
+          low,
+          high,
+          tone};
+}
+
 }  // namespace
 
 StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
@@ -276,7 +287,8 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   response.sharpening = {x[1], std::sqrt(covariance(1, 1))};
   const double radius_px = misfit.parameters(x).radius_px;
   response.sharpening_px = {radius_px, radius_px * std::sqrt(covariance(2, 2))};
-  if (x[1] <= 0) {  // no camera's mask softens
+  // No camera's mask softens; and a weak one looks much like none with a little less spread.
+  if (x[1] <= kSure * response.sharpening.sigma) {
     misfit.leave_out_the_mask();
     x = fitted(misfit, Misfit::unknowns({misfit.parameters(x).spread_px, 0, kUsualRadius}));
     covariance = covariance_of(edges, misfit, x, wrong);
@@ -293,14 +305,24 @@ std::vector<double> step_heights(const StepResponse& response,
                                  double high,
                                  const std::vector<double>& places_px,
                                  const image::ToneCurve& tone) {
-  const StepModel model(
-      {response.point_spread_px.value, response.sharpening.value, response.sharpening_px.value},
-      low,
-      high,
-      tone);
+  const StepModel model = model_of(response, low, high, tone);
   std::vector<double> heights;
   for (const double place : places_px) heights.push_back(model.at(place).first);
   return heights;
+}
+
+double edge_spread_px(const StepResponse& response,
+                      double low,
+                      double high,
+                      const image::ToneCurve& tone) {
+  const StepModel model = model_of(response, low, high, tone);
+  constexpr double kHalf = 6, kFine = 0.01;  // px
+  double last_below = -kHalf, first_above = kHalf;
+  for (double x = -kHalf; x < kHalf; x += kFine) {
+    if (model.at(x).first < 0.1) last_below = x;
+    if (model.at(-x).first > 0.9) first_above = -x;
+  }
+  return first_above - last_below;
 }
 
 }  // namespace airtruth::calibration

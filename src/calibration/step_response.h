@@ -36,4 +36,10 @@ std::vector<double> step_heights(const StepResponse& response,
                                  const std::vector<double>& places_px,
                                  const image::ToneCurve& tone);
 
+// Between the last place below 10 % of that step's height and the first above 90 %.
+double edge_spread_px(const StepResponse& response,
+                      double low,
+                      double high,
+                      const image::ToneCurve& tone);
+
 }  // namespace airtruth::calibration
