@@ -34,9 +34,9 @@ constexpr double kSymmetricShare = 0.25;
 constexpr std::size_t kFewestSymmetric = 40;
 constexpr double kAsSharp = 1.1;  // times the sharpest: within luck
 constexpr std::size_t kFewestFitted = 8, kMostFitted = 150;
-constexpr double kMostMoved =
-    10;                       // px between frames, across the edge: what that blurs is not sharp
-constexpr double kBin = 0.2;  // px
+// Between frames, across the edge: what that blurs is not sharp.
+constexpr double kMostMoved = 10;  // px
+constexpr double kBin = 0.2;       // px
 
 struct Found {
   double x, y;    // on the edge

@@ -12,8 +12,8 @@ namespace airtruth::calibration {
 
 // The camera's step response from the sharpest straight edges of a clip: profiles across them,
 // laid over one another to a tenth of a pixel (the slanted edge of ISO 12233). What is left of
-// sharpness there is the lens's point spread, pixels and codec together; a bump beside the step is
-// sharpening.
+// sharpness there is the lens's point spread, pixels and codec together; a bump on both sides of
+// the step is sharpening. A bump on one side is a line in the world: such edges are left out.
 class EdgeMeter {
  public:
   EdgeMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
@@ -27,9 +27,9 @@ class EdgeMeter {
 
  private:
   struct Edge {
-    double width_px = 0;  // standard deviation of its derivative
-    double asymmetry = 0;
-    double moved_px = 0;  // across itself, since the frame before; NaN: not known
+    double width_px = 0;   // standard deviation of its derivative
+    double asymmetry = 0;  // rms height that its two halves differ by
+    double moved_px = 0;   // across itself, since the frame before; NaN: not known
     bool is_long = false;
     StepEdge step;
   };
