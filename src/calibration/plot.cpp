@@ -34,6 +34,10 @@ void words(cv::Mat& canvas, const std::string& text, int x, int y, double scale 
   cv::putText(canvas, text, {x, y}, cv::FONT_HERSHEY_SIMPLEX, scale, kInk, 1, cv::LINE_AA);
 }
 
+std::string number(double value) {
+  return std::abs(value) >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
 Axes axes(cv::Mat& canvas,
           int column,
           int row,
@@ -47,8 +51,8 @@ Axes axes(cv::Mat& canvas,
     const double x = a.x0 + i * (a.x1 - a.x0) / 5;
     const double y = a.y0 + i * (a.y1 - a.y0) / 5;
     cv::line(canvas, a.at(a.x0, y), a.at(a.x1, y), kGrid, 1);
-    words(canvas, fmt::format("{:.3g}", x), a.at(x, 0).x - 12, area.y + area.height + 16, 0.38);
-    words(canvas, fmt::format("{:.3g}", y), area.x - 46, a.at(0, y).y + 4, 0.38);
+    words(canvas, number(x), a.at(x, 0).x - 12, area.y + area.height + 16, 0.38);
+    words(canvas, number(y), area.x - 46, a.at(0, y).y + 4, 0.38);
   }
   cv::rectangle(canvas, area, kInk, 1);
   words(canvas, title, area.x, area.y - 12, 0.5);
