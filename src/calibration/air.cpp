@@ -21,28 +21,28 @@ AirMeter::AirMeter(const lens::Lens& lens,
                    const image::Mask* own_aircraft,
                    std::optional<double> altitude_m,
                    const image::ToneCurve& tone)
-    : lens_(lens), own_aircraft_(own_aircraft), altitude_m_(altitude_m), tone_(tone) {}
+    : lens_(lens),
+      own_aircraft_(own_aircraft),
+      altitude_m_(altitude_m),
+      tone_(tone),
+      sky_rays_(pixel_rays(lens, own_aircraft, kFirstSky, kSkyStep)) {}
 
 void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_world) {
   views_.push_back({&picture, cam_from_world});
   const image::ColourCode code(picture.colour);
   const Quaternion world_from_cam = cam_from_world.conjugate();
-  for (int y = kFirstSky; y < picture.height; y += kSkyStep)
-    for (int x = kFirstSky; x < picture.width; x += kSkyStep) {
-      if (own_aircraft_ != nullptr && !own_aircraft_->is_free(x, y)) continue;
-      const auto ray = lens_.ray_from_pixel({x + 0.5, y + 0.5});
-      if (!ray) continue;
-      const Vector3 direction = world_from_cam * *ray;
-      const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-      if (!(elevation_rad > 0)) continue;
-      const image::Rgb linear = image::linear_at(picture, code, x, y, tone_);
-      sky_light_.push_back({std::atan2(direction.y(), direction.x()), elevation_rad, linear});
-      if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
-        const double light =
-            0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
-        sky_.push_back({direction, light});
-      }
+  for (const PixelRay& ray : sky_rays_) {
+    const Vector3 direction = world_from_cam * ray.in_cam;
+    const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
+    if (!(elevation_rad > 0)) continue;
+    const image::Rgb linear = image::linear_at(picture, code, ray.x, ray.y, tone_);
+    sky_light_.push_back({std::atan2(direction.y(), direction.x()), elevation_rad, linear});
+    if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
+      const double light =
+          0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
+      sky_.push_back({direction, light});
     }
+  }
 }
 
 AirMeter::Air AirMeter::air(const std::stop_token& stop) const {

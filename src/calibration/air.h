@@ -9,6 +9,7 @@
 #include "calibration/calibration.h"
 #include "calibration/extinction.h"
 #include "calibration/ground_track.h"
+#include "calibration/rays.h"
 #include "calibration/same_ground.h"
 #include "motion/horizon.h"
 
@@ -50,6 +51,7 @@ class AirMeter {
   const image::Mask* own_aircraft_;
   std::optional<double> altitude_m_;
   image::ToneCurve tone_;
+  std::vector<PixelRay> sky_rays_;
   std::vector<GroundView> views_;
   std::vector<SeenLight> sky_light_;
   std::vector<SkySample> sky_;

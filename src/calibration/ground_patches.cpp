@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "calibration/rays.h"
 #include "image/colour.h"
 
 namespace airtruth::calibration {
@@ -15,25 +16,19 @@ constexpr int kGroundStep = 2;  // pixels between samples
 constexpr double kPatchDepressionDeg = 2;
 
 std::vector<SeenLight> ground_of(const GroundView& view,
-                                 const lens::Lens& lens,
-                                 const image::Mask* own_aircraft,
+                                 const std::vector<PixelRay>& rays,
                                  const image::ToneCurve& tone) {
-  const image::Picture& picture = *view.picture;
-  const image::ColourCode code(picture.colour);
+  const image::ColourCode code(view.picture->colour);
   const Quaternion world_from_cam = view.cam_from_world.conjugate();
   std::vector<SeenLight> ground;
-  for (int y = kGroundStep / 2; y < picture.height; y += kGroundStep)
-    for (int x = kGroundStep / 2; x < picture.width; x += kGroundStep) {
-      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
-      const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
-      if (!ray) continue;
-      const Vector3 direction = world_from_cam * *ray;
-      const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-      if (elevation_rad > 0) continue;
-      ground.push_back({std::atan2(direction.y(), direction.x()),
-                        elevation_rad,
-                        image::linear_at(picture, code, x, y, tone)});
-    }
+  for (const PixelRay& ray : rays) {
+    const Vector3 direction = world_from_cam * ray.in_cam;
+    const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
+    if (elevation_rad > 0) continue;
+    ground.push_back({std::atan2(direction.y(), direction.x()),
+                      elevation_rad,
+                      image::linear_at(*view.picture, code, ray.x, ray.y, tone)});
+  }
   return ground;
 }
 
@@ -80,9 +75,10 @@ std::vector<SeenLight> ground_patches(const std::vector<GroundView>& views,
                                       const image::Mask* own_aircraft,
                                       double altitude_m,
                                       const image::ToneCurve& tone) {
+  const std::vector<PixelRay> rays = pixel_rays(lens, own_aircraft, kGroundStep / 2, kGroundStep);
   std::vector<SeenLight> all;
   for (const GroundView& view : views)
-    append_patches(all, ground_of(view, lens, own_aircraft, tone), altitude_m, 1 / lens.focal_px());
+    append_patches(all, ground_of(view, rays, tone), altitude_m, 1 / lens.focal_px());
   return all;
 }
 

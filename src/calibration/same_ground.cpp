@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "calibration/rays.h"
 #include "image/colour.h"
 
 namespace airtruth::calibration {
@@ -150,21 +151,6 @@ ColourEstimate mean_of(const std::vector<Guess>& guesses) {
   return result;
 }
 
-struct Ray {
-  int x = 0, y = 0;
-  Vector3 in_cam;
-};
-
-std::vector<Ray> rays_of(const lens::Lens& lens, const image::Mask* own_aircraft, int step) {
-  std::vector<Ray> rays;
-  for (int y = step / 2; y < lens.size().height; y += step)
-    for (int x = step / 2; x < lens.size().width; x += step) {
-      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
-      if (const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5})) rays.push_back({x, y, *ray});
-    }
-  return rays;
-}
-
 }  // namespace
 
 std::vector<GroundSeen> ground_seen(const std::vector<GroundView>& views,
@@ -176,7 +162,7 @@ std::vector<GroundSeen> ground_seen(const std::vector<GroundView>& views,
   const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMostPixels))));
   const double step_rad = step / lens.focal_px();
   const double farthest = std::sqrt(1 / step_rad);
-  const std::vector<Ray> rays = rays_of(lens, own_aircraft, step);
+  const std::vector<PixelRay> rays = pixel_rays(lens, own_aircraft, step / 2, step);
   struct Sum {
     double count = 0, range = 0;
     std::array<double, 3> light{};
@@ -188,7 +174,7 @@ std::vector<GroundSeen> ground_seen(const std::vector<GroundView>& views,
     const image::ColourCode code(view.picture->colour);
     const Quaternion level_from_cam = track.level_from_world * view.cam_from_world.conjugate();
     std::map<std::pair<int, int>, Sum> sums;
-    for (const Ray& ray : rays) {
+    for (const PixelRay& ray : rays) {
       const auto way = place_on_ground(level_from_cam * ray.in_cam);
       if (!way) continue;
       const double range = std::hypot(way->norm(), 1.0);
