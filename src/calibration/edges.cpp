@@ -308,14 +308,14 @@ void EdgeMeter::add(const image::Picture& frame,
 }
 
 std::vector<const EdgeMeter::Edge*> EdgeMeter::usable() const {
-  std::vector<const Edge*> still, long_ones, all;
+  std::vector<const Edge*> slow, long_ones, all;
   for (const Edge& edge : edges_) {
     all.push_back(&edge);
     if (edge.moved_px > kMostMoved) continue;
-    still.push_back(&edge);
+    slow.push_back(&edge);
     if (edge.is_long) long_ones.push_back(&edge);
   }
-  return long_ones.size() >= kEnoughLong ? long_ones : still.size() >= kFewestEdges ? still : all;
+  return long_ones.size() >= kEnoughLong ? long_ones : slow.size() >= kFewestEdges ? slow : all;
 }
 
 std::vector<const StepEdge*> EdgeMeter::sharpest() const {
