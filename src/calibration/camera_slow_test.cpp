@@ -122,7 +122,7 @@ TEST(Calibrate, ReadsTheCodecsStep) {
   Clip clip;
   const auto step_at = [&](int quality) {
     clip.write(
-        flight, [&](int k) { return flight.frame(k); }, 24, video::Format::kMp4, quality);
+        o, [&](int k) { return flight.frame(k); }, video::Format::kMp4, quality);
     const Calibration c = calibrate(clip.path(), {});
     return c.values.at("sensor.codec_step")[0].value;
   };
@@ -143,33 +143,28 @@ TEST(Calibrate, MeasuresExposureFromBlur) {
   synthetic::FlightOptions slow = o;
   slow.frame_rate_hz = 30;
   slow.frame_count = 50;
-  const synthetic::Flight stated(slow);
   Clip clip;
-  clip.write(
-      stated,
-      [&](int k) {
-        std::vector<float> sum(
-            static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height), 0.0F);
-        image::Picture picture;
-        for (int i = 0; i < kOpen; ++i) {
-          picture = flight.frame(k * kPerFrame + i);
-          for (int y = 0; y < o.height; ++y)
-            for (int x = 0; x < o.width; ++x)
-              sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
-                  static_cast<std::size_t>(x)] +=
-                  image::linear_from_srgb((picture.planes[0].row(y)[x] - 16) / 219.0F);
-        }
-        for (int y = 0; y < o.height; ++y)
-          for (int x = 0; x < o.width; ++x)
-            picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
-                16.5F +
-                219 * image::srgb_from_linear(
-                          sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
-                              static_cast<std::size_t>(x)] /
-                          kOpen));
-        return picture;
-      },
-      50);
+  clip.write(slow, [&](int k) {
+    std::vector<float> sum(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height),
+                           0.0F);
+    image::Picture picture;
+    for (int i = 0; i < kOpen; ++i) {
+      picture = flight.frame(k * kPerFrame + i);
+      for (int y = 0; y < o.height; ++y)
+        for (int x = 0; x < o.width; ++x)
+          sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
+              static_cast<std::size_t>(x)] +=
+              image::linear_from_srgb((picture.planes[0].row(y)[x] - 16) / 219.0F);
+    }
+    for (int y = 0; y < o.height; ++y)
+      for (int x = 0; x < o.width; ++x)
+        picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
+            16.5F + 219 * image::srgb_from_linear(
+                              sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) +
+                                  static_cast<std::size_t>(x)] /
+                              kOpen));
+    return picture;
+  });
   const Calibration c = calibrate(clip.path(), {});
   expect_within(c, "shutter.exposure_s", 0.5 / 30, 0.1);
 }
@@ -186,24 +181,20 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
   synthetic::FlightOptions slow = o;
   slow.frame_rate_hz = 30;
   slow.frame_count = 80;
-  const synthetic::Flight stated(slow);
   Clip clip;
   constexpr int kUsed = 12;  // of 16: the readout takes three quarters of the interval
-  clip.write(
-      stated,
-      [&](int k) {
-        image::Picture picture = flight.frame(k * kBands);
-        for (int band = 1; band < kUsed; ++band) {
-          const image::Picture then = flight.frame(k * kBands + band);
-          for (int p = 0; p < 3; ++p) {
-            image::Plane& to = picture.planes[static_cast<std::size_t>(p)];
-            for (int y = to.height * band / kUsed; y < to.height * (band + 1) / kUsed; ++y)
-              std::copy_n(then.planes[static_cast<std::size_t>(p)].row(y), to.width, to.row(y));
-          }
-        }
-        return picture;
-      },
-      80);
+  clip.write(slow, [&](int k) {
+    image::Picture picture = flight.frame(k * kBands);
+    for (int band = 1; band < kUsed; ++band) {
+      const image::Picture then = flight.frame(k * kBands + band);
+      for (int p = 0; p < 3; ++p) {
+        image::Plane& to = picture.planes[static_cast<std::size_t>(p)];
+        for (int y = to.height * band / kUsed; y < to.height * (band + 1) / kUsed; ++y)
+          std::copy_n(then.planes[static_cast<std::size_t>(p)].row(y), to.width, to.row(y));
+      }
+    }
+    return picture;
+  });
   const Calibration c = calibrate(clip.path(), {});
   expect_within(c, "shutter.readout_s", 0.75 / 30, 0.1);
   EXPECT_EQ(c.notes.at("shutter.readout"), "down");

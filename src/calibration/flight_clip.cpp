@@ -78,12 +78,10 @@ Clip::~Clip() {
   fs::remove(path_, ignored);
 }
 
-void Clip::write(const synthetic::Flight& flight,
+void Clip::write(const synthetic::FlightOptions& o,
                  const std::function<image::Picture(int)>& frame,
-                 int count,
                  video::Format format,
                  int quality) {
-  const synthetic::FlightOptions& o = flight.options();
   video::StreamInfo info;
   info.width = o.width;
   info.height = o.height;
@@ -95,7 +93,7 @@ void Clip::write(const synthetic::Flight& flight,
   fs::remove(path_);
   path_.replace_extension(video::extension(format));
   video::Writer writer(path_, info, options);
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < o.frame_count; ++k) {
     video::Frame one;
     one.index = k;
     one.time_s = k / o.frame_rate_hz;
@@ -107,15 +105,12 @@ void Clip::write(const synthetic::Flight& flight,
 }
 
 void Clip::write(const synthetic::Flight& flight, const Injected& what, bool panels) {
-  write(
-      flight,
-      [&](int k) {
-        image::Picture picture = flight.frame(k);
-        if (panels) paint_panels(picture);
-        inject(picture, what, k);
-        return picture;
-      },
-      flight.options().frame_count);
+  write(flight.options(), [&](int k) {
+    image::Picture picture = flight.frame(k);
+    if (panels) paint_panels(picture);
+    inject(picture, what, k);
+    return picture;
+  });
 }
 
 synthetic::FlightOptions ideal(std::uint64_t seed) {

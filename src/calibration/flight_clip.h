@@ -26,9 +26,9 @@ class Clip {
   Clip& operator=(const Clip&) = delete;
   const fs::path& path() const { return path_; }
 
-  void write(const synthetic::Flight& flight,
+  // As long, as large and as fast as `o` says.
+  void write(const synthetic::FlightOptions& o,
              const std::function<image::Picture(int)>& frame,
-             int count,
              video::Format format = video::Format::kMkv,
              int quality = 18);
   // All of a flight, with that put into it; over painted panels, as airfields have them.

@@ -23,8 +23,7 @@ namespace {
 Calibration calibrate_flight(const synthetic::FlightOptions& o, Options options) {
   const synthetic::Flight flight(o);
   Clip clip;
-  clip.write(
-      flight, [&](int k) { return flight.frame(k); }, o.frame_count);
+  clip.write(o, [&](int k) { return flight.frame(k); });
   options.lens = o.lens;
   return calibrate(clip.path(), options);
 }
@@ -109,7 +108,7 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
     const synthetic::Flight flight(o);
     Clip clip;
     clip.write(
-        flight, [&](int k) { return flight.frame(k); }, o.frame_count, video::Format::kMp4);
+        o, [&](int k) { return flight.frame(k); }, video::Format::kMp4);
     const double iou = overlap(find_own_aircraft(clip.path(), {}), flight.own_aircraft());
     std::printf("own aircraft, flight %d: IoU %.3f\n", static_cast<int>(seed), iou);
     EXPECT_GE(iou, 0.95) << seed;
@@ -193,7 +192,7 @@ TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
     const synthetic::Flight flight(o);
     Clip clip;
     clip.write(
-        flight,
+        o,
         [&](int k) {
           image::Picture picture = flight.frame(k);
           for (int y = 0; y < 960; ++y)
@@ -206,7 +205,6 @@ TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
             }
           return picture;
         },
-        o.frame_count,
         video::Format::kMp4);
     const double iou = overlap(find_own_aircraft(clip.path(), {}), mask);
     std::printf("%s: IoU %.3f\n", name, iou);
