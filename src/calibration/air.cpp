@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kFirstSky = 1, kSkyStep = 6;  // pixels
 constexpr double kLowestSkyDeg = 2.5;
+constexpr double kMostTiltDeg = 6;  // of the horizon that the views are given
+// Where the true horizon is known the sky is read down to it.
+constexpr SkyReach kOverTrueHorizon{0.6, 6};
 constexpr std::size_t kFewest = 200;
 
 }  // namespace
@@ -34,9 +37,9 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
   for (const PixelRay& ray : sky_rays_) {
     const Vector3 direction = world_from_cam * ray.in_cam;
     const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-    if (!(elevation_rad > 0)) continue;
+    if (elevation_rad < -radians(kMostTiltDeg)) continue;
     const image::Rgb linear = image::linear_at(picture, code, ray.x, ray.y, tone_);
-    sky_light_.push_back({std::atan2(direction.y(), direction.x()), elevation_rad, linear});
+    glimpses_.push_back({direction, linear});
     if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
       const double light =
           0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
@@ -45,9 +48,19 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
   }
 }
 
+std::vector<SeenLight> AirMeter::sky_light(const Quaternion& level_from_world) const {
+  std::vector<SeenLight> result;
+  for (const Glimpse& g : glimpses_) {
+    const Vector3 d = level_from_world * g.direction;
+    const double elevation_rad = std::asin(std::clamp(-d.z(), -1.0, 1.0));
+    if (elevation_rad > 0) result.push_back({std::atan2(d.y(), d.x()), elevation_rad, g.linear});
+  }
+  return result;
+}
+
 AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   Air air;
-  const SkyCurves sky = sky_curves(sky_light_);
+  const SkyCurves sky = sky_curves(sky_light(Quaternion::Identity()));
   air.airlight = airlight_of(sky, 0);
   if (!air.airlight) {
     air.why = "the horizon is not seen, and so not the sky just above it";
@@ -55,7 +68,7 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   } else if (!altitude_m_) {
     air.why_no_extinction =
         "without the camera's height above the ground (--altitude) terrain has no range";
-  } else if (const auto again = seen_again(sky, stop)) {
+  } else if (const auto again = seen_again(stop)) {
     air.extinction_per_km = again->extinction_per_km;
     air.airlight = again->airlight;
   } else if (const auto fading =
@@ -69,13 +82,12 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   return air;
 }
 
-std::optional<SeenAgain> AirMeter::seen_again(const SkyCurves& sky,
-                                              const std::stop_token& stop) const {
+std::optional<SeenAgain> AirMeter::seen_again(const std::stop_token& stop) const {
   const auto track = track_ground(views_, lens_, own_aircraft_, stop);
   if (!track) return std::nullopt;
-  const auto airlight = airlight_of(sky, track->horizon_rad);
-  return fading_of_same_ground(
-      ground_seen(views_, *track, lens_, own_aircraft_, tone_), *airlight, *altitude_m_);
+  return fading_of_same_ground(ground_seen(views_, *track, lens_, own_aircraft_, tone_),
+                               sky_curves(sky_light(track->level_from_world), kOverTrueHorizon),
+                               *altitude_m_);
 }
 
 std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {

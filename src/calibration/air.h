@@ -42,10 +42,16 @@ class AirMeter {
   std::optional<Sun> sun(std::string& why) const;
 
  private:
-  std::optional<SeenAgain> seen_again(const SkyCurves& sky, const std::stop_token& stop) const;
+  std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
+  // What was seen near the horizon and above, turned by that.
+  std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;
   struct SkySample {
     Vector3 direction;
     double light;
+  };
+  struct Glimpse {
+    Vector3 direction;  // in the world of the views
+    image::Rgb linear;
   };
   lens::Lens lens_;
   const image::Mask* own_aircraft_;
@@ -53,7 +59,7 @@ class AirMeter {
   image::ToneCurve tone_;
   std::vector<PixelRay> sky_rays_;
   std::vector<GroundView> views_;
-  std::vector<SeenLight> sky_light_;
+  std::vector<Glimpse> glimpses_;
   std::vector<SkySample> sky_;
   std::size_t sky_count_ = 0;
 };

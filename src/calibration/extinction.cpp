@@ -14,8 +14,7 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kLowSkyDeg = 2;
-constexpr double kHighSkyDeg = 10;
+constexpr double kSkyUnitDeg = 10;
 constexpr int kSkyBands = 16;
 constexpr std::size_t kFewestInBand = 20;
 constexpr int kFewestBands = 6;
@@ -162,16 +161,16 @@ int sector_of(double azimuth_rad) {
 }
 
 double SkyCurve::at(std::size_t channel, double elevation_rad) const {
-  const double x = elevation_rad / radians(kHighSkyDeg);
+  const double x = elevation_rad / radians(kSkyUnitDeg);
   const auto& p = by_channel[channel];
   return std::clamp(p[0] + x * (p[1] + x * p[2]), 0.01, 1.5);
 }
 
-SkyCurves sky_curves(const std::vector<SeenLight>& seen) {
+SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach) {
   std::vector<std::array<std::vector<double>, 3>> bands(
       static_cast<std::size_t>(kSectors * kSkyBands));
-  const double low = radians(kLowSkyDeg);
-  const double span = radians(kHighSkyDeg) - low;
+  const double low = radians(reach.low_deg);
+  const double span = radians(reach.high_deg) - low;
   for (const SeenLight& s : seen) {
     const double at = (s.elevation_rad - low) / span * kSkyBands;
     if (!(at >= 0 && at < kSkyBands)) continue;
@@ -189,7 +188,7 @@ SkyCurves sky_curves(const std::vector<SeenLight>& seen) {
       const auto& band = bands[static_cast<std::size_t>(sector * kSkyBands + i)];
       if (band[0].size() < kFewestInBand) continue;
       ++count;
-      const double x = (low + (i + 0.5) / kSkyBands * span) / radians(kHighSkyDeg);
+      const double x = (low + (i + 0.5) / kSkyBands * span) / radians(kSkyUnitDeg);
       const Eigen::Vector3d row(1, x, x * x);
       Eigen::RowVector3d middle;
       for (int c = 0; c < 3; ++c) middle[c] = median(band[static_cast<std::size_t>(c)]);

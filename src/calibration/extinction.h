@@ -24,16 +24,19 @@ struct SeenLight {
 };
 int sector_of(double azimuth_rad);
 
-// What an endless way through air looks like, by sector: the sky's light from 2 to 10 degrees of
-// elevation, drawn on to the horizon, where hills hide it (least squares of a parabola on medians).
-// Empty where too little of such sky is seen.
+// What an endless way through air looks like, by sector: the sky's light between two elevations,
+// drawn on to the horizon, where hills hide it (least squares of a parabola on medians). Empty
+// where too little of such sky is seen.
 struct SkyCurve {
-  std::array<std::array<double, 3>, 3> by_channel{};  // 1, elevation, its square, over 10 degrees
+  std::array<std::array<double, 3>, 3> by_channel{};  // of (elevation / 10 degrees)^0, 1, 2
   std::array<double, 3> sigma{};                      // at the horizon
   double at(std::size_t channel, double elevation_rad) const;
 };
 using SkyCurves = std::array<std::optional<SkyCurve>, kSectors>;
-SkyCurves sky_curves(const std::vector<SeenLight>& seen);
+struct SkyReach {
+  double low_deg = 2, high_deg = 10;
+};
+SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach = {});
 
 // Their mean at an elevation; empty where there is none.
 std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation_rad);

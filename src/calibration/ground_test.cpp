@@ -72,42 +72,58 @@ TEST(GroundTrack, WithoutGroundThereIsNone) {
   EXPECT_THROW(track_ground(views, lens, nullptr, stop.get_token()), Interrupted);
 }
 
-// Squares of any light, come to from afar; the sky says an airlight that is a tenth off.
+// Squares of any light, come to from afar, and what lies beyond them. The sky was seen in one half
+// of the sectors alone, brighter towards the sun, and is a little off.
 TEST(SameGround, TellsExtinctionAndAirlight) {
-  const std::array<double, 3> extinction_per_km{0.27, 0.3, 0.36}, airlight{0.5, 0.6, 0.7};
+  const std::array<double, 3> extinction_per_km{0.27, 0.3, 0.36};
+  const auto airlight = [](std::size_t c, int sector) {
+    return (0.5 + 0.1 * double(c)) * (1 + 0.2 * sector / kSectors);
+  };
+  SkyCurves sky;
+  for (int sector = 0; sector < kSectors / 2; ++sector) {
+    auto& curve = sky[static_cast<std::size_t>(sector)].emplace();
+    for (std::size_t c = 0; c < 3; ++c)
+      curve.by_channel[c] = {airlight(c, sector) * (sector % 2 == 0 ? 0.97 : 1.01), 0, 0};
+  }
   constexpr double kAltitude_m = 120;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> own(0.03, 0.4), noise(-0.002, 0.002);
-  std::vector<GroundSeen> seen;
+  const auto seen_as = [&](const std::array<double, 3>& light, int sector, double range) {
+    std::array<double, 3> seen{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double t = std::exp(-extinction_per_km[c] * 1e-3 * kAltitude_m * range);
+      seen[c] = airlight(c, sector) + (light[c] - airlight(c, sector)) * t + noise(random);
+    }
+    return seen;
+  };
+  GroundSeen seen;
   for (int square = 0; square < 200; ++square) {
     const std::array<double, 3> light{own(random), own(random), own(random)};
-    for (double range = 3 + 0.02 * square; range < 20; range += 1.5) {
-      GroundSeen s{square, range, {}};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double t = std::exp(-extinction_per_km[c] * 1e-3 * kAltitude_m * range);
-        s.light[c] = airlight[c] + (light[c] - airlight[c]) * t + noise(random);
-      }
-      seen.push_back(s);
-    }
+    for (double range = 3 + 0.02 * square; range < 20; range += 1.5)
+      seen.squares.push_back(
+          {square, square % kSectors, range, seen_as(light, square % kSectors, range)});
   }
-  const auto found =
-      fading_of_same_ground(seen, {{{0.45, 0.05}, {0.65, 0.05}, {0.75, 0.05}}}, kAltitude_m);
+  for (int sector = 0; sector < kSectors; ++sector)
+    for (double range = 20; range < 400; range *= 1.4)
+      seen.far.push_back({sector, range, seen_as({0.22, 0.2, 0.21}, sector, range)});
+  const auto found = fading_of_same_ground(seen, sky, kAltitude_m);
   ASSERT_TRUE(found);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(
-        found->extinction_per_km[c].value, extinction_per_km[c], 0.04 * extinction_per_km[c]);
-    EXPECT_NEAR(found->airlight[c].value, airlight[c], 0.03 * airlight[c]);
+        found->extinction_per_km[c].value, extinction_per_km[c], 0.02 * extinction_per_km[c]);
+    EXPECT_NEAR(found->airlight[c].value, airlight(c, 5), 0.02 * airlight(c, 5));
   }
-  // From one place alone nothing is seen again.
-  std::erase_if(seen, [](const GroundSeen& s) { return s.range > 5; });
-  EXPECT_FALSE(
-      fading_of_same_ground(seen, {{{0.45, 0.05}, {0.65, 0.05}, {0.75, 0.05}}}, kAltitude_m));
+  // From one place alone nothing is seen again, and what lies far is not near.
+  GroundSeen near = seen;
+  near.far.clear();
+  std::erase_if(near.squares, [](const SquareSeen& s) { return s.range > 5; });
+  EXPECT_FALSE(fading_of_same_ground(near, sky, kAltitude_m));
   // Nor where there is much ground, but each square is seen once.
-  seen.clear();
+  GroundSeen once;
   for (int square = 0; square < 1000; ++square)
-    seen.push_back({square, 3 + 0.015 * square, {own(random), own(random), own(random)}});
-  EXPECT_FALSE(
-      fading_of_same_ground(seen, {{{0.45, 0.05}, {0.65, 0.05}, {0.75, 0.05}}}, kAltitude_m));
+    once.squares.push_back(
+        {square, 0, 3 + 0.015 * square, {own(random), own(random), own(random)}});
+  EXPECT_FALSE(fading_of_same_ground(once, sky, kAltitude_m));
 }
 
 }  // namespace

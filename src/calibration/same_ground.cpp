@@ -3,99 +3,148 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
+#include <vector>
 
-#include "calibration/rays.h"
-#include "image/colour.h"
+#include <Eigen/Cholesky>
 
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kNearest = 2.5;       // heights
-constexpr double kShareSeen = 0.6;     // of a square's pixels
-constexpr double kFewestPixels = 3;    // of a square
-constexpr double kMostPixels = 1.5e6;  // of a view that are looked at
 constexpr std::size_t kFewestSeen = 300;
 
-// How far a square's light may be from the model: a share of its own light, and at the least.
+// How far a square's light may be from the model: a share of its own light, and at the least. What
+// all squares have in common counts, not how many they are: views of one square share its error,
+// and so in part do squares.
 constexpr double kUneven = 0.05, kLeastError = 0.004;
-constexpr double kApart = 4;            // views of one square whose errors are not the same error
-constexpr double kAirlightTrust = 0.2;  // of its value: clouds stand at the horizon
+constexpr double kApart = 4, kShare = 0.3;
+// Far ground's light, of the mean ground's, and at the least; and what is known of that mean.
+constexpr double kFarUneven = 0.25, kLeastFarError = 0.006, kMeanTrust = 0.05;
+// How near airlight is to the sky's at the horizon, where that was seen in the sector and where
+// not.
+constexpr double kSkyTrust = 0.03, kOtherSkyTrust = 0.15;
+// Squares look more alike from so far (heights): pixels and errors of the way mix them.
+constexpr double kMixedAt = 15, kMixedTrust = 0.03;
 constexpr double kUsualSlope = 0.5, kSlopeSpread = 0.5, kMostSlope = 2, kSlopeStep = 0.1;
 constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
 constexpr double kModelError = 0.1;  // of the value
 constexpr double kLeastKnown = 0.3;  // of the value: a larger error is no answer
 
 // Extinctions that are tried, per km.
-constexpr int kTried = 160;
+constexpr int kTried = 240;
 constexpr double kWeakest = 0.01, kStrongest = 2;
 double tried(double i) { return kWeakest * std::pow(kStrongest / kWeakest, i / (kTried - 1)); }
 double place_of(double per_km) {
   return std::log(per_km / kWeakest) / std::log(kStrongest / kWeakest) * (kTried - 1);
 }
 
-// One channel of a square in a view.
+// The airlight of each sector; the light of the ground on the whole; the share of contrast among
+// squares that is gained at kMixedAt, by the range squared.
+constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+// A square in a view, or a band of far ground: one channel.
 struct Row {
-  int square = 0;
-  double range = 0, light = 0, weight = 1;
+  int square = 0, sector = 0;
+  double range = 0, light = 0;
+  double weight = 1, contrast = 0;  // of squares: own light over the mean
 };
 
 // Weighted least squares for one extinction.
 struct Solution {
   double cost = 0;
-  Estimate airlight;
+  Unknowns x, sigma;
   std::vector<double> own;  // light of each square
 };
 
-Solution solved(const std::vector<Row>& rows, double airlight, double per_height) {
-  struct Square {
-    double tt = 0, ta = 0, ty = 0;
-  };
-  std::vector<Square> squares(static_cast<std::size_t>(rows.back().square) + 1);
-  const double trust = 1 / (kAirlightTrust * airlight * kAirlightTrust * airlight);
-  double aa = trust, ay = trust * airlight, yy = trust * airlight * airlight;
-  for (const Row& r : rows) {
-    const double t = std::exp(-per_height * r.range);
-    Square& q = squares[static_cast<std::size_t>(r.square)];
-    q.tt += r.weight * t * t, q.ta += r.weight * t * (1 - t), q.ty += r.weight * t * r.light;
-    aa += r.weight * (1 - t) * (1 - t), ay += r.weight * (1 - t) * r.light;
-    yy += r.weight * r.light * r.light;
-  }
-  // The squares' own light is eliminated: each stands in its own rows alone.
-  for (const Square& q : squares) {
-    if (q.tt == 0) continue;
-    aa -= q.ta * q.ta / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
-  }
-  Solution result{yy - ay * ay / aa, {ay / aa, std::sqrt(1 / aa)}, {}};
-  for (const Square& q : squares)
-    result.own.push_back(q.tt > 0 ? (q.ty - ay / aa * q.ta) / q.tt : 0);
-  return result;
-}
-
 struct Channel {
-  std::vector<Row> rows;
-  double airlight = 0;
+  std::vector<Row> squares, far;
+  std::array<double, kSectors> sky{}, sky_trust{};
+  double mean_light = 0.2;   // that most ground is near
   std::vector<double> cost;  // of each extinction that is tried
 
+  Solution solved(double per_height) const;
+  void weigh(double per_height);
   // With weights that fit the best of them.
   void try_all(double altitude_m);
 };
 
+Solution Channel::solved(double per_height) const {
+  struct Square {
+    double tt = 0, ty = 0;
+    Unknowns ta = Unknowns::Zero();
+  };
+  std::vector<Square> all(static_cast<std::size_t>(squares.back().square) + 1);
+  Normal aa = Normal::Zero();
+  Unknowns ay = Unknowns::Zero();
+  double yy = 0;
+  const auto expect = [&](int unknown, double value, double trust) {
+    const double weight = 1 / (trust * value * trust * value);
+    aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
+  };
+  aa(kMixed, kMixed) = 1 / (kMixedTrust * kMixedTrust);
+  for (std::size_t s = 0; s < kSectors; ++s) expect(static_cast<int>(s), sky[s], sky_trust[s]);
+  expect(kMean, mean_light, kMeanTrust);
+  for (const Row& r : squares) {
+    const double t = std::exp(-per_height * r.range);
+    Square& q = all[static_cast<std::size_t>(r.square)];
+    const double air = 1 - t;
+    const double mixed = t * r.contrast * r.range * r.range / (kMixedAt * kMixedAt);
+    q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
+    q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
+    aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
+    aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
+    ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
+    yy += r.weight * r.light * r.light;
+  }
+  // The squares' own light is eliminated: each stands in its own rows alone.
+  for (const Square& q : all) {
+    if (q.tt == 0) continue;
+    aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
+  }
+  for (const Row& r : far) {
+    const double t = std::exp(-per_height * r.range);
+    const double error = std::hypot(kLeastFarError, kFarUneven * mean_light * t);
+    const double w = 1 / (error * error);
+    Unknowns row = Unknowns::Zero();
+    row[r.sector] = 1 - t, row[kMean] = t;
+    aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
+  }
+  const Eigen::LDLT<Normal> solver(aa);
+  Solution result;
+  result.x = solver.solve(ay);
+  result.cost = yy - ay.dot(result.x);
+  result.sigma = solver.solve(Normal::Identity()).diagonal().cwiseSqrt();
+  for (const Square& q : all)
+    result.own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(result.x)) / q.tt : 0);
+  return result;
+}
+
+void Channel::weigh(double per_height) {
+  const Solution at = solved(per_height);
+  std::vector<int> views(at.own.size(), 0);
+  for (const Row& r : squares) ++views[static_cast<std::size_t>(r.square)];
+  double sum = 0, total = 0;
+  for (Row& r : squares) {
+    const auto square = static_cast<std::size_t>(r.square);
+    const double own = std::clamp(at.own[square], 0.01, 1.0);
+    const double error = std::hypot(kLeastError, kUneven * own);
+    const double share = std::min(1.0, kApart / views[square]);
+    r.weight = kShare * share / (error * error);
+    sum += share * own, total += share;
+  }
+  mean_light = sum / total;
+  for (Row& r : squares)
+    r.contrast = std::clamp(at.own[static_cast<std::size_t>(r.square)], 0.01, 1.0) - mean_light;
+}
+
 void Channel::try_all(double altitude_m) {
-  std::vector<int> views(static_cast<std::size_t>(rows.back().square) + 1, 0);
-  for (const Row& r : rows) ++views[static_cast<std::size_t>(r.square)];
   cost.resize(kTried);
   double best = 0.1;
   for (int round = 0; round < 3; ++round) {
-    const Solution at = solved(rows, airlight, best * altitude_m * 1e-3);
-    for (Row& r : rows) {
-      const auto square = static_cast<std::size_t>(r.square);
-      const double error = std::hypot(kLeastError, kUneven * std::clamp(at.own[square], 0.01, 1.0));
-      r.weight = std::min(1.0, kApart / views[square]) / (error * error);
-    }
+    weigh(best * altitude_m * 1e-3);
     for (int i = 0; i < kTried; ++i)
-      cost[static_cast<std::size_t>(i)] = solved(rows, airlight, tried(i) * altitude_m * 1e-3).cost;
+      cost[static_cast<std::size_t>(i)] = solved(tried(i) * altitude_m * 1e-3).cost;
     best = tried(double(std::min_element(cost.begin(), cost.end()) - cost.begin()));
   }
 }
@@ -151,78 +200,48 @@ ColourEstimate mean_of(const std::vector<Guess>& guesses) {
   return result;
 }
 
-}  // namespace
-
-std::vector<GroundSeen> ground_seen(const std::vector<GroundView>& views,
-                                    const GroundTrack& track,
-                                    const lens::Lens& lens,
-                                    const image::Mask* own_aircraft,
-                                    const image::ToneCurve& tone) {
-  const double pixels = double(lens.size().width) * lens.size().height;
-  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMostPixels))));
-  const double step_rad = step / lens.focal_px();
-  const double farthest = std::sqrt(1 / step_rad);
-  const std::vector<PixelRay> rays = pixel_rays(lens, own_aircraft, step / 2, step);
-  struct Sum {
-    double count = 0, range = 0;
-    std::array<double, 3> light{};
-  };
-  std::map<std::pair<int, int>, int> squares;
-  std::vector<GroundSeen> all;
-  for (std::size_t k = 0; k < track.places.size(); ++k) {
-    const GroundView& view = views[track.first + k];
-    const image::ColourCode code(view.picture->colour);
-    const Quaternion level_from_cam = track.level_from_world * view.cam_from_world.conjugate();
-    std::map<std::pair<int, int>, Sum> sums;
-    for (const PixelRay& ray : rays) {
-      const auto way = place_on_ground(level_from_cam * ray.in_cam);
-      if (!way) continue;
-      const double range = std::hypot(way->norm(), 1.0);
-      if (range < kNearest || range > farthest) continue;
-      const Eigen::Vector2d place = track.places[k] + *way;
-      Sum& sum =
-          sums[{static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))}];
-      const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone);
-      sum.count += 1, sum.range += range;
-      for (std::size_t c = 0; c < 3; ++c) sum.light[c] += double(linear[c]);
-    }
-    for (const auto& [at, sum] : sums) {
-      const double range = sum.range / sum.count;
-      const double whole = 1 / (range * range * range * step_rad * step_rad);
-      if (sum.count < std::max(kFewestPixels, kShareSeen * whole)) continue;
-      GroundSeen seen;
-      seen.square = squares.emplace(at, static_cast<int>(squares.size())).first->second;
-      seen.range = range;
-      for (std::size_t c = 0; c < 3; ++c) seen.light[c] = sum.light[c] / sum.count;
-      all.push_back(seen);
-    }
+// Mean over the sectors that were looked into.
+Estimate airlight_ahead(const Channel& channel, const Solution& at) {
+  std::array<bool, kSectors> seen{};
+  for (const Row& r : channel.squares) seen[static_cast<std::size_t>(r.sector)] = true;
+  Estimate mean;
+  int count = 0;
+  for (int sector = 0; sector < kSectors; ++sector) {
+    if (!seen[static_cast<std::size_t>(sector)]) continue;
+    mean.value += at.x[sector], mean.sigma += at.sigma[sector];
+    ++count;
   }
-  std::stable_sort(all.begin(), all.end(), [](const GroundSeen& a, const GroundSeen& b) {
-    return a.square < b.square;
-  });
-  return all;
+  mean.value /= count, mean.sigma /= count;
+  return {mean.value, std::hypot(mean.sigma, kModelError * mean.value)};
 }
 
-std::optional<SeenAgain> fading_of_same_ground(const std::vector<GroundSeen>& seen,
-                                               const ColourEstimate& airlight,
+}  // namespace
+
+std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
+                                               const SkyCurves& sky,
                                                double altitude_m) {
-  if (seen.size() < kFewestSeen) return std::nullopt;
+  const auto mean_sky = airlight_of(sky, 0);
+  if (!mean_sky || seen.squares.size() < kFewestSeen) return std::nullopt;
   std::array<Channel, 3> channels;
   for (std::size_t c = 0; c < 3; ++c) {
-    for (const GroundSeen& s : seen) channels[c].rows.push_back({s.square, s.range, s.light[c], 1});
-    channels[c].airlight = airlight[c].value;
-    channels[c].try_all(altitude_m);
+    Channel& channel = channels[c];
+    for (const SquareSeen& s : seen.squares)
+      channel.squares.push_back({s.square, s.sector, s.range, s.light[c]});
+    for (const FarGround& f : seen.far) channel.far.push_back({0, f.sector, f.range, f.light[c]});
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      channel.sky[s] = sky[s] ? sky[s]->at(c, 0) : (*mean_sky)[c].value;
+      channel.sky_trust[s] = sky[s] ? kSkyTrust : kOtherSkyTrust;
+    }
+    channel.try_all(altitude_m);
   }
   SeenAgain result;
   result.extinction_per_km = mean_of(guesses(channels));
   for (std::size_t c = 0; c < 3; ++c) {
     Estimate& extinction = result.extinction_per_km[c];
-    const Solution at =
-        solved(channels[c].rows, airlight[c].value, extinction.value * altitude_m * 1e-3);
+    result.airlight[c] =
+        airlight_ahead(channels[c], channels[c].solved(extinction.value * altitude_m * 1e-3));
     extinction.sigma = std::hypot(extinction.sigma, kModelError * extinction.value);
     if (extinction.sigma > kLeastKnown * extinction.value) return std::nullopt;
-    result.airlight[c] = {at.airlight.value,
-                          std::hypot(at.airlight.sigma, kModelError * at.airlight.value)};
   }
   return result;
 }

@@ -50,10 +50,17 @@ TEST(Calibrate, FindsTheSun) {
   }
 }
 
-// A flight over two kilometres, so that not one field makes the ground.
+// Flights over two kilometres, so that not one field makes the ground; with the sun aside and
+// ahead.
 TEST(Calibrate, MeasuresTheAir) {
-  for (const double extinction_per_km : {0.12, 0.3}) {
-    synthetic::FlightOptions o = ideal(9);
+  struct Case {
+    std::uint64_t seed;
+    double extinction_per_km, sun_azimuth_deg;
+  };
+  for (const auto& [seed, extinction_per_km, sun_azimuth_deg] :
+       {Case{9, 0.12, 120}, Case{6, 0.3, 120}, Case{12, 0.12, 10}}) {
+    synthetic::FlightOptions o = ideal(seed);
+    o.sun_azimuth_deg = sun_azimuth_deg;
     o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
     o.cloud_cover = 0.3;
     o.own_aircraft = false;
