@@ -2,6 +2,7 @@
 #include "calibration/blur.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -32,24 +33,30 @@ double slope_ratio(const cv::Mat& grey, const Pixel& along) {
   return a.dot(a) / std::max(1e-6, b.dot(b));
 }
 
+// Cubic convolution (Keys 1981, a = -1/2) from the pixel before to the second one after: unlike a
+// straight line between two pixels it does not blur.
+std::array<double, 4> cubic(double f) {
+  return {((-0.5 * f + 1) * f - 0.5) * f,
+          (1.5 * f - 2.5) * f * f + 1,
+          ((-1.5 * f + 2) * f + 0.5) * f,
+          (0.5 * f - 0.5) * f * f};
+}
+
 // Blur along a straight line of that length.
 cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   if (length_px < 0.05) return grey;
-  const int half = static_cast<int>(std::ceil(length_px / 2)) + 1;
+  const int half = static_cast<int>(std::ceil(length_px / 2)) + 2;
   cv::Mat kernel(2 * half + 1, 2 * half + 1, CV_32F, cv::Scalar(0));
   constexpr int kPoints = 64;
   for (int i = 0; i < kPoints; ++i) {
     const Pixel p = along * length_px * ((i + 0.5) / kPoints - 0.5);
     const int x = static_cast<int>(std::floor(p.x()));
     const int y = static_cast<int>(std::floor(p.y()));
-    const double fx = p.x() - x, fy = p.y() - y;
-    const auto add = [&](int i0, int j0, double w) {
-      kernel.at<float>(half + j0, half + i0) += static_cast<float>(w / kPoints);
-    };
-    add(x, y, (1 - fx) * (1 - fy));
-    add(x + 1, y, fx * (1 - fy));
-    add(x, y + 1, (1 - fx) * fy);
-    add(x + 1, y + 1, fx * fy);
+    const std::array<double, 4> wx = cubic(p.x() - x), wy = cubic(p.y() - y);
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 4; ++k)
+        kernel.at<float>(half + y + j - 1, half + x + k - 1) += static_cast<float>(
+            wx[static_cast<std::size_t>(k)] * wy[static_cast<std::size_t>(j)] / kPoints);
   }
   cv::Mat result;
   cv::filter2D(grey, result, CV_32F, kernel);

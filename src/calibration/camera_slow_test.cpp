@@ -166,7 +166,7 @@ TEST(Calibrate, MeasuresExposureFromBlur) {
     return picture;
   });
   const Calibration c = calibrate(clip.path(), {});
-  expect_within(c, "shutter.exposure_s", 0.5 / 30, 0.1);
+  expect_within(c, "shutter.exposure_s", 0.5 / 30, 0.08);
 }
 
 TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
