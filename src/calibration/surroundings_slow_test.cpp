@@ -58,7 +58,7 @@ TEST(Calibrate, MeasuresTheAir) {
     double extinction_per_km, sun_azimuth_deg;
   };
   for (const auto& [seed, extinction_per_km, sun_azimuth_deg] :
-       {Case{9, 0.12, 120}, Case{6, 0.3, 120}, Case{12, 0.12, 10}}) {
+       {Case{9, 0.12, 120}, Case{9, 0.3, 120}, Case{6, 0.3, 120}, Case{12, 0.12, 10}}) {
     synthetic::FlightOptions o = ideal(seed);
     o.sun_azimuth_deg = sun_azimuth_deg;
     o.lens = lens::fisheye_from_vertical_fov(110, {o.width, o.height});
