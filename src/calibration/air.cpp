@@ -13,10 +13,15 @@ namespace {
 
 constexpr int kFirstSky = 1, kSkyStep = 6;  // pixels
 constexpr double kLowestSkyDeg = 2.5;
-constexpr double kMostTiltDeg = 6;  // of the horizon that the views are given
 // Where the true horizon is known the sky is read down to it.
 constexpr SkyReach kOverTrueHorizon{0.6, 6};
 constexpr std::size_t kFewest = 200;
+constexpr std::size_t kSunStep = 3;  // glimpses of the sky that one is taken of for the sun
+
+struct SkySample {
+  Vector3 direction;
+  double light = 0;
+};
 
 }  // namespace
 
@@ -36,24 +41,16 @@ void AirMeter::add(const image::Picture& picture, const Quaternion& cam_from_wor
   const Quaternion world_from_cam = cam_from_world.conjugate();
   for (const PixelRay& ray : sky_rays_) {
     const Vector3 direction = world_from_cam * ray.in_cam;
-    const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-    if (elevation_rad < -radians(kMostTiltDeg)) continue;
-    const image::Rgb linear = image::linear_at(picture, code, ray.x, ray.y, tone_);
-    glimpses_.push_back({direction, linear});
-    if (elevation_rad > radians(kLowestSkyDeg) && ++sky_count_ % 3 == 0) {
-      const double light =
-          0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2]);
-      sky_.push_back({direction, light});
-    }
+    if (direction.z() > std::sin(radians(kMostTiltDeg))) continue;
+    glimpses_.push_back({direction, image::linear_at(picture, code, ray.x, ray.y, tone_)});
   }
 }
 
 std::vector<SeenLight> AirMeter::sky_light(const Quaternion& level_from_world) const {
   std::vector<SeenLight> result;
   for (const Glimpse& g : glimpses_) {
-    const Vector3 d = level_from_world * g.direction;
-    const double elevation_rad = std::asin(std::clamp(-d.z(), -1.0, 1.0));
-    if (elevation_rad > 0) result.push_back({std::atan2(d.y(), d.x()), elevation_rad, g.linear});
+    const Vector3 direction = level_from_world * g.direction;
+    if (direction.z() < 0) result.push_back(seen_under(direction, g.linear));
   }
   return result;
 }
@@ -91,13 +88,21 @@ std::optional<SeenAgain> AirMeter::seen_again(const std::stop_token& stop) const
 }
 
 std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {
-  if (sky_.size() < 10 * kFewest) {
+  std::vector<SkySample> sky;
+  for (std::size_t i = 0, above = 0; i < glimpses_.size(); ++i) {
+    const auto& [direction, linear] = glimpses_[i];
+    if (!(-direction.z() > std::sin(radians(kLowestSkyDeg))) || ++above % kSunStep != 0) continue;
+    sky.push_back(
+        {direction,
+         0.2126 * double(linear[0]) + 0.7152 * double(linear[1]) + 0.0722 * double(linear[2])});
+  }
+  if (sky.size() < 10 * kFewest) {
     why = "too little sky is seen";
     return std::nullopt;
   }
-  const std::size_t stride = std::max<std::size_t>(1, sky_.size() / 4000);
+  const std::size_t stride = std::max<std::size_t>(1, sky.size() / 4000);
   std::vector<SkySample> samples;
-  for (std::size_t i = 0; i < sky_.size(); i += stride) samples.push_back(sky_[i]);
+  for (std::size_t i = 0; i < sky.size(); i += stride) samples.push_back(sky[i]);
   using Row = Eigen::Matrix<double, 8, 1>;
   const auto basis = [](const Vector3& d, const Vector3& sun) {
     const double up = std::max(0.0, -d.z());

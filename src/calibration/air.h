@@ -45,10 +45,6 @@ class AirMeter {
   std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
   // What was seen near the horizon and above, turned by that.
   std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;
-  struct SkySample {
-    Vector3 direction;
-    double light;
-  };
   struct Glimpse {
     Vector3 direction;  // in the world of the views
     image::Rgb linear;
@@ -60,8 +56,6 @@ class AirMeter {
   std::vector<PixelRay> sky_rays_;
   std::vector<GroundView> views_;
   std::vector<Glimpse> glimpses_;
-  std::vector<SkySample> sky_;
-  std::size_t sky_count_ = 0;
 };
 
 }  // namespace airtruth::calibration

@@ -9,7 +9,6 @@
 #include <Eigen/Cholesky>
 
 #include "base/median.h"
-#include "geometry/transform.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -154,6 +153,12 @@ Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m)
 }
 
 }  // namespace
+
+SeenLight seen_under(const Vector3& direction, const image::Rgb& linear) {
+  return {std::atan2(direction.y(), direction.x()),
+          std::asin(std::clamp(-direction.z(), -1.0, 1.0)),
+          linear};
+}
 
 int sector_of(double azimuth_rad) {
   const double turn = azimuth_rad / (2 * kPi) - std::floor(azimuth_rad / (2 * kPi));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/calibration.h"
+#include "geometry/transform.h"
 #include "image/colour.h"
 
 namespace airtruth::calibration {
@@ -22,6 +23,7 @@ struct SeenLight {
   double elevation_rad = 0;  // below 0: the ground
   image::Rgb linear;
 };
+SeenLight seen_under(const Vector3& direction_in_level, const image::Rgb& linear);
 int sector_of(double azimuth_rad);
 
 // What an endless way through air looks like, by sector: the sky's light between two elevations,

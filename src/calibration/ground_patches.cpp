@@ -23,11 +23,9 @@ std::vector<SeenLight> ground_of(const GroundView& view,
   std::vector<SeenLight> ground;
   for (const PixelRay& ray : rays) {
     const Vector3 direction = world_from_cam * ray.in_cam;
-    const double elevation_rad = std::asin(std::clamp(-direction.z(), -1.0, 1.0));
-    if (elevation_rad > 0) continue;
-    ground.push_back({std::atan2(direction.y(), direction.x()),
-                      elevation_rad,
-                      image::linear_at(*view.picture, code, ray.x, ray.y, tone)});
+    if (direction.z() < 0) continue;
+    ground.push_back(
+        seen_under(direction, image::linear_at(*view.picture, code, ray.x, ray.y, tone)));
   }
   return ground;
 }

@@ -20,7 +20,8 @@ constexpr double kEvenOver = 1.1;         // heights
 constexpr double kApart = 2.5;            // heights between views that tell the horizon
 constexpr double kLeastAgreement = 0.25;
 constexpr double kTiltStepDeg = 0.25;
-constexpr int kCoarse = 4, kMostTiltSteps = 6 * kCoarse;
+constexpr int kCoarse = 4, kMostTiltSteps = static_cast<int>(kMostTiltDeg / kTiltStepDeg);
+static_assert(kMostTiltSteps % kCoarse == 0);
 constexpr std::size_t kFewestViews = 4;
 constexpr int kSide = 2 * static_cast<int>(kFar / kCell) + 1;
 constexpr int kReach = static_cast<int>(kMostBetween / kCell);

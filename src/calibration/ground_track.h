@@ -13,6 +13,8 @@
 // Where a camera flew over level ground, from the ground alone.
 namespace airtruth::calibration {
 
+constexpr double kMostTiltDeg = 6;  // of the horizon that views are given
+
 struct GroundView {
   const image::Picture* picture = nullptr;  // outlives the view
   Quaternion cam_from_world;                // north-east-down

@@ -50,11 +50,27 @@ struct Row {
   double weight = 1, contrast = 0;  // of squares: own light over the mean
 };
 
-// Weighted least squares for one extinction.
-struct Solution {
-  double cost = 0;
-  Unknowns x, sigma;
-  std::vector<double> own;  // light of each square
+// Weighted least squares for one extinction; the squares' own light is eliminated, since each
+// stands in its own rows alone.
+struct System {
+  struct Square {
+    double tt = 0, ty = 0;
+    Unknowns ta = Unknowns::Zero();
+  };
+  std::vector<Square> squares;
+  Normal aa = Normal::Zero();
+  Unknowns ay = Unknowns::Zero();
+  double yy = 0;
+
+  Unknowns solution() const { return aa.ldlt().solve(ay); }
+  double cost() const { return yy - ay.dot(solution()); }
+  Unknowns sigma() const { return aa.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt(); }
+  std::vector<double> own_light() const {
+    const Unknowns x = solution();
+    std::vector<double> own;
+    for (const Square& q : squares) own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(x)) / q.tt : 0);
+    return own;
+  }
 };
 
 struct Channel {
@@ -63,21 +79,16 @@ struct Channel {
   double mean_light = 0.2;   // that most ground is near
   std::vector<double> cost;  // of each extinction that is tried
 
-  Solution solved(double per_height) const;
+  System system(double per_height) const;
   void weigh(double per_height);
   // With weights that fit the best of them.
   void try_all(double altitude_m);
 };
 
-Solution Channel::solved(double per_height) const {
-  struct Square {
-    double tt = 0, ty = 0;
-    Unknowns ta = Unknowns::Zero();
-  };
-  std::vector<Square> all(static_cast<std::size_t>(squares.back().square) + 1);
-  Normal aa = Normal::Zero();
-  Unknowns ay = Unknowns::Zero();
-  double yy = 0;
+System Channel::system(double per_height) const {
+  System result;
+  auto& [all, aa, ay, yy] = result;
+  all.resize(static_cast<std::size_t>(squares.back().square) + 1);
   const auto expect = [&](int unknown, double value, double trust) {
     const double weight = 1 / (trust * value * trust * value);
     aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
@@ -87,7 +98,7 @@ Solution Channel::solved(double per_height) const {
   expect(kMean, mean_light, kMeanTrust);
   for (const Row& r : squares) {
     const double t = std::exp(-per_height * r.range);
-    Square& q = all[static_cast<std::size_t>(r.square)];
+    System::Square& q = all[static_cast<std::size_t>(r.square)];
     const double air = 1 - t;
     const double mixed = t * r.contrast * r.range * r.range / (kMixedAt * kMixedAt);
     q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
@@ -97,8 +108,7 @@ Solution Channel::solved(double per_height) const {
     ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
     yy += r.weight * r.light * r.light;
   }
-  // The squares' own light is eliminated: each stands in its own rows alone.
-  for (const Square& q : all) {
+  for (const System::Square& q : all) {
     if (q.tt == 0) continue;
     aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
   }
@@ -110,32 +120,25 @@ Solution Channel::solved(double per_height) const {
     row[r.sector] = 1 - t, row[kMean] = t;
     aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
   }
-  const Eigen::LDLT<Normal> solver(aa);
-  Solution result;
-  result.x = solver.solve(ay);
-  result.cost = yy - ay.dot(result.x);
-  result.sigma = solver.solve(Normal::Identity()).diagonal().cwiseSqrt();
-  for (const Square& q : all)
-    result.own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(result.x)) / q.tt : 0);
   return result;
 }
 
 void Channel::weigh(double per_height) {
-  const Solution at = solved(per_height);
-  std::vector<int> views(at.own.size(), 0);
+  const std::vector<double> own_light = system(per_height).own_light();
+  std::vector<int> views(own_light.size(), 0);
   for (const Row& r : squares) ++views[static_cast<std::size_t>(r.square)];
   double sum = 0, total = 0;
   for (Row& r : squares) {
     const auto square = static_cast<std::size_t>(r.square);
-    const double own = std::clamp(at.own[square], 0.01, 1.0);
+    const double own = std::clamp(own_light[square], 0.01, 1.0);
     const double error = std::hypot(kLeastError, kUneven * own);
     const double share = std::min(1.0, kApart / views[square]);
     r.weight = kShare * share / (error * error);
+    r.contrast = own;
     sum += share * own, total += share;
   }
   mean_light = sum / total;
-  for (Row& r : squares)
-    r.contrast = std::clamp(at.own[static_cast<std::size_t>(r.square)], 0.01, 1.0) - mean_light;
+  for (Row& r : squares) r.contrast -= mean_light;
 }
 
 void Channel::try_all(double altitude_m) {
@@ -144,7 +147,7 @@ void Channel::try_all(double altitude_m) {
   for (int round = 0; round < 3; ++round) {
     weigh(best * altitude_m * 1e-3);
     for (int i = 0; i < kTried; ++i)
-      cost[static_cast<std::size_t>(i)] = solved(tried(i) * altitude_m * 1e-3).cost;
+      cost[static_cast<std::size_t>(i)] = system(tried(i) * altitude_m * 1e-3).cost();
     best = tried(double(std::min_element(cost.begin(), cost.end()) - cost.begin()));
   }
 }
@@ -201,14 +204,15 @@ ColourEstimate mean_of(const std::vector<Guess>& guesses) {
 }
 
 // Mean over the sectors that were looked into.
-Estimate airlight_ahead(const Channel& channel, const Solution& at) {
+Estimate airlight_ahead(const Channel& channel, const System& system) {
+  const Unknowns airlight = system.solution(), sigma = system.sigma();
   std::array<bool, kSectors> seen{};
   for (const Row& r : channel.squares) seen[static_cast<std::size_t>(r.sector)] = true;
   Estimate mean;
   int count = 0;
   for (int sector = 0; sector < kSectors; ++sector) {
     if (!seen[static_cast<std::size_t>(sector)]) continue;
-    mean.value += at.x[sector], mean.sigma += at.sigma[sector];
+    mean.value += airlight[sector], mean.sigma += sigma[sector];
     ++count;
   }
   mean.value /= count, mean.sigma /= count;
@@ -239,7 +243,7 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
   for (std::size_t c = 0; c < 3; ++c) {
     Estimate& extinction = result.extinction_per_km[c];
     result.airlight[c] =
-        airlight_ahead(channels[c], channels[c].solved(extinction.value * altitude_m * 1e-3));
+        airlight_ahead(channels[c], channels[c].system(extinction.value * altitude_m * 1e-3));
     extinction.sigma = std::hypot(extinction.sigma, kModelError * extinction.value);
     if (extinction.sigma > kLeastKnown * extinction.value) return std::nullopt;
   }
