@@ -87,7 +87,10 @@ struct Channel {
 
 System Channel::system(double per_height) const {
   System result;
-  auto& [all, aa, ay, yy] = result;
+  std::vector<System::Square>& all = result.squares;
+  Normal& aa = result.aa;
+  Unknowns& ay = result.ay;
+  double& yy = result.yy;
   all.resize(static_cast<std::size_t>(squares.back().square) + 1);
   const auto expect = [&](int unknown, double value, double trust) {
     const double weight = 1 / (trust * value * trust * value);
