@@ -31,12 +31,13 @@ constexpr std::size_t kFewestEdges = 12;
 // Of the sharp edges the most symmetric: a line along one side of an edge looks like half a mask.
 constexpr double kSharp = 1.4;  // times the sharpest
 constexpr double kSymmetricShare = 0.25;
-constexpr std::size_t kFewestSymmetric = 40;
-constexpr double kAsSharp = 1.1;  // times the sharpest: within luck
-constexpr std::size_t kFewestFitted = 8, kMostFitted = 150;
+constexpr std::size_t kFewestSymmetric = 60;
+constexpr std::size_t kMostFitted = 150;
 // Between frames, across the edge: what that blurs is not sharp.
-constexpr double kMostMoved = 10;  // px
-constexpr double kBin = 0.2;       // px
+constexpr double kMostMoved = 10;          // px
+constexpr double kSamePlace = 1;           // px
+constexpr double kSameDirection = 0.9994;  // cosine: 2 degrees
+constexpr double kBin = 0.2;               // px
 
 struct Found {
   double x, y;    // on the edge
@@ -302,9 +303,21 @@ void EdgeMeter::add(const image::Picture& frame,
     edge.moved_px = own                 ? 0
                     : frame_from_before ? moved_across(found->line, *frame_from_before)
                                         : std::numeric_limits<double>::quiet_NaN();
+    edge.x = found->line.x, edge.y = found->line.y;
+    edge.nx = found->line.nx, edge.ny = found->line.ny;
+    if (is_known(edge)) continue;
     edges_.push_back(std::move(edge));
     ++count;
   }
+}
+
+// What stays where it is in the picture, as the own aircraft does, is one edge in all frames.
+bool EdgeMeter::is_known(const Edge& edge) const {
+  return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& known) {
+    const double dx = edge.x - known.x, dy = edge.y - known.y;
+    return std::abs(dx * known.nx + dy * known.ny) < kSamePlace && std::hypot(dx, dy) < 2 * kLong &&
+           edge.nx * known.nx + edge.ny * known.ny > kSameDirection;
+  });
 }
 
 std::vector<const EdgeMeter::Edge*> EdgeMeter::usable() const {
@@ -337,8 +350,6 @@ std::vector<const StepEdge*> EdgeMeter::sharpest() const {
   keep(narrower_than(kSharp * edges[0]->width_px), kFewestSymmetric);
   std::sort(edges.begin(), edges.end(), by_asymmetry);
   keep(static_cast<std::size_t>(kSymmetricShare * double(edges.size())), kFewestSymmetric);
-  std::sort(edges.begin(), edges.end(), by_width);
-  keep(narrower_than(kAsSharp * edges[0]->width_px), kFewestFitted);
   edges.resize(std::min(edges.size(), kMostFitted));
   std::vector<const StepEdge*> sharpest;
   for (const Edge* edge : edges) sharpest.push_back(&edge->step);

@@ -27,12 +27,15 @@ class EdgeMeter {
 
  private:
   struct Edge {
-    double width_px = 0;   // standard deviation of its derivative
-    double asymmetry = 0;  // rms height that its two halves differ by
-    double moved_px = 0;   // across itself, since the frame before; NaN: not known
+    double x = 0, y = 0;    // of the picture
+    double nx = 0, ny = 0;  // across it
+    double width_px = 0;    // standard deviation of its derivative
+    double asymmetry = 0;   // rms height that its two halves differ by
+    double moved_px = 0;    // across itself, since the frame before; NaN: not known
     bool is_long = false;
     StepEdge step;
   };
+  bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable() const;
   std::vector<const StepEdge*> sharpest() const;
   const image::Mask* own_aircraft_;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/seed.h"
 #include "image/colour.h"
 
 namespace airtruth::calibration {
@@ -15,13 +16,13 @@ namespace {
 constexpr double kSpreadPx = 1.0;
 
 // A step through a Gaussian and two pixels: what is drawn has whole pixels, and so has the spread.
-double step(double place_px) {
+double step(double place_px, double spread_px = kSpreadPx) {
   constexpr int kPlaces = 4;
   double sum = 0;
   for (int i = 0; i < kPlaces; ++i)
     for (int j = 0; j < kPlaces; ++j) {
       const double at = place_px + (i + j + 1.0) / kPlaces - 1;
-      sum += 0.5 * (1 + std::erf(at / (kSpreadPx * std::sqrt(2.0))));
+      sum += 0.5 * (1 + std::erf(at / (spread_px * std::sqrt(2.0))));
     }
   return sum / (kPlaces * kPlaces);
 }
@@ -41,6 +42,7 @@ image::Picture bars(double line_depth, double shift_px) {
   const image::ColourCode code(picture.colour);
   const double dark = double(code.ycc_from_rgb({0, 0, 0}).y);
   const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
+  Random noise(7);  // as cameras have it: without, all edges are rounded alike
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       double light = 0;
@@ -55,7 +57,8 @@ image::Picture bars(double line_depth, double shift_px) {
       }
       const double linear = 0.25 + 0.25 * light;
       picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
-          dark + unit * double(image::srgb_from_linear(static_cast<float>(linear))) + 0.5);
+          dark + unit * double(image::srgb_from_linear(static_cast<float>(linear))) +
+          noise.uniform(0, 1));
     }
   return picture;
 }
@@ -82,6 +85,19 @@ TEST(Edges, LinesAlongSomeOfThemAreNoSharpening) {
   EXPECT_LT(found.sharpening.value, 0.05);
 }
 
+// What does not move, as the own aircraft, says no more in ten frames than in one.
+TEST(Edges, ThatStayWhereTheyAreAreOne) {
+  EdgeMeter meter(nullptr, {});
+  for (int frame = 0; frame < 10; ++frame) meter.add(bars(0, 0), std::nullopt);
+  EdgeMeter once(nullptr, {});
+  once.add(bars(0, 0), std::nullopt);
+  std::string why;
+  ASSERT_TRUE(meter.result(why));
+  ASSERT_TRUE(once.result(why));
+  EXPECT_GT(once.profile().edges, 10);
+  EXPECT_EQ(meter.profile().edges, once.profile().edges);
+}
+
 TEST(Edges, NoneIsNoAnswer) {
   EdgeMeter meter(nullptr, {});
   image::Picture grey = image::make_picture(320, 240, {});
@@ -90,6 +106,62 @@ TEST(Edges, NoneIsNoAnswer) {
   std::string why;
   EXPECT_FALSE(meter.result(why));
   EXPECT_EQ(why, "the clip shows 0 clean straight edges; it takes 12");
+}
+
+// Edges of a world that is softer here and sharper there, some with lines along them, through a
+// mask; every value by sums, not by the model that is fitted.
+std::vector<StepEdge> masked_edges(double spread_px, double amount, double radius_px) {
+  constexpr double kLow = 0.35, kHigh = 0.6, kFine = 0.1;
+  std::vector<StepEdge> edges;
+  for (int e = 0; e < 40; ++e) {
+    const double softness_px = e % 4 == 0 ? 0.05 : 0.2 * (e % 5);
+    const double own_px = std::hypot(spread_px, softness_px);
+    const double line = e % 8 == 3 ? 0.15 : 0;
+    const auto coded = [&](double place) {
+      const auto linear = [](double v) {
+        return double(image::linear_from_srgb(static_cast<float>(v)));
+      };
+      const double dark = linear(kLow), bright = linear(kHigh);
+      const double height =
+          step(place, own_px) - line * (step(place + 2.3, own_px) - step(place + 0.8, own_px));
+      return double(image::srgb_from_linear(static_cast<float>(dark + (bright - dark) * height)));
+    };
+    StepEdge edge{kLow, kHigh, {}};
+    for (double place = -5.9 + 0.01 * e; place < 6; place += 0.23) {
+      double soft = 0, total = 0;
+      for (double off = -5 * radius_px; off <= 5 * radius_px; off += kFine) {
+        const auto below = [&](double x) { return std::erf(x / (radius_px * std::sqrt(2.0))); };
+        const double weight = below(off + 0.5) - below(off - 0.5);
+        soft += weight * coded(place + off), total += weight;
+      }
+      const double sharp = coded(place);
+      const double value = sharp + amount * (sharp - soft / total);
+      const double noise = 0.003 * std::sin(1000 * place + 17 * e);
+      edge.samples.push_back({place, (value - kLow) / (kHigh - kLow) + noise});
+    }
+    edges.push_back(std::move(edge));
+  }
+  return edges;
+}
+
+TEST(StepResponse, OfEdgesThatAreSofterThanSteps) {
+  struct Case {
+    double spread_px, amount, radius_px;
+  };
+  for (const Case& c : {Case{0.8, 0, 1}, Case{1.3, 0, 1}, Case{0.8, 0.8, 1.2}, Case{0.6, 1.2, 1}}) {
+    const std::vector<StepEdge> edges = masked_edges(c.spread_px, c.amount, c.radius_px);
+    std::vector<const StepEdge*> all;
+    for (const StepEdge& edge : edges) all.push_back(&edge);
+    const StepResponse found = fit_step_response(all, {});
+    EXPECT_NEAR(found.point_spread_px.value, c.spread_px, 0.05 * c.spread_px);
+    EXPECT_NEAR(found.sharpening.value, c.amount, 0.1 * c.amount + 1e-9);
+    if (c.amount > 0) {
+      EXPECT_NEAR(found.sharpening_px.value, c.radius_px, 0.1 * c.radius_px);
+    }
+    const double truth_px =
+        edge_spread_px({{c.spread_px, 0}, {c.amount, 0}, {c.radius_px, 0}}, 0.4, 0.6, {});
+    EXPECT_NEAR(edge_spread_px(found, 0.4, 0.6, {}), truth_px, 0.05 * truth_px);
+  }
 }
 
 // From 10 to 90 % a Gaussian takes 2.5631 of its standard deviations.

@@ -14,6 +14,9 @@ namespace airtruth::calibration {
 
 struct Injected {
   double point_spread_px = 0;
+  // So many of the flight's pixels, a side, are one of the clip's: a flight draws each by one ray,
+  // through textures that are softer than a pixel.
+  int finer = 1;
   composite::Sensor sensor;
 };
 

@@ -7,7 +7,8 @@
 #include "calibration/calibration.h"
 
 // A camera's answer to a step of light: a Gaussian point spread in linear light, the tone curve,
-// an unsharp mask on what is coded, each of whole pixels. Fitted to edges that were found.
+// an unsharp mask on what is coded, each of whole pixels (step_model.h). Fitted to edges that were
+// found.
 namespace airtruth::calibration {
 
 // Samples across one straight edge.
@@ -22,10 +23,13 @@ struct StepResponse {
   Estimate sharpening_px;    // standard deviation of its Gaussian
 };
 
-// Every edge at its own two levels, since the tone curve bends each differently; where exactly an
-// edge lies and how high its plateaus are is solved beside it (variable projection: Golub and
-// Pereyra 1973). Errors count edges, not samples (Liang and Zeger 1986): what one edge has apart
-// from the others it has in all of its samples. Needs an edge at least.
+// Every edge has its own two levels, since the tone curve bends each differently, and its own
+// spread: the world is softer than a step, here more and there less. So each edge by itself tells a
+// spread and, for a radius, an amount (edge_fit.h). The mask is the camera's and on all edges: it
+// has the median of their amounts, and the radius that suits them best. The camera's spread is that
+// of the sharpest edges, but for luck (a frontier with errors on both sides: Aigner, Lovell and
+// Schmidt 1977, with an exponential one after Meeusen and van den Broeck 1977). Needs an edge at
+// least.
 StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
                                const image::ToneCurve& tone);
 
