@@ -20,7 +20,6 @@ constexpr double kUsualRadius = 1.1, kUsualRadiusSpread = 0.3;  // px, and of it
 constexpr double kSure = 2;                                     // of its error an amount is a mask
 constexpr double kLeastRms = 0.0005;  // heights: better no edge fits but by luck
 constexpr double kAmountLuck = 0.15;  // that edges' amounts differ by anyway
-constexpr double kSpreadLuck = 0.05;  // that the logarithms of their spreads differ by anyway
 constexpr double kSoft = 0.5;         // over the camera's logarithm: such an edge counts half
 // Samples beside one another are wrong together, and so are edges of one world: of an edge's rms
 // heights' logarithms, these many count.
@@ -63,14 +62,26 @@ double median_of(std::vector<Weighted> values) {
   return values.back().value;
 }
 
-// Of an edge's spread, by logarithms: the world adds to the camera's what is distributed
-// exponentially, errors and lines add what is Gaussian, and some edges are no edges at all.
-double likelihood(double over_camera, double world, double error) {
-  constexpr double kNoEdge = 0.05, kOfNoEdge = 0.3;
+// Of the sum of what the world adds and a normally distributed error. Of the edges one half is
+// within `world` or so of a step (exponentially: Meeusen and van den Broeck 1977), the other
+// anything.
+double sum_likelihood(double sum, double world, double error) {
+  constexpr double kSoftest = 1.5;
+  const auto above = [](double deviations) {
+    return 0.5 * std::erfc(-deviations / std::sqrt(2.0));
+  };
   const double ratio = error / world;
-  const double above = 0.5 * std::erfc((ratio - over_camera / error) / std::sqrt(2.0));
-  const double exponent = std::min(0.5 * ratio * ratio - over_camera / world, 600.0);
-  return (1 - kNoEdge) * std::exp(exponent) / world * above + kNoEdge * kOfNoEdge;
+  const double near = std::exp(std::min(0.5 * ratio * ratio - sum / world, 600.0)) / world *
+                      above(sum / error - ratio);
+  return 0.5 * near + 0.5 * above(sum / error) / kSoftest;
+}
+
+// Of an edge's spread, by logarithms. Lines along an edge and whatever else the fit does not know
+// of change it by luck, now and then by more luck.
+double likelihood(double over_camera, double world, double error) {
+  constexpr double kLuck = 0.05, kMoreLuck = 0.2, kMore = 0.1, kAtLeast = 1e-4;
+  return (1 - kMore) * sum_likelihood(over_camera, world, std::hypot(error, kLuck)) +
+         kMore * sum_likelihood(over_camera, world, std::hypot(error, kMoreLuck)) + kAtLeast;
 }
 
 // The mean of all that it may be, whatever the world may add.
@@ -79,15 +90,14 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
   for (const EdgeFit& fit : fits) spreads.push_back(std::log(fit.spread_px));
   const auto [least, most] = std::minmax_element(spreads.begin(), spreads.end());
   constexpr int kPlaces = 200;
-  const double first = *least - kSpreadLuck;
-  const double step = (*most + kSpreadLuck - first) / (kPlaces - 1);
+  const double first = *least, step = (*most - *least) / (kPlaces - 1);
   std::vector<Likely> all;
   for (const double world : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64})
     for (int i = 0; i < kPlaces; ++i) {
       Likely camera{first + i * step, 0};
       for (std::size_t e = 0; e < fits.size(); ++e)
-        camera.log_likelihood += std::log(likelihood(
-            spreads[e] - camera.value, world, std::hypot(fits[e].spread_error, kSpreadLuck)));
+        camera.log_likelihood +=
+            std::log(likelihood(spreads[e] - camera.value, world, fits[e].spread_error));
       all.push_back(camera);
     }
   return from_logarithm(mean_of(all));
