@@ -56,7 +56,7 @@ struct EdgeProfile {
   std::vector<double> height;
   std::vector<double> fitted;
   double spread_px = 0;  // from 10 to 90 % of what was fitted
-  int edges = 0;
+  int edges = 0;         // that were fitted; the profile is of those nearest to the camera
 };
 
 struct Horizon {

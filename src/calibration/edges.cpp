@@ -33,6 +33,8 @@ constexpr double kSharp = 1.4;  // times the sharpest
 constexpr double kSymmetricShare = 0.25;
 constexpr std::size_t kFewestSymmetric = 60;
 constexpr std::size_t kMostFitted = 150;
+constexpr double kShown = 1.1;  // times the camera's spread
+constexpr std::size_t kFewestShown = 8;
 // Between frames, across the edge: what that blurs is not sharp.
 constexpr double kMostMoved = 10;          // px
 constexpr double kSamePlace = 1;           // px
@@ -241,6 +243,19 @@ double moved_across(const Found& line, const Homography& frame_from_before) {
   return std::abs((here.x() - before.x()) * line.nx + (here.y() - before.y()) * line.ny);
 }
 
+// Those that have most of their spread from the camera; the sharpest few, if there are fewer.
+std::vector<const StepEdge*> nearest_to_camera(const std::vector<const StepEdge*>& edges,
+                                               const StepResponse& response) {
+  std::vector<double> sorted = response.edge_spreads_px;
+  std::sort(sorted.begin(), sorted.end());
+  const double fewest_px = sorted[std::min(kFewestShown, sorted.size()) - 1];
+  const double most_px = std::max(fewest_px, kShown * response.point_spread_px.value);
+  std::vector<const StepEdge*> nearest;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (response.edge_spreads_px[e] <= most_px) nearest.push_back(edges[e]);
+  return nearest;
+}
+
 // Edges laid over one another, for the eye.
 EdgeProfile profile_of(const std::vector<const StepEdge*>& edges,
                        const StepResponse& response,
@@ -256,7 +271,6 @@ EdgeProfile profile_of(const std::vector<const StepEdge*>& edges,
     }
   }
   EdgeProfile profile;
-  profile.edges = static_cast<int>(edges.size());
   for (int b = 0; b < kBins; ++b) {
     auto& heights = bins[static_cast<std::size_t>(b)];
     if (heights.size() < 5) continue;
@@ -331,7 +345,7 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::usable() const {
   return long_ones.size() >= kEnoughLong ? long_ones : slow.size() >= kFewestEdges ? slow : all;
 }
 
-std::vector<const StepEdge*> EdgeMeter::sharpest() const {
+std::vector<const StepEdge*> EdgeMeter::sharp_ones() const {
   std::vector<const Edge*> edges = usable();
   const auto keep = [&](std::size_t count, std::size_t fewest) {
     edges.resize(std::min(edges.size(), std::max(count, fewest)));
@@ -351,9 +365,9 @@ std::vector<const StepEdge*> EdgeMeter::sharpest() const {
   std::sort(edges.begin(), edges.end(), by_asymmetry);
   keep(static_cast<std::size_t>(kSymmetricShare * double(edges.size())), kFewestSymmetric);
   edges.resize(std::min(edges.size(), kMostFitted));
-  std::vector<const StepEdge*> sharpest;
-  for (const Edge* edge : edges) sharpest.push_back(&edge->step);
-  return sharpest;
+  std::vector<const StepEdge*> sharp;
+  for (const Edge* edge : edges) sharp.push_back(&edge->step);
+  return sharp;
 }
 
 std::optional<StepResponse> EdgeMeter::result(std::string& why) {
@@ -362,9 +376,10 @@ std::optional<StepResponse> EdgeMeter::result(std::string& why) {
           std::to_string(kFewestEdges);
     return std::nullopt;
   }
-  const auto edges = sharpest();
+  const auto edges = sharp_ones();
   const StepResponse response = fit_step_response(edges, tone_);
-  profile_ = profile_of(edges, response, tone_);
+  profile_ = profile_of(nearest_to_camera(edges, response), response, tone_);
+  profile_.edges = static_cast<int>(edges.size());
   return response;
 }
 

@@ -10,9 +10,9 @@
 
 namespace airtruth::calibration {
 
-// The camera's step response from the sharpest straight edges of a clip: profiles across them,
-// laid over one another to a tenth of a pixel (the slanted edge of ISO 12233). What is left of
-// sharpness there is the lens's point spread, pixels and codec together; a bump on both sides of
+// The camera's step response from the sharp straight edges of a clip: profiles across them to a
+// fraction of a pixel (the slanted edge of ISO 12233). What is left of sharpness there is the
+// lens's point spread, pixels and codec together, and what the world has; a bump on both sides of
 // the step is sharpening. A bump on one side is a line in the world: such edges are left out.
 class EdgeMeter {
  public:
@@ -37,7 +37,7 @@ class EdgeMeter {
   };
   bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable() const;
-  std::vector<const StepEdge*> sharpest() const;
+  std::vector<const StepEdge*> sharp_ones() const;
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;

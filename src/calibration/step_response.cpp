@@ -191,14 +191,17 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   for (const StepEdge* edge : edges) all.emplace_back(*edge);
   weigh(all, tone);
   const Mask mask = likely_mask(all, tone);
-  const auto spread_under = [&](double amount) {
-    return camera_spread(fit_edges(all, mask.radius_px.value, amount, tone));
+  const auto under = [&](double amount) {
+    return fit_edges(all, mask.radius_px.value, amount, tone);
   };
-  Estimate spread = spread_under(mask.amount.value);
+  const std::vector<EdgeFit> fits = under(mask.amount.value);
+  StepResponse response{camera_spread(fits), mask.amount, mask.radius_px, {}};
   // A stronger mask would go with more spread.
-  const double other_px = spread_under(mask.amount.value + mask.amount.sigma).value;
-  spread.sigma = std::hypot(spread.sigma, other_px - spread.value);
-  return {spread, mask.amount, mask.radius_px};
+  const Estimate other = camera_spread(under(mask.amount.value + mask.amount.sigma));
+  Estimate& spread = response.point_spread_px;
+  spread.sigma = std::hypot(spread.sigma, other.value - spread.value);
+  for (const EdgeFit& fit : fits) response.edge_spreads_px.push_back(fit.spread_px);
+  return response;
 }
 
 std::vector<double> step_heights(const StepResponse& response,

@@ -21,6 +21,7 @@ struct StepResponse {
   Estimate point_spread_px;  // standard deviation
   Estimate sharpening;       // amount of the mask; 0: none that could be told from nothing
   Estimate sharpening_px;    // standard deviation of its Gaussian
+  std::vector<double> edge_spreads_px;  // of each edge: the camera's and what the world adds
 };
 
 // Every edge has its own two levels, since the tone curve bends each differently, and its own
