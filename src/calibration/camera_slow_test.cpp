@@ -49,7 +49,7 @@ TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
 
 TEST(Calibrate, MeasuresTheEdgesThatWereInjected) {
   synthetic::FlightOptions o = ideal(3);
-  o.frame_count = 12;
+  o.frame_count = 6;
   o.shake_deg = 0;
   o.own_aircraft = false;
   o.width *= 2, o.height *= 2;
