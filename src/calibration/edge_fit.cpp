@@ -22,24 +22,27 @@ constexpr double kMostChange = 0.3;     // of one round
 constexpr double kLeastChange = 0.001;  // the last round's
 constexpr int kMostRounds = 12;
 
-// Columns: plateau, height, place, spread, amount.
+// Columns: plateau, height, place, spread; amount, if it is one of the unknowns.
 Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
                           const EdgeFit& fit,
                           double radius_px,
+                          Eigen::Index unknowns,
                           const image::ToneCurve& tone) {
   const auto model = [&](double spread_px, double amount) {
     return StepModel(spread_px, {amount, radius_px}, edge.low, edge.high, tone);
   };
   const StepModel here = model(fit.spread_px, fit.amount);
   const StepModel wider = model(fit.spread_px * std::exp(kFiner), fit.amount);
-  const StepModel sharper = model(fit.spread_px, fit.amount + kFiner);
-  Eigen::MatrixXd slopes(edge.places.size(), 5);
+  Eigen::MatrixXd slopes(edge.places.size(), unknowns);
   for (Eigen::Index i = 0; i < edge.places.size(); ++i) {
     const double place = edge.places[i];
     const auto [value, slope] = here.at(place);
-    slopes.row(i) << 1, value, slope, (wider.at(place).first - value) / kFiner,
-        (sharper.at(place).first - value) / kFiner;
+    slopes.row(i).head<4>() << 1, value, slope, (wider.at(place).first - value) / kFiner;
   }
+  if (unknowns == 4) return slopes;
+  const StepModel sharper = model(fit.spread_px, fit.amount + kFiner);
+  for (Eigen::Index i = 0; i < edge.places.size(); ++i)
+    slopes(i, 4) = (sharper.at(edge.places[i]).first - slopes(i, 1)) / kFiner;
   return slopes;
 }
 
@@ -53,7 +56,7 @@ EdgeFit fitted(const GatheredEdge& edge,
   fit.amount = amount.value_or(0);
   for (int round = 0; round < kMostRounds; ++round) {
     const Eigen::MatrixXd slopes =
-        edge.roots.asDiagonal() * slopes_of(edge, fit, radius_px, tone).leftCols(unknowns);
+        edge.roots.asDiagonal() * slopes_of(edge, fit, radius_px, unknowns, tone);
     Eigen::MatrixXd square = slopes.transpose() * slopes;
     square.diagonal().array() += 1e-9 * square.trace();
     const Eigen::MatrixXd inverse = square.inverse();

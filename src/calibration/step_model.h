@@ -14,7 +14,6 @@ namespace airtruth::calibration {
 // through a Gaussian, both of whole pixels.
 class UnsharpMask {
  public:
-  static UnsharpMask none() { return {0, 1}; }
   UnsharpMask(double amount, double radius_px);
 
  private:
