@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How fast airtruth renders, beside the paper's road and a plain transcode of the same clip: ./dev bench
+"""How fast airtruth renders, beside the paper's method and a plain transcode of the same clip: ./dev bench
 
 Prints Markdown tables. Every contender is a whole process, started anew and timed from the outside; a round runs each
 of them once, in turn, so that a slow minute of the machine falls on all of them.
@@ -113,7 +113,7 @@ class Bench:
         by_size = {size: self.scene(size) for size in (40, 100)}
         real = {size: self.scene(size, realism=REALISM) for size in (40, 100)}
         return {
-            "(a) the paper's road, 40 px": lambda: self.render(chroma, "--no-cache"),
+            "(a) the paper's method, 40 px": lambda: self.render(chroma, "--no-cache"),
             "(b) render, 40 px": lambda: self.render(by_size[40], "--no-cache"),
             "(b) render, 100 px": lambda: self.render(by_size[100], "--no-cache"),
             "(b) render, 40 px, motion cached": lambda: self.render(by_size[40]),
@@ -136,7 +136,7 @@ class Bench:
 
 
 def print_race(medians, frames):
-    paper = medians["(a) the paper's road, 40 px"][0]
+    paper = medians["(a) the paper's method, 40 px"][0]
     plain = medians["(c) ffmpeg, decode and encode"][0]
     print("| | wall s | frames/s | CPU s | peak MiB | (a) / it | it / (c) |")
     print("|---|---:|---:|---:|---:|---:|---:|")

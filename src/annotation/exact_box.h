@@ -43,7 +43,7 @@ struct ExactBox {
 
 // Bounding box of the projected silhouette, in frame pixels, not clipped: of all that the shutter
 // lets it sweep, each row at its own time. `body`: how the aircraft goes on within the frame. Never
-// looks at rendered pixels: it is the other of the two roads to the box.
+// looks at rendered pixels: it is the other of the two independent answers for the box.
 ExactBox exact_box(const Sight& sight,
                    const Silhouette& silhouette,
                    const Rigid& world_from_body,

@@ -15,8 +15,8 @@ namespace {
 
 constexpr float kCodesPerUnit = 219;
 
-// A stripe of each coded luma, side by side, with noise in linear light: another road than
-// composite::noise_sigma's.
+// A stripe of each coded luma, side by side, with noise in linear light: computed by other means
+// than composite::noise_sigma's.
 image::Picture stripes(const std::vector<double>& lumas,
                        const composite::Sensor& sensor,
                        Random& random) {

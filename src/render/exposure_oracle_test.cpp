@@ -274,7 +274,7 @@ double compare_all(const Setting& setting,
   if (!box || !oracle_box || !surely || !perhaps) return worst;
   EXPECT_EQ(bounds(*box, *surely), *box) << where;
   EXPECT_EQ(bounds(*box, *perhaps), *perhaps) << where;
-  // The other road to the box.
+  // The exact box is the independent answer.
   const auto frame = [&](double v, int most) { return std::clamp(v, 0.0, double(most)); };
   EXPECT_LE(frame(scene.exact->x, scene.view.width), oracle_box->x + 1) << where;
   EXPECT_GE(frame(scene.exact->x, scene.view.width), oracle_box->x - 1.05) << where;

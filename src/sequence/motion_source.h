@@ -81,7 +81,7 @@ class MotionSource {
 };
 
 // The scene's model of motion, with "auto" made out: "rotation" for a fisheye and for views wider
-// than 90 degrees (but not for chroma-key, which is the paper's road), else "homography".
+// than 90 degrees (but not for chroma-key, the paper's method), else "homography".
 std::string motion_model(const scene::Scene& scene, const lens::Lens& lens);
 bool is_wide(const lens::Lens& lens);
 

@@ -54,7 +54,7 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   return calibration::calibrate(scene.background.video, how);
 }
 
-// The paper's road has no place for what a camera and its air do; half of it would be worse.
+// The chroma-key method has no place for what a camera and its air do; half of it would be worse.
 void refuse_with_chroma_key(const scene::Scene& scene) {
   if (scene.composite.method != "chroma-key") return;
   scene::CameraModel model = scene.camera_model;

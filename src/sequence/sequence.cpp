@@ -165,7 +165,7 @@ class Run {
   void run_pipeline() {
     const int threads = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
     const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
-    // OpenGL's context belongs to one thread: the paper's road runs in an arena of one.
+    // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
     const bool one_thread = scene_.composite.method == "chroma-key";
     tbb::task_arena arena(one_thread ? 1 : threads);
     const auto paint_mode =

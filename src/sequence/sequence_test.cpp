@@ -176,7 +176,7 @@ TEST_F(Sequence, TruthSaysWhereEachIntruderIs) {
 }
 
 // The exact box comes from projected vertices, the visible box from the samples that changed:
-// independent roads.
+// two independent answers.
 TEST_F(Sequence, TheExactAndTheVisibleBoxMeet) {
   int compared = 0;
   for (const char* aircraft : {"738/738-Ryanair", "c172/news", "A320/A320-Lufthansa"}) {
