@@ -255,6 +255,14 @@ void add_dataset(CLI::App& app, Context& context) {
                    "Tasks (default: one per sequence, at most 1,000)")
       ->check(CLI::Range(1, 100000));
   submit_command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
+  submit_command
+      ->add_option("--sbatch",
+                   arguments->slurm.sbatch,
+                   "An option for sbatch, as \"--time=2:00:00\", \"--mem=4G\" or "
+                   "\"--account=NAME\"; give it again for more. It counts before [slurm] of the "
+                   "catalogue")
+      ->allow_extra_args(false)
+      ->take_all();
   submit_command->add_option("--background",
                              arguments->backgrounds,
                              "NAME=VIDEO: a video in place of a background of the catalogue");

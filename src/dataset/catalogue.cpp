@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/suggest.h"
 #include "dataset/expand.h"
+#include "dataset/slurm_options.h"
 #include "scene/tables.h"
 
 namespace airtruth::dataset {
@@ -259,7 +260,8 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
                           "random",
                           "render",
                           "composite",
-                          "output"});
+                          "output",
+                          "slurm"});
   Catalogue catalogue;
   catalogue.file = file;
   catalogue.text = text;
@@ -269,6 +271,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.render = scene::render_in(root);
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);
+  catalogue.slurm = slurm_in(root);
   for (const TableReader& table : root.tables("background",
                                               {"name",
                                                "video",

@@ -101,6 +101,7 @@ struct Catalogue {
   scene::Render render;
   scene::Composite composite;
   scene::Output output;
+  std::vector<std::string> slurm;  // "--name=value" for sbatch, of the table [slurm]
   fs::path file;
   std::string text;
 };

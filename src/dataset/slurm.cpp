@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdio>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -14,6 +15,7 @@
 #include "base/files.h"
 #include "dataset/check.h"
 #include "dataset/expand.h"
+#include "dataset/slurm_options.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -33,10 +35,27 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-std::string head(const std::string& name, const fs::path& log, const SlurmOptions& options) {
-  std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name +
-                     "\n#SBATCH --output=" + log.string() + "\n#SBATCH --open-mode=append\n";
-  if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
+// The options of the catalogue, then those of the command line: of two of one name the later
+// counts.
+std::vector<std::string> options_of(const Catalogue& catalogue, const SlurmOptions& options) {
+  std::vector<std::string> result = catalogue.slurm;
+  if (!options.partition.empty()) result.push_back("--partition=" + options.partition);
+  for (const std::string& given : options.sbatch) {
+    try {
+      result.push_back(sbatch_option(given));
+    } catch (const Error& error) {
+      throw Error("--sbatch: " + error.message());
+    }
+  }
+  return result;
+}
+
+std::string head(const std::string& name,
+                 const std::string& log,
+                 const std::vector<std::string>& options) {
+  std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name + "\n#SBATCH --output=" + log +
+                     "\n#SBATCH --open-mode=append\n";
+  for (const std::string& option : options) text += "#SBATCH " + option + "\n";
   return text;
 }
 
@@ -44,7 +63,9 @@ std::string work_script(const Catalogue& catalogue,
                         const fs::path& out,
                         const SlurmOptions& options,
                         std::int64_t tasks) {
-  std::string text = head("airtruth", out / "slurm" / "work-%a.log", options);
+  std::string text = head("airtruth",
+                          sbatch_path((out / "slurm").string()) + "/work-%a.log",
+                          options_of(catalogue, options));
   text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
   text += fmt::format(
       "exec {} dataset work {} --out {} --index \"$SLURM_ARRAY_TASK_ID\" --of {} --jobs "
@@ -58,8 +79,12 @@ std::string work_script(const Catalogue& catalogue,
   return text + "\n";
 }
 
-std::string verify_script(const fs::path& out, const SlurmOptions& options) {
-  return head("airtruth-verify", out / "slurm" / "verify.log", options) +
+std::string verify_script(const Catalogue& catalogue,
+                          const fs::path& out,
+                          const SlurmOptions& options) {
+  return head("airtruth-verify",
+              sbatch_path((out / "slurm").string()) + "/verify.log",
+              options_of(catalogue, options)) +
          fmt::format("exec {} dataset verify {} --finish\n",
                      quoted(options.program.string()),
                      quoted(out.string()));
@@ -85,8 +110,6 @@ std::string first_line(const std::string& command) {
 
 Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options) {
   const fs::path root = fs::absolute(out).lexically_normal();
-  if (root.string().find('\n') != std::string::npos)
-    throw Error("has a line break in its name", {root.string()});
   const auto odd = [](char c) {
     return !std::isalnum(static_cast<unsigned char>(c)) &&
            std::string_view("_-.,").find(c) == std::string_view::npos;
@@ -94,15 +117,18 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   if (std::any_of(options.partition.begin(), options.partition.end(), odd))
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
   check_sources(catalogue, options.videos);
-  open_folder(catalogue, root);
   const std::int64_t sequences = Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0
                                  ? std::min<std::int64_t>(options.array_size, sequences)
                                  : std::min(kMostTasks, sequences);
+  // Everything that may be refused is refused before the folder is made.
+  const std::string work = work_script(catalogue, root, options, tasks);
+  const std::string verify = verify_script(catalogue, root, options);
+  open_folder(catalogue, root);
   fs::create_directories(root / "slurm");
   Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};
-  write_file(submitted.work_script, work_script(catalogue, root, options, tasks));
-  write_file(submitted.verify_script, verify_script(root, options));
+  write_file(submitted.work_script, work);
+  write_file(submitted.verify_script, verify);
   if (options.dry_run) return submitted;
   submitted.work_job = first_line("sbatch --parsable " + quoted(submitted.work_script.string()));
   submitted.work_job = submitted.work_job.substr(0, submitted.work_job.find(';'));

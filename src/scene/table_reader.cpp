@@ -201,11 +201,19 @@ std::optional<std::string> TableReader::text(std::string_view key) const {
 std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) const {
   const toml::node* const value = node(key);
   if (!value) return std::nullopt;
+  const toml::array& elements = array(key, "an array of strings");
+  if (elements.empty()) fail_at(place(*value), key, "an empty array", "at least one string");
   std::vector<std::string> result;
-  for (const toml::node& element : array(key, "an array of strings")) {
-    if (!element.is_string() || (**element.as_string()).empty())
-      fail_at(place(element), key, words_of(element.type()), "strings that are not empty");
-    result.push_back(**element.as_string());
+  for (const toml::node& element : elements) {
+    if (!element.is_string())
+      fail_at(place(element), key, words_of(element.type()), "an array of strings");
+    const std::string& text = **element.as_string();
+    if (text.empty() || has_control_character(text))
+      fail_at(place(element),
+              key,
+              text.empty() ? "an empty string" : in_quotes(text),
+              "strings that are not empty and hold no control characters");
+    result.push_back(text);
   }
   return result;
 }

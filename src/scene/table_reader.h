@@ -59,7 +59,8 @@ class TableReader {
                                     std::int64_t high) const;
   std::optional<bool> truth(std::string_view key) const;
   std::optional<std::string> text(std::string_view key) const;  // not empty, no control characters
-  std::optional<std::vector<std::string>> texts(std::string_view key) const;  // an array of such
+  // An array of at least one such text.
+  std::optional<std::vector<std::string>> texts(std::string_view key) const;
   std::optional<std::string> file_name(std::string_view key) const;  // a text with no folder in it
   std::optional<std::string> choice(std::string_view key, Keys choices) const;
   // Relative paths are taken from the folder of the scene file.

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Catalogues and data sets through the program, as its users run it: python3 dataset_test.py AIRTRUTH"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+AIRTRUTH = ""
+ROOT = ""
+
+SKY = """[[background]]
+name = "sky"
+flight = { seed = 3, frame_count = 8, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -150] }
+"""
+
+RANDOM = """[[random]]
+count = 4
+frame_count = 6
+aircraft = ["738/738-Ryanair"]
+"""
+
+PARTS = """[[aircraft]]
+name = "b737"
+aircraft = "738/738-Ryanair"
+[[trajectory]]
+name = "across"
+waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
+speed_mps = 60
+"""
+
+
+def path(*names):
+    return os.path.join(ROOT, *names)
+
+
+def write(name, text):
+    os.makedirs(os.path.dirname(path(name)), exist_ok=True)
+    with open(path(name), "w") as file:
+        file.write(text)
+    return path(name)
+
+
+def run(*arguments, **how):
+    return subprocess.run(
+        [AIRTRUTH, *arguments], cwd=how.pop("cwd", ROOT), capture_output=True, text=True, errors="replace", timeout=120, **how
+    )
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, text, *words):
+        done = run("dataset", "plan", write("refused.toml", text))
+        self.assertEqual(done.returncode, 2, f"{text}\n{done.stdout}{done.stderr}")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def test_every_empty_list_is_one_line(self):
+        random = lambda line: SKY + re.sub(rf"(?m)^{line.split()[0]} = .*\n", "", RANDOM) + line + "\n"
+        for key in ("aircraft", "backgrounds"):
+            self.refused(random(f"{key} = []"), "refused.toml:", key, "empty")
+        for key in ("range_m", "azimuth_deg", "elevation_deg", "speed_mps", "heading_deg", "climb_deg",
+                    "sun_azimuth_deg", "sun_elevation_deg"):
+            self.refused(random(f"{key} = []"), "refused.toml:", key, "array of 0")
+        for key in ("backgrounds", "trajectories", "aircraft"):
+            self.refused(SKY + PARTS + f"[[product]]\n{key} = []\n", "refused.toml:", key, "empty")
+        for key in ("background", "aircraft", "trajectory"):
+            tables = [SKY] + PARTS.split("[[trajectory]]")
+            tables = [t if t.startswith("[[") else "[[trajectory]]" + t for t in tables]
+            kept = "".join(t for t in tables if not t.startswith(f"[[{key}]]"))
+            self.refused(f"{key} = []\n" + kept + "[[product]]\n", "refused.toml", f"there is no [[{key}]]")
+        for key in ("sequence", "product", "random"):
+            self.refused(f"{key} = []\n" + SKY + PARTS, "refused.toml", "makes no sequence")
+        for line in ("waypoints_ned_m = []", "times_s = []"):
+            text = PARTS.replace("speed_mps = 60\n", "times_s = [0, 1]\n")
+            text = re.sub(rf"(?m)^{line.split()[0]} = .*\n", line + "\n", text)
+            self.refused(SKY + text + "[[product]]\n", "refused.toml:", "waypoints")
+        for key, values in (("camera", ("position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg")),
+                            ("lens", ("focal_px", "principal_point_px")),
+                            ("light", ("sky_colour", "ground_colour")),
+                            ("air", ("extinction_per_km", "airlight"))):
+            for value in values:
+                sky = re.sub(rf"(?m)^{key} = .*\n", "", SKY)
+                self.refused(sky + f"{key} = {{ {value} = [] }}\n" + RANDOM, "refused.toml:", value)
+        self.refused("[slurm]\nsbatch = []\n" + SKY + RANDOM, "refused.toml:2", "sbatch", "empty")
+
+
+class Slurm(unittest.TestCase):
+    def scripts(self, folder, catalogue, *options):
+        out = path(folder)
+        done = run("dataset", "submit", catalogue, "--out", out, "--slurm", "--dry-run", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        texts = []
+        for name in ("work.sh", "verify.sh"):
+            with open(os.path.join(out, "slurm", name)) as file:
+                texts.append(file.read())
+        return texts
+
+    def test_options_come_from_the_table_and_from_the_command_line(self):
+        table = '[slurm]\ntime = "1-02:30:00"\nmemory = "4G"\npartition = "short,long"\naccount = "avionics"\ncpus = 2\nsbatch = ["--nice=100"]\n'
+        catalogue = write("cluster.toml", table + SKY + RANDOM)
+        for text in self.scripts("cluster", catalogue, "--sbatch", "--time=20:00", "--sbatch", "--exclude node[1-3]"):
+            lines = [line for line in text.splitlines() if line.startswith("#SBATCH ")]
+            for wanted in ("--time=1-02:30:00", "--mem=4G", "--partition=short,long", "--account=avionics", "--cpus-per-task=2"):
+                self.assertIn("#SBATCH " + wanted, lines)
+            # sbatch takes the last of two.
+            self.assertGreater(lines.index("#SBATCH --time=20:00"), lines.index("#SBATCH --time=1-02:30:00"))
+            self.assertIn("#SBATCH --exclude=node[1-3]", lines)
+
+    def test_values_are_checked(self):
+        for line, word in (("time = \"soon\"", "time"), ("time = \"1:2:3:4\"", "time"), ("memory = \"4 G\"", "memory"),
+                           ("memory = \"lots\"", "memory"), ("partition = \"a b\"", "partition"),
+                           ("account = \"$(id)\"", "account"), ("cpus = 0", "cpus"), ("sbatch = [\"--wrap=id\"]", "wrap"),
+                           ("sbatch = [\"time=3\"]", "--name=value"), ("sbatch = [\"--mem=`id`\"]", "sbatch")):
+            done = run("dataset", "plan", write("bad.toml", f"[slurm]\n{line}\n" + SKY + RANDOM))
+            self.assertEqual(done.returncode, 2, line)
+            self.assertRegex(done.stderr, r"bad\.toml:2:")
+            self.assertIn(word, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+        catalogue = write("good.toml", SKY + RANDOM)
+        for value in ("--mem=4G\nrm -rf /", "--comment=\"x\"", "-p x", "mem", "--array=1-9", "--output=/etc/x", "--x=$(id)", "--x=a;b", ""):
+            done = run("dataset", "submit", catalogue, "--out", path("never"), "--slurm", "--dry-run", "--sbatch", value)
+            self.assertEqual(done.returncode, 2, value)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertFalse(os.path.exists(path("never")))
+
+    def test_names_go_into_the_script_as_they_are(self):
+        """The words that a shell makes of the script's command are the ones that were given, and nothing else is run."""
+        odd = "a'b\"c $(touch EVIL) `touch EVIL` ; touch EVIL # %a -x &"
+        catalogue = write(odd + "/cat\nalogue.toml", SKY + RANDOM)
+        work, verify = self.scripts(odd + "/out", catalogue, "--background", "sky=" + write("v\n#SBATCH --x/video '1'.mp4", ""))
+        for text, number in ((work, 2), (verify, 3)):
+            directives = [line for line in text.split("exec ")[0].splitlines()]
+            self.assertEqual(directives[0], "#!/bin/sh")
+            self.assertTrue(all(line.startswith("#SBATCH --") for line in directives[1:]), text)
+            command = text[text.index("exec ") + 5:]
+            script = write("echo.sh", "for word in " + command.strip() + "; do printf '%s\\0' \"$word\"; done\n")
+            shell = subprocess.run(["sh", script], cwd=ROOT, capture_output=True, text=True,
+                                   env={"PATH": os.environ["PATH"], "SLURM_ARRAY_TASK_ID": "3"})
+            words = shell.stdout.split("\0")[:-1]
+            self.assertEqual(words[1], "dataset", shell.stderr)
+            self.assertIn(path(odd, "out"), words)
+            if number == 2:
+                self.assertEqual(words[3], catalogue)
+                self.assertEqual(words[-1], "sky=" + path("v\n#SBATCH --x/video '1'.mp4"))
+        self.assertFalse([name for _, _, names in os.walk(ROOT) for name in names if name == "EVIL"])
+        # As sbatch reads the line: a backslash keeps the character after it, %% is one %.
+        log = re.search(r"(?m)^#SBATCH --output=(.*)$", work).group(1)
+        self.assertEqual(re.sub(r"\\(.)", r"\1", log).replace("%%", "%"), path(odd, "out", "slurm", "work-%a.log"))
+        self.assertIsNone(re.search(r"(?<!\\)[\s'\"#]", log))
+
+    def test_a_path_that_no_script_can_hold_is_refused(self):
+        catalogue = write("plain.toml", SKY + RANDOM)
+        for name in ("line\nbreak", "back\\slash"):
+            done = run("dataset", "submit", catalogue, "--out", path(name), "--slurm", "--dry-run")
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertFalse(os.path.exists(path(name)))
+
+
+if __name__ == "__main__":
+    AIRTRUTH = os.path.abspath(sys.argv.pop(1))
+    with tempfile.TemporaryDirectory(prefix="airtruth_dataset_test_") as folder:
+        ROOT = folder
+        unittest.main(verbosity=1)
