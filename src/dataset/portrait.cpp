@@ -111,6 +111,7 @@ void add_pictures(const sequence::Finished& finished,
     }
   }
   if (seen.empty()) return;
+  const std::vector<std::string> ids = sequence::intruder_ids(finished.truth);
   std::vector<bool> in_loop(frames.size(), false);
   for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop[seen[k]] = true;
   std::vector<image::Rgb8> squares;
@@ -123,7 +124,7 @@ void add_pictures(const sequence::Finished& finished,
     const PixelBox& box = *first_visible(frames[i])->visible_box_px;
     if (i == largest)
       portrait.preview_jpeg = video::jpeg_of(
-          report::small_copy(report::overlay(frame->picture, frames[i]), kPreviewWidth),
+          report::small_copy(report::overlay(frame->picture, frames[i], ids), kPreviewWidth),
           kJpegQuality);
     if (!in_loop[i]) continue;
     portrait.contrasts.push_back(report::contrast(frame->picture, box));

@@ -62,7 +62,27 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 }  // namespace
 
-constexpr int kCaptionPx = 360;  // that the long caption needs
+namespace {
+
+constexpr int kPanelGapPx = 12;
+constexpr int kHeadingPx = 52;     // two lines of text
+constexpr int kLeastSlotPx = 110;  // that the longest caption of a panel needs
+constexpr double kCloseupTextPx = 12;
+
+// What the colours of the boxes stand for, each word in its colour, as far as the width goes.
+void draw_heading(cv::Mat& canvas, std::int64_t frame, int zoom) {
+  int x = kPanelGapPx;
+  const auto add = [&](const std::string& words, const cv::Scalar& colour) {
+    if (x + text_size(words, kCloseupTextPx).width > canvas.cols) return;
+    text(canvas, words, x, 20, kCloseupTextPx, colour);
+    x += text_width(words, kCloseupTextPx) + 2 * kPanelGapPx;
+  };
+  add(fmt::format("frame {}, {}x", frame, zoom), kWhite);
+  add("visible box", kGreen);
+  add("exact box", kAmber);
+}
+
+}  // namespace
 
 image::Rgb8 closeup(const Closeup& what,
                     const annotation::Frame& truth,
@@ -76,24 +96,22 @@ image::Rgb8 closeup(const Closeup& what,
       image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
   const image::Rgb8 middle =
       what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
-  constexpr int kGapPx = 12;
-  constexpr int kHeaderPx = 34;
   const int panel = area.width * zoom;
-  cv::Mat canvas(kHeaderPx + area.height * zoom + kGapPx,
-                 4 * kGapPx + 3 * panel,
+  const int slot = std::max(panel, kLeastSlotPx);
+  cv::Mat canvas(kHeadingPx + area.height * zoom + kPanelGapPx,
+                 4 * kPanelGapPx + 3 * slot,
                  CV_8UC3,
-                 cv::Scalar(28, 28, 30));
+                 kDarkPaper);
+  draw_heading(canvas, truth.frame, zoom);
   const std::array<std::string, 3> names = {
-      fmt::format("background  frame {}", truth.frame),
-      what.layer != nullptr ? "alpha" : "difference x4",
-      panel >= kCaptionPx ? fmt::format("result  {}x  green visible, amber exact", zoom)
-                          : fmt::format("result  {}x", zoom)};
+      "background", what.layer != nullptr ? "alpha" : "difference x4", "result"};
   const std::array<const image::Rgb8*, 3> pictures = {&before, &middle, &after};
   for (std::size_t i = 0; i < 3; ++i) {
-    const int x = kGapPx + static_cast<int>(i) * (panel + kGapPx);
-    text(canvas, names[i], x, kHeaderPx - 12, 12, kWhite);
-    paste(canvas, *pictures[i], zoom, x, kHeaderPx);
-    cv::Mat part = canvas(cv::Rect(x, kHeaderPx, panel, area.height * zoom));
+    const int x = kPanelGapPx + static_cast<int>(i) * (slot + kPanelGapPx);
+    text(
+        canvas, fitted(names[i], kCloseupTextPx, slot), x, kHeadingPx - 10, kCloseupTextPx, kWhite);
+    paste(canvas, *pictures[i], zoom, x, kHeadingPx);
+    cv::Mat part = canvas(cv::Rect(x, kHeadingPx, panel, area.height * zoom));
     if (i == 2) draw_boxes(part, truth, area, zoom);
   }
   return from_mat(canvas);

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -13,6 +19,9 @@ namespace {
 
 constexpr int kTileWidthPx = 640;
 constexpr int kColumns = 3;
+constexpr int kCaptionPx = 22;  // of the line of text below a tile's picture
+constexpr int kInsetGapPx = 6;
+constexpr double kTileTextPx = 12;
 
 // The square around an intruder that fills a close-up, in frame pixels.
 PixelBox around(const PixelBox& box) {
@@ -20,56 +29,122 @@ PixelBox around(const PixelBox& box) {
   return {box.x + box.width / 2 - side / 2, box.y + box.height / 2 - side / 2, side, side};
 }
 
-void inset(cv::Mat& tile,
-           const image::Picture& picture,
-           const annotation::Intruder& intruder,
-           double scale,
-           int slot) {
-  const PixelBox area = around(*intruder.visible_box_px);
-  const int side = tile.rows * 2 / 5;
-  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
-  image::Rgb8 large =
-      resized(crop, side, side, side > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
-  // The corner farthest from the intruder, further ones beside it.
-  const PixelBox& box = *intruder.visible_box_px;
-  const bool at_right = (box.x + box.width / 2.0) * scale < tile.cols / 2.0;
-  const bool at_bottom = (box.y + box.height / 2.0) * scale < tile.rows / 2.0;
-  const int step = slot * (side + 6);
-  const int x = at_right ? tile.cols - side - 6 - step : 6 + step;
-  const int y = at_bottom ? tile.rows - side - 6 : 6;
-  if (x < 0 || x + side > tile.cols) return;
-  view(large).copyTo(tile(cv::Rect(x, y, side, side)));
-  cv::rectangle(tile, cv::Rect(x - 1, y - 1, side + 2, side + 2), kWhite, 1);
-  text(tile,
-       fmt::format("{} {:.0f} m", intruder.id, intruder.range_m.value_or(0)),
-       x + 6,
-       y + 20,
-       12,
-       kWhite);
+PixelBox on_tile(const PixelBox& box, double scale) {
+  return pixels_of({box.x * scale, box.y * scale, box.width * scale, box.height * scale});
 }
 
+// The square of `side` along the tile's upper or lower edge that covers no other inset, the least
+// of the boxes and, of those, lies farthest from `box`; nullopt where the insets leave none free.
+std::optional<PixelBox> inset_place(const cv::Mat& tile,
+                                    int side,
+                                    const PixelBox& box,
+                                    const std::vector<PixelBox>& boxes,
+                                    const std::vector<PixelBox>& insets) {
+  std::optional<PixelBox> best;
+  std::pair<std::int64_t, double> least;
+  const int step = side + kInsetGapPx;
+  for (int column = 0; column * step + kInsetGapPx + side <= tile.cols; ++column) {
+    for (const bool at_right : {false, true}) {
+      for (const bool at_bottom : {false, true}) {
+        const int x = kInsetGapPx + column * step;
+        const PixelBox place{at_right ? tile.cols - x - side : x,
+                             at_bottom ? tile.rows - side - kInsetGapPx : kInsetGapPx,
+                             side,
+                             side};
+        const auto meets = [&](const PixelBox& other) {
+          return intersection(place, other).has_value();
+        };
+        if (place.y < 0 || std::any_of(insets.begin(), insets.end(), meets)) continue;
+        std::int64_t covered = 0;
+        for (const PixelBox& one : boxes)
+          if (const auto common = intersection(place, one))
+            covered += std::int64_t{common->width} * common->height;
+        const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,
+                                       place.y + side / 2.0 - box.y - box.height / 2.0);
+        const std::pair<std::int64_t, double> cost{covered, -away};
+        if (best && !(cost < least)) continue;
+        best = place;
+        least = cost;
+      }
+    }
+  }
+  return best;
+}
+
+void draw_inset(cv::Mat& tile,
+                const image::Picture& picture,
+                const annotation::Intruder& intruder,
+                const PixelBox& place,
+                const cv::Scalar& colour) {
+  const PixelBox area = around(*intruder.visible_box_px);
+  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
+  image::Rgb8 large = resized(
+      crop, place.width, place.height, place.width > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
+  view(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
+  cv::rectangle(
+      tile, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), colour, 1);
+  const std::string words =
+      intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
+  const int margin = 4;
+  const std::string shown = fitted(words, kTileTextPx, place.width - 2 * margin);
+  const TextSize size = text_size(shown, kTileTextPx);
+  text_in(tile,
+          shown,
+          {place.x + margin, place.y + margin, size.width, size.height},
+          kTileTextPx,
+          colour);
+}
+
+// The picture with a line of text below it.
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
   const double scale = static_cast<double>(kTileWidthPx) / picture.width;
   const int height = std::max(1, static_cast<int>(picture.height * scale));
-  image::Rgb8 tile = resized(image::rgb8_from_picture(picture),
-                             kTileWidthPx,
-                             height,
-                             scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
-  cv::Mat canvas = view(tile);
-  int slot = 0;
-  for (const annotation::Intruder& intruder : truth.intruders) {
-    if (!intruder.visible_box_px) continue;
-    const PixelBox& v = *intruder.visible_box_px;
-    outline(canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, kGreen);
-    inset(canvas, picture, intruder, scale, slot++);
+  cv::Mat tile(height + kCaptionPx, kTileWidthPx, CV_8UC3, kDarkPaper);
+  image::Rgb8 small = resized(image::rgb8_from_picture(picture),
+                              kTileWidthPx,
+                              height,
+                              scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
+  view(small).copyTo(canvas);
+  std::vector<PixelBox> boxes;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const PixelBox& v = *truth.intruders[i].visible_box_px;
+    outline(
+        canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
+    boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
   }
-  text(canvas,
-       fmt::format("frame {}   {:.2f} s", truth.frame, truth.time_s),
-       8,
-       height - 10,
-       12,
-       kWhite);
-  return tile;
+  std::vector<PixelBox> insets;
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const auto place = inset_place(canvas, height * 2 / 5, boxes[seen++], boxes, insets);
+    if (!place) continue;
+    insets.push_back(*place);
+    draw_inset(canvas, picture, truth.intruders[i], *place, intruder_colour(i));
+  }
+  text(tile,
+       fmt::format("frame {}   {:.2f} s{}",
+                   truth.frame,
+                   truth.time_s,
+                   boxes.empty() ? "   no intruder is seen" : ""),
+       2,
+       height + kCaptionPx - 7,
+       kTileTextPx,
+       boxes.empty() ? kGrey : kWhite);
+  return from_mat(tile);
+}
+
+// How `count` tiles fill a rectangle: at most kColumns side by side, and as many tiles, at most
+// `count`, as leave no place empty.
+struct Layout {
+  int columns = 1;
+  int tiles = 0;
+};
+Layout layout_of(int count) {
+  if (count == 4) return {2, 4};
+  if (count < kColumns) return {std::max(1, count), count};
+  return {kColumns, count - count % kColumns};
 }
 
 }  // namespace
@@ -93,20 +168,24 @@ void ContactSheet::add(const image::Picture& picture, const annotation::Frame& t
 image::Rgb8 ContactSheet::sheet() const {
   constexpr int kGapPx = 10;
   constexpr int kHeaderPx = 56;
+  const Layout layout = layout_of(static_cast<int>(chosen_.size()));
   const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
-  const int rows = std::max<int>(1, (static_cast<int>(chosen_.size()) + kColumns - 1) / kColumns);
+  const int rows = std::max(1, layout.tiles / layout.columns);
   cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx),
-                 kGapPx + kColumns * (kTileWidthPx + kGapPx),
+                 kGapPx + layout.columns * (kTileWidthPx + kGapPx),
                  CV_8UC3,
-                 cv::Scalar(28, 28, 30));
-  text(canvas, title_, kGapPx, 36, 20, kWhite);
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    const int column = static_cast<int>(i) % kColumns;
-    const int row = static_cast<int>(i) / kColumns;
-    const image::Rgb8& tile = chosen_[i].picture;
+                 kDarkPaper);
+  text(canvas, fitted(title_, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
+  for (int i = 0; i < layout.tiles; ++i) {
+    // Spread over all that were chosen, the first and the last among them.
+    const std::size_t from = layout.tiles == 1
+                                 ? 0
+                                 : static_cast<std::size_t>(i) * (chosen_.size() - 1) /
+                                       static_cast<std::size_t>(layout.tiles - 1);
+    const image::Rgb8& tile = chosen_[from].picture;
     const cv::Mat source(tile.height, tile.width, CV_8UC3, tile.samples.get());
-    source.copyTo(canvas(cv::Rect(kGapPx + column * (kTileWidthPx + kGapPx),
-                                  kHeaderPx + row * (tile_height + kGapPx),
+    source.copyTo(canvas(cv::Rect(kGapPx + i % layout.columns * (kTileWidthPx + kGapPx),
+                                  kHeaderPx + i / layout.columns * (tile_height + kGapPx),
                                   tile.width,
                                   tile.height)));
   }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/draw.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include <opencv2/imgproc.hpp>
@@ -11,6 +14,24 @@ namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontHeightPx = 22.0;  // of a capital letter at scale 1
+constexpr int kRimPx = 2;  // that the dark rim and its antialiasing reach beyond the letters
+constexpr int kDashPx = 6;
+
+void dashed_line(cv::Mat& canvas, cv::Point from, cv::Point to, const cv::Scalar& colour) {
+  const cv::Point step((to.x > from.x) - (to.x < from.x), (to.y > from.y) - (to.y < from.y));
+  const int length = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+  for (int at = 0; at <= length; at += 2 * kDashPx)
+    cv::line(canvas, from + at * step, from + std::min(at + kDashPx, length) * step, colour, 1);
+}
+
+struct Corners {
+  cv::Point low, high;
+};
+Corners corners_of(const Box& box, double scale) {
+  const PixelBox pixels =
+      pixels_of({box.x * scale, box.y * scale, box.width * scale, box.height * scale});
+  return {{pixels.x - 1, pixels.y - 1}, {pixels.right(), pixels.bottom()}};
+}
 
 }  // namespace
 
@@ -50,13 +71,61 @@ int text_width(const std::string& words, double size_px) {
       .width;
 }
 
+TextSize text_size(const std::string& words, double size_px) {
+  int baseline = 0;
+  const int thickness = size_px > 20 ? 2 : 1;
+  const cv::Size size =
+      cv::getTextSize(words, kFont, size_px / kFontHeightPx, thickness + 2, &baseline);
+  return {size.width + 2 * kRimPx, size.height + baseline + 2 * kRimPx};
+}
+
+void text_in(cv::Mat& canvas,
+             const std::string& words,
+             const PixelBox& place,
+             double size_px,
+             const cv::Scalar& colour) {
+  int baseline = 0;
+  const int thickness = size_px > 20 ? 2 : 1;
+  const cv::Size size =
+      cv::getTextSize(words, kFont, size_px / kFontHeightPx, thickness + 2, &baseline);
+  text(canvas, words, place.x + kRimPx, place.y + kRimPx + size.height, size_px, colour);
+}
+
+std::string fitted(const std::string& words, double size_px, int width) {
+  if (text_size(words, size_px).width <= width) return words;
+  for (std::size_t keep = words.size(); keep > 0; --keep) {
+    const std::string shorter = words.substr(0, keep - 1) + "...";
+    if (text_size(shorter, size_px).width <= width) return shorter;
+  }
+  return "";
+}
+
 void outline(
     cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour, int thickness) {
-  const int x0 = static_cast<int>(std::floor(box.x * scale)) - 1;
-  const int y0 = static_cast<int>(std::floor(box.y * scale)) - 1;
-  const int x1 = static_cast<int>(std::ceil(box.right() * scale));
-  const int y1 = static_cast<int>(std::ceil(box.bottom() * scale));
-  cv::rectangle(canvas, cv::Point(x0, y0), cv::Point(x1, y1), colour, thickness, cv::LINE_8);
+  const Corners corners = corners_of(box, scale);
+  cv::rectangle(canvas, corners.low, corners.high, colour, thickness, cv::LINE_8);
+}
+
+void dashed_outline(cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour) {
+  const Corners corners = corners_of(box, scale);
+  const cv::Point upper_right(corners.high.x, corners.low.y);
+  const cv::Point lower_left(corners.low.x, corners.high.y);
+  dashed_line(canvas, corners.low, upper_right, colour);
+  dashed_line(canvas, upper_right, corners.high, colour);
+  dashed_line(canvas, corners.high, lower_left, colour);
+  dashed_line(canvas, lower_left, corners.low, colour);
+}
+
+cv::Scalar intruder_colour(std::size_t index) {
+  static const std::array<cv::Scalar, 8> kColours = {cv::Scalar(0, 230, 160),
+                                                     cv::Scalar(255, 165, 0),
+                                                     cv::Scalar(90, 200, 255),
+                                                     cv::Scalar(245, 130, 215),
+                                                     cv::Scalar(245, 235, 70),
+                                                     cv::Scalar(255, 90, 20),
+                                                     cv::Scalar(70, 120, 255),
+                                                     cv::Scalar(245, 245, 245)};
+  return kColours[index % kColours.size()];
 }
 
 }  // namespace airtruth::report

@@ -20,7 +20,9 @@ class ContactSheet {
  public:
   ContactSheet(std::string title, std::int64_t frame_count_estimate, std::size_t tiles = 12);
   void add(const image::Picture& picture, const annotation::Frame& truth);
-  image::Rgb8 sheet() const;  // 3 columns; a note where no frame was seen
+  // At most 3 columns, no place empty: up to two tiles are left out where they would fill no row. A
+  // note where there was no frame.
+  image::Rgb8 sheet() const;
 
  private:
   struct Tile {
@@ -34,9 +36,13 @@ class ContactSheet {
 };
 
 // Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12): the
-// visible box in green, one pixel outside the labelled pixels; where the intruder is in view but
-// hidden, the exact box in amber.
-image::Rgb8 overlay(const image::Picture& picture, const annotation::Frame& truth);
+// visible box, one pixel outside the labelled pixels; where the intruder is in view but hidden, the
+// exact box, dashed. Each intruder has its own colour, by its place in `ids`, by that in the frame
+// where `ids` do not name it. No label overprints another or leaves the picture; one overprints a
+// box where no other place is left.
+image::Rgb8 overlay(const image::Picture& picture,
+                    const annotation::Frame& truth,
+                    const std::vector<std::string>& ids = {});
 
 // What a closer look needs of one intruder in one frame.
 struct Closeup {

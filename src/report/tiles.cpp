@@ -16,13 +16,13 @@ image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, 
   cv::Mat canvas(kHeaderPx + rows * (height + kGapPx),
                  kGapPx + columns * (width + kGapPx),
                  CV_8UC3,
-                 cv::Scalar(28, 28, 30));
-  text(canvas, title, kGapPx, 36, 20, kWhite);
+                 kDarkPaper);
+  text(canvas, fitted(title, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const int x = kGapPx + static_cast<int>(i) % columns * (width + kGapPx);
     const int y = kHeaderPx + static_cast<int>(i) / columns * (height + kGapPx);
     cv::Mat tile = view(pictures[i].picture);
-    text(tile, pictures[i].name, 10, height - 12, 12, kWhite);
+    text(tile, fitted(pictures[i].name, 12, width - 20), 10, height - 12, 12, kWhite);
     tile.copyTo(canvas(cv::Rect(x, y, width, height)));
   }
   return from_mat(canvas);

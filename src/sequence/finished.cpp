@@ -122,6 +122,14 @@ Finished open_finished(const fs::path& folder) {
   return finished;
 }
 
+std::vector<std::string> intruder_ids(const annotation::Truth& truth) {
+  std::vector<std::string> ids;
+  for (const annotation::Frame& frame : truth.frames)
+    for (const annotation::Intruder& intruder : frame.intruders)
+      if (std::find(ids.begin(), ids.end(), intruder.id) == ids.end()) ids.push_back(intruder.id);
+  return ids;
+}
+
 void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options) {
   refuse_existing(out, options.overwrite);
   video::WriterOptions writer_options;
@@ -131,6 +139,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   video::StreamInfo info = reader.info();
   video::Writer writer(out, info, writer_options);
   const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
+  const std::vector<std::string> ids = intruder_ids(sequence.truth);
   while (auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
     if (frame->index >= total) {
@@ -139,8 +148,8 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
       throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
     }
     const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
-    frame->picture =
-        image::picture_from_rgb8(report::overlay(frame->picture, truth), frame->picture.colour);
+    frame->picture = image::picture_from_rgb8(report::overlay(frame->picture, truth, ids),
+                                              frame->picture.colour);
     writer.write(*frame);
     if (options.progress) options.progress(frame->index + 1, total);
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "annotation/truth.h"
 #include "base/log.h"
@@ -27,6 +28,9 @@ struct Finished {
 
 // Error where the folder is not whole: no sequence.json, or a file that it names is missing.
 Finished open_finished(const fs::path& folder);
+
+// Of every intruder that the truth names, in the order in which they come up.
+std::vector<std::string> intruder_ids(const annotation::Truth& truth);
 
 // Burns boxes, range and id into a copy of the video. mp4, mkv or avi by the extension of `out`.
 struct OverlayOptions {
