@@ -62,6 +62,7 @@ std::optional<PixelBox> inset_place(const cv::Mat& tile,
         const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,
                                        place.y + side / 2.0 - box.y - box.height / 2.0);
         const std::pair<std::int64_t, double> cost{covered, -away};
+        if (boxes.size() > 2 && covered > 0) continue;  // an inset is less than what it would hide
         if (best && !(cost < least)) continue;
         best = place;
         least = cost;
@@ -114,11 +115,12 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
         canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
     boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
   }
+  const int side = boxes.size() > 2 ? height / 4 : height * 2 / 5;
   std::vector<PixelBox> insets;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     if (!truth.intruders[i].visible_box_px) continue;
-    const auto place = inset_place(canvas, height * 2 / 5, boxes[seen++], boxes, insets);
+    const auto place = inset_place(canvas, side, boxes[seen++], boxes, insets);
     if (!place) continue;
     insets.push_back(*place);
     draw_inset(canvas, picture, truth.intruders[i], *place, intruder_colour(i));

@@ -98,7 +98,7 @@ image::Rgb8 overlay(const image::Picture& picture,
                     const std::vector<std::string>& ids) {
   image::Rgb8 result = image::rgb8_from_picture(picture);
   cv::Mat canvas = view(result);
-  const double size_px = std::clamp(picture.height / 60.0, 9.0, 30.0);
+  const double size_px = std::clamp(picture.height / 55.0, 11.0, 30.0);
   const std::vector<Marked> all = marked(truth, ids);
   Placing placing{{0, 0, picture.width, picture.height}, {}, {}};
   for (const Marked& one : all) {
