@@ -21,7 +21,7 @@ def overlap(a, b):
     height = min(a[1] + a[3], b[1] + b[3]) - max(a[1], b[1])
     if width <= 0 or height <= 0:
         return 0.0
-    return width * height / (a[2] * a[3] + b[2] * b[3] - width * height)
+    return 1.0 if a == b else min(1.0, width * height / (a[2] * a[3] + b[2] * b[3] - width * height))
 
 
 def within(box):
@@ -88,10 +88,11 @@ def overall(sequences):
     return result
 
 
-# VOT, as its toolkit does it: boxes as sets of whole pixels.
+# VOT, as its toolkit does it: boxes as sets of whole pixels; a mark or nan is an empty region, and two of these are equal.
 def pixel_overlap(answer, truth):
+    answer = None if isinstance(answer, int) else answer
     if not answer or not truth:
-        return 0.0
+        return 0.0 if answer or truth else 1.0
     a, b = ([round(v) for v in box] for box in (answer, truth))
     low = [min(a[k], b[k]) for k in (0, 1)]
     high = [max(a[k] + a[k + 2] - 1, b[k] + b[k + 2] - 1) for k in (0, 1)]
@@ -113,11 +114,11 @@ def restart_reference(sequences, low, high):
     for truth, runs in sequences:
         mean_accuracy = mean_failures = 0.0
         for run in runs:
-            overlaps = [0.0 if isinstance(e, int) else pixel_overlap(e, t) for e, t in zip(run, truth)]
+            overlaps = [pixel_overlap(e, t) for e, t in zip(run, truth)]
             starts = [i for i, e in enumerate(run) if e == 1]
             fails = [i for i, e in enumerate(run) if e == 2]
-            skipped = {j for i in starts for j in range(i, i + 10)} | set(fails) | {i for i, e in enumerate(run) if e == 0}
-            kept = [overlaps[i] for i in range(len(run)) if i not in skipped and truth[i]]
+            skipped = {j for i in starts for j in range(i, i + 10)} | set(fails) | {i for i, e in enumerate(run) if e == 0 or e is None}
+            kept = [overlaps[i] for i in range(len(run)) if i not in skipped]
             mean_accuracy += (mean(kept) if kept else 0.0) / len(runs)
             mean_failures += len(fails) / len(runs)
             for k, start in enumerate(starts):
@@ -140,12 +141,12 @@ def restart_reference(sequences, low, high):
 def multistart_reference(sequences, low, high):
     """sequences: lists of (truth, {(anchor, backward): run})."""
     total_overlap = before = robustness = weight = 0.0
-    sums, active = [0.0] * (high + 1), [0] * (high + 1)
+    sums, active = [0.0] * high, [0] * high  # the toolkit's curve ends at high - 1
     for truth, runs in sequences:
         progress_sum = frames = 0
         for (anchor, backward), run in runs.items():
             shown = truth[anchor::-1] if backward else truth[anchor:]
-            overlaps = [0.0 if isinstance(e, int) else pixel_overlap(e, t) for e, t in zip(run, shown)]
+            overlaps = [pixel_overlap(e, t) for e, t in zip(run, shown)]
             grace, progress = 10, len(run)
             for j, value in enumerate(overlaps):
                 if value <= 0.1 and shown[j]:
@@ -160,7 +161,7 @@ def multistart_reference(sequences, low, high):
             progress_sum += progress
             frames += len(run)
             total_overlap += sum(overlaps[:progress])
-            for j in range(1, high + 1):
+            for j in range(1, high):
                 if j < len(kept):
                     sums[j] += mean(kept[1:j + 1])
                     active[j] += 1
@@ -170,7 +171,7 @@ def multistart_reference(sequences, low, high):
         before += progress_sum
         robustness += progress_sum / frames * len(truth)
         weight += len(truth)
-    last = max((j for j in range(high + 1) if active[j]), default=-1)
+    last = max((j for j in range(high) if active[j]), default=-1)
     curve = [sums[j] / active[j] if active[j] else 0.0 for j in range(last + 1)]
     part = curve[low:high + 1]
     return {"accuracy": total_overlap / before if before else 0.0, "robustness": robustness / weight, "eao_curve": curve,

@@ -102,8 +102,10 @@ double overlap(const Box& a, const Box& b) {
   const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
   if (!(width > 0) || !(height > 0)) return 0;
+  // By rounding, x + width - x differs from width: equal boxes are named, the quotient is bounded.
+  if (a == b) return 1;
   const double shared = width * height;
-  return shared / (a.area() + b.area() - shared);
+  return std::min(1.0, shared / (a.area() + b.area() - shared));
 }
 
 Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }

@@ -22,6 +22,7 @@ struct FramePair {
   double seconds = 0;         // that the answer took
 };
 
+// Within [0, 1]; exactly 1 for equal boxes, whatever their coordinates round to.
 double overlap(const Box& a, const Box& b);
 Pixel centre_of(const Box& box);
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/metrics.h"
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace airtruth::evaluation {
@@ -12,6 +16,39 @@ TEST(Overlap, ClosedForms) {
   EXPECT_DOUBLE_EQ(overlap({0, 0, 10, 10}, {5, 0, 10, 10}), 50.0 / 150);
   EXPECT_DOUBLE_EQ(overlap({0, 0, 10, 10}, {2, 2, 5, 5}), 0.25);
   EXPECT_EQ(overlap({0, 0, 0, 0}, {0, 0, 0, 0}), 0);
+}
+
+// Of these boxes with themselves the quotient of the areas is 1 + 1e-15 in double precision; the
+// GOT-10k toolkit (0.1.3, rect_iou) bounds it to 1.
+const std::vector<Box> kRoundingBoxes = {{307.581, 570.328, 8.735, 56.924},
+                                         {187.787, 254.573, 49.679, 24.611},
+                                         {330.207, 17.508, 45.235, 32.335},
+                                         {81.291, 242.465, 12.287, 15.813}};
+
+TEST(Overlap, IsNeverAboveOne) {
+  for (const Box& box : kRoundingBoxes) {
+    EXPECT_EQ(overlap(box, box), 1);
+    EXPECT_LE(overlap(box, {box.x, box.y, std::nextafter(box.width, 0), box.height}), 1);
+    EXPECT_LE(overlap({std::nextafter(box.x, 0), box.y, box.width, box.height}, box), 1);
+  }
+}
+
+TEST(Overlap, AsTheGot10kToolkitHasIt) {
+  EXPECT_NEAR(overlap({100, 100, 20, 10}, {103, 104, 20, 10}), 0.3422818791946309, 1e-12);
+  EXPECT_NEAR(overlap({103.5, 98.25, 18, 12.5}, {100, 100, 20, 10}), 0.6346153846153846, 1e-12);
+  EXPECT_NEAR(overlap({0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}), 0.9999999999999989, 1e-12);
+}
+
+// The threshold of 1 is passed by nothing: exact answers have 20 of the 21.
+TEST(Score, ExactAnswersGainNothingByRounding) {
+  std::vector<FramePair> frames;
+  for (const Box& box : kRoundingBoxes) frames.push_back({box, box, 0});
+  for (const auto& [width, height] : {std::pair(0, 0), std::pair(1280, 960)}) {
+    const Score s = score(frames, width, height);
+    EXPECT_EQ(s.success[20], 0);
+    EXPECT_DOUBLE_EQ(s.auc, 20.0 / 21);
+    EXPECT_EQ(s.average_overlap, 1);
+  }
 }
 
 // Perfect answers: the strict "more than" leaves out the last of the 21 thresholds.

@@ -38,6 +38,32 @@ double count(const Pixels& p) {
   return std::max(0.0, p.right - p.left + 1) * std::max(0.0, p.bottom - p.top + 1);
 }
 
+// A region's bounds and the pixels that it holds; the toolkit's empty region lies at the origin.
+struct Region {
+  Pixels bounds;
+  bool is_empty = true;
+};
+
+Region region(const std::optional<Box>& box) {
+  return box ? Region{pixels(*box), false} : Region{};
+}
+
+double region_overlap(const Region& a, const Region& b, int width, int height) {
+  const Pixels both{std::min(a.bounds.left, b.bounds.left),
+                    std::min(a.bounds.top, b.bounds.top),
+                    std::max(a.bounds.right, b.bounds.right),
+                    std::max(a.bounds.bottom, b.bounds.bottom)};
+  if (both.left >= both.right || both.top >= both.bottom) return 1;
+  const Pixels part = width > 0 && height > 0 ? cut(both, {0, 0, width - 1.0, height - 1.0}) : both;
+  if (part.left >= part.right || part.top >= part.bottom) return 0;
+  if (a.is_empty || b.is_empty) return 0;
+  const Pixels a_cut = cut(a.bounds, part);
+  const Pixels b_cut = cut(b.bounds, part);
+  const double shared = count(cut(a_cut, b_cut));
+  const double all = count(a_cut) + count(b_cut) - shared;
+  return all > 0 ? shared / all : 0;
+}
+
 std::vector<double> overlaps_of(const Trajectory& frames,
                                 std::span<const std::optional<Box>> truth,
                                 const VotTruth& about) {
@@ -117,13 +143,11 @@ std::vector<double> curve_of(const std::vector<Fragment>& fragments) {
 }
 
 std::pair<double, std::int64_t> accuracy_and_failures(const Trajectory& run,
-                                                      const VotTruth& truth,
                                                       const std::vector<double>& overlaps) {
   std::vector<bool> counts(run.size(), true);
   std::int64_t failures = 0;
   for (std::size_t i = 0; i < run.size(); ++i) {
-    if (run[i].mark == Mark::kUnknown || run[i].mark == Mark::kFailed || !truth.boxes[i])
-      counts[i] = false;
+    if (run[i].mark == Mark::kUnknown || run[i].mark == Mark::kFailed) counts[i] = false;
     failures += run[i].mark == Mark::kFailed ? 1 : 0;
     if (run[i].mark == Mark::kBegun)
       for (std::size_t j = i; j < std::min(run.size(), i + kBurnIn); ++j) counts[j] = false;
@@ -163,28 +187,15 @@ std::size_t progress_of(const std::vector<double>& overlaps,
 }  // namespace
 
 double pixel_overlap(const Box& a, const Box& b, int width, int height) {
-  const Pixels p = pixels(a);
-  const Pixels q = pixels(b);
-  const Pixels both{std::min(p.left, q.left),
-                    std::min(p.top, q.top),
-                    std::max(p.right, q.right),
-                    std::max(p.bottom, q.bottom)};
-  if (both.left >= both.right || both.top >= both.bottom) return 1;
-  const Pixels part = width > 0 && height > 0 ? cut(both, {0, 0, width - 1.0, height - 1.0}) : both;
-  if (part.left >= part.right || part.top >= part.bottom) return 0;
-  const Pixels a_cut = cut(p, part);
-  const Pixels b_cut = cut(q, part);
-  const double shared = count(cut(a_cut, b_cut));
-  const double all = count(a_cut) + count(b_cut) - shared;
-  return all > 0 ? shared / all : 0;
+  return region_overlap(region(a), region(b), width, height);
 }
 
 double frame_overlap(const VotFrame& frame,
                      const std::optional<Box>& truth,
                      int width,
                      int height) {
-  if (frame.mark != Mark::kAnswer || !frame.box || !truth) return 0;
-  return pixel_overlap(*frame.box, *truth, width, height);
+  const auto answer = frame.mark == Mark::kAnswer ? frame.box : std::nullopt;
+  return region_overlap(region(answer), region(truth), width, height);
 }
 
 Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int> eao_range) {
@@ -199,7 +210,7 @@ Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int
     for (const Trajectory& run : sequence.runs) {
       check(run.size() == sequence.truth.boxes.size(), "a run is as long as its truth");
       const auto overlaps = overlaps_of(run, sequence.truth.boxes, sequence.truth);
-      const auto [mean, failed] = accuracy_and_failures(run, sequence.truth, overlaps);
+      const auto [mean, failed] = accuracy_and_failures(run, overlaps);
       accuracy += mean;
       failures += static_cast<double>(failed);
       add_fragments(run, overlaps, fragments);
@@ -243,7 +254,7 @@ MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
       frames += static_cast<double>(overlaps.size());
       double sum = 0;
       for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
-      for (std::size_t j = 1; j <= high; ++j) {
+      for (std::size_t j = 1; j < high; ++j) {
         if (j < overlaps.size()) {
           if (j < progress) sum += overlaps[j];
           curve.add(j, sum / static_cast<double>(j), 1);
@@ -325,6 +336,12 @@ std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
       ++high;
   }
   return {static_cast<int>(low), static_cast<int>(high)};
+}
+
+std::pair<int, int> within_curves(std::pair<int, int> range, std::int64_t longest) {
+  const int last = static_cast<int>(std::max<std::int64_t>(1, longest - 1));
+  const int high = std::min(range.second, last);
+  return {std::min(range.first, std::max(1, high - 1)), high};
 }
 
 }  // namespace airtruth::evaluation

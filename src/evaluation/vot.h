@@ -9,7 +9,7 @@
 
 #include "geometry/box.h"
 
-// The measures of the VOT challenges, as the public toolkit (vot-toolkit 0.7) takes them: accuracy,
+// The measures of the VOT challenges, as the public toolkit (vot-toolkit 0.8) takes them: accuracy,
 // robustness and expected average overlap (EAO) for the protocol that starts a tracker anew after
 // each failure (VOT2013 to 2019: Kristan et al. 2016, "A novel performance evaluation methodology
 // for single-target trackers", section 4) and for the one that starts it at many frames (Kristan et
@@ -35,8 +35,9 @@ struct VotTruth {
 // pixels counted. Two boxes without a pixel between them are equal: 1.
 double pixel_overlap(const Box& a, const Box& b, int width, int height);
 
-// Of the frames from a start on (restarts: kBegun and the frames that follow). A frame whose truth
-// is empty has an overlap of 0, as any frame without an answer.
+// Of the frames from a start on (restarts: kBegun and the frames that follow), as the toolkit has it
+// for empty regions: an answer where the target is absent, and no answer where it is shown, have an
+// overlap of 0; no answer where it is absent has 1.
 double frame_overlap(const VotFrame& frame, const std::optional<Box>& truth, int width, int height);
 
 struct Restart {
@@ -48,8 +49,9 @@ struct Restart {
 };
 
 // Every sequence's runs, each as long as its truth. Accuracy and failures weigh by length; EAO is
-// the curve's mean over [low, high], the part of it that there is. Frames without a target are no
-// part of accuracy (the toolkit knows none in this protocol).
+// the curve's mean over [low, high], the part of it that there is. Accuracy is, as in the toolkit,
+// over all frames but those marked kUnknown (which result files give as 0 or with a NaN): an answer
+// where the target is absent counts, with an overlap of 0.
 struct RestartRuns {
   VotTruth truth;
   std::vector<Trajectory> runs;
@@ -75,8 +77,9 @@ struct MultiStart {
 
 // A run fails at the first of 10 frames with the target, one after another, whose overlap is at
 // most 0.1; its first frame has an overlap of 0, as in the toolkit. The toolkit takes the mean
-// overlap of a failed run at frame j beyond its end over j - 1 frames, within it over j; that is
-// kept.
+// overlap of a failed run at frame j beyond its end over j - 1 frames, within it over j, and ends
+// the curve at high - 1; both are kept. EAO is the curve's mean over [low, high - 1], the part of it
+// that there is: beyond the longest run, where no run is active, the toolkit counts zeros.
 MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
                             std::pair<int, int> eao_range);
 
@@ -94,5 +97,10 @@ std::vector<Anchor> anchors_of(const VotTruth& truth, int step);
 // Gaussian kernel density of the sequences' lengths (Silverman's width, at least 1 frame);
 // VOT2015's rule. Empty for no sequence.
 std::pair<int, int> eao_range(std::span<const std::int64_t> lengths);
+
+// The range cut to what the curves of runs of at most `longest` frames hold: they end at the index
+// longest - 1, that of a multi-start run one before the range's end. At least two frames wide where
+// there are so many.
+std::pair<int, int> within_curves(std::pair<int, int> range, std::int64_t longest);
 
 }  // namespace airtruth::evaluation

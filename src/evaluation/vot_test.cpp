@@ -14,7 +14,7 @@ const Box kTruth{100, 100, 20, 10};
 const Box kHalf{110, 100, 20, 10};  // shares 10 of 30 columns
 
 Trajectory run_of(const std::string& marks) {
-  // b: begun, f: failed, -: passed over, h: shares a third, x: exact, n: no box.
+  // b: begun, f: failed, -: unknown, h: shares a third, x: exact, n: no box.
   Trajectory run;
   for (const char c : marks) {
     VotFrame frame;
@@ -65,17 +65,67 @@ TEST(Restart, ByHand) {
   EXPECT_FALSE(restart_score({&runs, 1}, {50, 60}).eao);
 }
 
+// vot-toolkit 0.8.0: compute_accuracy and compute_eao_curve give 0.375 and, over [1, 19],
+// 0.9001656896 (in single precision).
+TEST(Restart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
+  RestartRuns runs{still(20), {run_of("bxxxxxxxxxxhh--nxxhx")}};
+  for (const std::size_t absent : {13u, 16u, 17u}) runs.truth.boxes[absent].reset();
+  const Restart score = restart_score({&runs, 1}, {1, 19});
+  // From frame 10 on: 1, a third twice; 13 and 14 are unknown; no box, two answers where nothing is
+  // to be seen, a third, 1. Over eight frames.
+  EXPECT_DOUBLE_EQ(score.accuracy, (1 + 1.0 / 3 + 1.0 / 3 + 0 + 0 + 0 + 1.0 / 3 + 1) / 8);
+  EXPECT_NEAR(score.accuracy, 0.375, 1e-12);
+  // Nothing said where there is nothing, as in frame 13: 1.
+  EXPECT_DOUBLE_EQ(score.eao_curve[13], (10 + 2.0 / 3 + 1) / 13);
+  EXPECT_NEAR(score.eao.value(), 0.9001656896, 1e-7);
+}
+
+TEST(FrameOverlap, OfEmptyRegionsAsTheToolkitHasIt) {
+  const VotFrame answer{Mark::kAnswer, kTruth};
+  const VotFrame none{Mark::kAnswer, {}};
+  const VotFrame unknown{Mark::kUnknown, {}};
+  for (const auto& [width, height] : {std::pair(0, 0), std::pair(640, 480)}) {
+    EXPECT_EQ(frame_overlap(answer, kTruth, width, height), 1);
+    EXPECT_EQ(frame_overlap(answer, std::nullopt, width, height), 0);
+    EXPECT_EQ(frame_overlap(none, kTruth, width, height), 0);
+    EXPECT_EQ(frame_overlap(unknown, kTruth, width, height), 0);
+    EXPECT_EQ(frame_overlap(none, std::nullopt, width, height), 1);
+    EXPECT_EQ(frame_overlap(unknown, std::nullopt, width, height), 1);
+    EXPECT_EQ(
+        frame_overlap({Mark::kAnswer, Box{-30, -30, 10, 10}}, std::nullopt, width, height), 0);
+  }
+}
+
 TEST(MultiStart, ByHand) {
   // Fails at frame 5: ten frames of nothing from there.
   const MultiStartRuns runs{
       still(20),
       {{0, false, run_of("bxxxxnnnnnnnnnnnnnnn")}, {19, true, run_of("bhhhhhhhhhhhhhhhhhhh")}}};
-  const MultiStart score = multistart_score({&runs, 1}, {4, 4});
+  const MultiStart score = multistart_score({&runs, 1}, {4, 5});
   EXPECT_DOUBLE_EQ(score.robustness, 25.0 / 40);
   EXPECT_DOUBLE_EQ(score.accuracy, (4 + 19.0 / 3) / 25);
   EXPECT_DOUBLE_EQ(score.eao.value(), (1 + 1.0 / 3) / 2);
+  // The curve ends before `high`: one point of it is the score, and [4, 4] holds none.
+  EXPECT_EQ(score.eao_curve.size(), 5u);
+  EXPECT_FALSE(multistart_score({&runs, 1}, {4, 4}).eao);
   // Beyond its end a failed run stays, with the toolkit's j - 1.
-  EXPECT_DOUBLE_EQ(multistart_score({&runs, 1}, {25, 25}).eao.value(), 4.0 / 24);
+  EXPECT_DOUBLE_EQ(multistart_score({&runs, 1}, {25, 26}).eao.value(), 4.0 / 24);
+  // vot-toolkit 0.8.0, compute_eao_partial with high = 26.
+  const MultiStart wide = multistart_score({&runs, 1}, {18, 26});
+  ASSERT_EQ(wide.eao_curve.size(), 26u);
+  EXPECT_NEAR(wide.eao.value(), 0.20913850007099433, 1e-12);
+  EXPECT_NEAR(wide.eao_curve[19], 0.27192982456140347, 1e-12);
+  EXPECT_NEAR(wide.accuracy, 0.4133333333333333, 1e-12);
+}
+
+// vot-toolkit 0.8.0: 0.625 and 0.8187074829931973.
+TEST(MultiStart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
+  MultiStartRuns runs{still(8), {{0, false, run_of("bxxnxhxx")}}};
+  for (std::size_t i = 3; i < 6; ++i) runs.truth.boxes[i].reset();
+  const MultiStart score = multistart_score({&runs, 1}, {1, 8});
+  // Nothing said in frame 3 is right (1), two answers in 4 and 5 are wrong (0), the start has 0.
+  EXPECT_DOUBLE_EQ(score.accuracy, 5.0 / 8);
+  EXPECT_NEAR(score.eao.value(), 0.8187074829931973, 1e-12);
 }
 
 TEST(MultiStart, AFrameWithoutTargetIsNoFailure) {
@@ -107,6 +157,17 @@ TEST(EaoRange, HoldsHalfAroundTheCommonLength) {
   const auto wide = eao_range(spread);
   EXPECT_NEAR(wide.second - wide.first, 200, 25);
   EXPECT_EQ(eao_range({}), std::pair(0, 0));
+}
+
+// 60 frames have a curve from 0 to 59, of which a multi-start range [low, high] reads low to
+// high - 1.
+TEST(EaoRange, IsCutToTheCurves) {
+  EXPECT_EQ(within_curves({60, 60}, 60), std::pair(58, 59));
+  EXPECT_EQ(within_curves({59, 60}, 60), std::pair(58, 59));
+  EXPECT_EQ(within_curves({20, 40}, 60), std::pair(20, 40));
+  EXPECT_EQ(within_curves({2, 2}, 2), std::pair(1, 1));
+  EXPECT_EQ(within_curves({1, 1}, 1), std::pair(1, 1));
+  EXPECT_EQ(within_curves({0, 0}, 0), std::pair(0, 0));
 }
 
 TEST(FirstLoss, IsTheFirstOfTenOrOfTheLast) {

@@ -212,7 +212,46 @@ Comparison compared(const ScoredTracker& a, const ScoredTracker& b) {
 std::pair<int, int> range_of(const std::vector<TruthClip>& truths) {
   std::vector<std::int64_t> lengths;
   for (const TruthClip& truth : truths) lengths.push_back(std::ssize(truth.clip.frames));
-  return evaluation::eao_range(lengths);
+  const std::int64_t longest =
+      lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
+  return evaluation::within_curves(evaluation::eao_range(lengths), longest);
+}
+
+// Where a curve ends before the range over which its mean is taken. last: the range's last index.
+void warn_of_short_curve(const std::string& tracker,
+                         const char* protocol,
+                         std::size_t points,
+                         std::pair<int, int> range,
+                         int last,
+                         const Warn& warn) {
+  const int end = static_cast<int>(points) - 1;
+  if (range.first <= std::min(end, last) && last <= end) return;
+  airtruth::warn(
+      warn,
+      fmt::format("{}: the EAO curve of its {} runs ends at {}; of the range {} to {} {}",
+                  tracker,
+                  protocol,
+                  end,
+                  range.first,
+                  last,
+                  range.first <= end && range.first <= last ? "the part up to there counts"
+                                                            : "nothing is there, so it has no EAO"));
+}
+
+void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
+  const auto range = assessment.eao_range;
+  for (const ScoredTracker& tracker : assessment.trackers) {
+    if (tracker.restart)
+      warn_of_short_curve(
+          tracker.name, "restart", tracker.restart->eao_curve.size(), range, range.second, warn);
+    if (tracker.multistart)
+      warn_of_short_curve(tracker.name,
+                          "multistart",
+                          tracker.multistart->eao_curve.size(),
+                          range,
+                          range.second - 1,
+                          warn);
+  }
 }
 
 void add_films(std::vector<TruthClip>& truths, const AssessOptions& options) {
@@ -266,6 +305,7 @@ Assessment assess(const fs::path& set,
   const Scoring scored(assessment.truths, assessment.eao_range);
   for (const fs::path& folder : results)
     assessment.trackers.push_back(scored(name_of(folder), found[name_of(folder)]));
+  warn_of_short_curves(assessment, options.warn);
   std::stable_sort(assessment.trackers.begin(),
                    assessment.trackers.end(),
                    [](const ScoredTracker& a, const ScoredTracker& b) {

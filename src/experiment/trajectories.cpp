@@ -43,6 +43,9 @@ VotFrame frame_of(const exchange::Line& line, const fs::path& file, int origin_p
     if (n[0] == 2) return {Mark::kFailed, {}};
     return {Mark::kUnknown, {}};
   }
+  // VOT's toolkit reads a region with a NaN as the mark 0.
+  if (std::any_of(n.begin(), n.end(), [](double value) { return std::isnan(value); }))
+    return {Mark::kUnknown, {}};
   if (n.size() == 4) return {Mark::kAnswer, box_from(n, 0, origin_px)};
   if (n.size() < 6 || n.size() % 2 != 0)
     throw Error(fmt::format("has {} numbers; expected x,y,width,height", n.size()),
