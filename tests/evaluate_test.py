@@ -9,6 +9,7 @@ import json
 import math
 import os
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -69,6 +70,7 @@ def reference(truth, answers, seconds):
         "x_mean_px": mean([abs(v) for v in dx]), "x_rmse_px": rms(dx), "x_most_px": max(map(abs, dx)),
         "y_mean_px": mean([abs(v) for v in dy]), "y_rmse_px": rms(dy), "y_most_px": max(map(abs, dy)),
         "frames_per_second": mean([1 / s for s in seconds[1:]]),
+        "frames_per_second_median": statistics.median([1 / s for s in seconds[1:]]),
     }
 
 
@@ -301,8 +303,8 @@ def main():
                 off += differences(s["multistart"], multistart_reference([multistarts[s["name"]]], 8, 25), "multistart " + s["name"])
             other = {name: reference(sequences[name][0], others[name], [1] * len(others[name])) for name in ordered}
             mot = next(t for t in evaluation["trackers"] if t["name"] == "mot")["overall"]
-            off += differences({k: v for k, v in mot.items() if k != "frames_per_second"},
-                               {k: v for k, v in found["overall"].items() if isinstance(v, (int, float, list)) and k != "frames_per_second"}, "MOT")
+            off += differences({k: v for k, v in mot.items() if not k.startswith("frames_per_second")},
+                               {k: v for k, v in found["overall"].items() if isinstance(v, (int, float, list)) and not k.startswith("frames_per_second")}, "MOT")
             pair = next(c for c in evaluation["comparisons"] if {c["a"], c["b"]} == {"mine", "other"})
             sign = 1 if pair["a"] == "mine" else -1
             aucs = [wanted[n]["auc"] for n in ordered], [other[n]["auc"] for n in ordered]

@@ -59,6 +59,35 @@ ODD = {
 }
 
 
+# A tracker that says "0", that it has lost its object, from its fifth request on.
+LOSES = (HELLO + "while read -r line; do n=$((n+1)); case \"$line\" in @@TRAX:quit*) exit;; esac; "
+         "[ $n -lt 5 ] && echo '@@TRAX:state 45,30,30,40' || echo '@@TRAX:state \"0\"'; done")
+
+
+def expect_lost(root, run):
+    """What is lost is a frame without an answer in every protocol, and a failure where a tracker is begun anew after one."""
+    with open(root + "/loses.sh", "w", encoding="utf-8") as out:
+        out.write(LOSES)
+    tracker = f"loses=trax:sh {root}/loses.sh"
+    for protocol in ("ope", "restart", "multistart"):
+        done = run("track", "set", "--only", "first", "-o", "lost", "-t", tracker, "--protocol", protocol)
+        if done.returncode != 0 or done.stderr:
+            sys.exit(f"trax_clients_test: lost, {protocol}: {done.returncode}: {done.stderr}")
+    video = run("track", "first", "--init", "40,30,14,10", "-o", "lost-video", "-t", tracker)
+    box, nan = "45,30,30,40", "nan,nan,nan,nan"
+    first = ",".join(map(str, place(0)))
+    # The box that it answers with touches the truth in the first frames; then it is lost.
+    wanted = {"lost/loses/first.txt": [first] + [box] * 3 + [nan] * (FRAMES - 4),
+              "lost/loses/restart/first/first_001.txt": ["1"] + [box] * 3 + (["2"] + ["0"] * 4 + ["1"]) * 3 + ["2", "0"],
+              "lost/loses/multistart/first/first_00000000.txt": ["1"] + [box] * 3 + [nan] * (FRAMES - 4),
+              "lost-video/loses/first.txt": [first] + [box] * 3 + [nan] * (FRAMES - 4)}
+    for name, expected in wanted.items():
+        with open(f"{root}/{name}", encoding="utf-8") as result:
+            found = result.read().splitlines()
+        if found != expected:
+            sys.exit(f"trax_clients_test: {name}: {found}; {video.stderr}")
+
+
 def main():
     airtruth, clients, example = sys.argv[1:4]
     airtruth = os.path.abspath(airtruth)
@@ -95,6 +124,7 @@ def main():
         scored = run("evaluate", "set", *(f"odd/{name}" for name in ODD), "results/template", "-o", "evaluation")
         if again.returncode != 0 or scored.returncode != 0 or "template" not in scored.stdout:
             sys.exit(f"trax_clients_test: {again.stderr} {scored.stderr}")
+        expect_lost(root, run)
         # What cannot be started is refused before anything is made.
         for command, word in (("trax:no_such_tracker_4711", "not found"), ("trax:exit 5", "status 5"),
                               ("trax:echo words", "ended with status 0"), ("trax:", "names no command"),

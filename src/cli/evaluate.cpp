@@ -31,27 +31,28 @@ std::string number(const std::optional<double>& value, int digits) {
 }
 
 void print_one_pass(const experiment::Assessment& assessment, Console& console) {
-  console.result(
-      fmt::format("{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>8}",
-                  "tracker",
-                  "sequences",
-                  "AUC",
-                  "95 %",
-                  "P@20",
-                  "NP",
-                  "AO",
-                  "SR50",
-                  "centre px",
-                  "mrad",
-                  "lost",
-                  "frames/s"));
+  console.result(fmt::format(
+      "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
+      "tracker",
+      "sequences",
+      "AUC",
+      "95 %",
+      "P@20",
+      "NP",
+      "AO",
+      "SR50",
+      "centre px",
+      "mrad",
+      "lost",
+      "frames/s",
+      "median"));
   for (const experiment::ScoredTracker& tracker : assessment.trackers) {
     if (!tracker.overall) continue;
     const evaluation::Score& s = *tracker.overall;
     const auto interval = tracker.intervals.at("auc");
     console.result(fmt::format(
         "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
-        "{:>8.1f}",
+        "{:>10.1f} {:>10.1f}",
         tracker.name,
         std::count_if(tracker.sequences.begin(),
                       tracker.sequences.end(),
@@ -65,7 +66,8 @@ void print_one_pass(const experiment::Assessment& assessment, Console& console) 
         s.centre_mean_px,
         number(tracker.angle_mrad, 1),
         tracker.lost,
-        s.frames_per_second));
+        s.frames_per_second,
+        s.frames_per_second_median));
   }
 }
 
@@ -174,6 +176,10 @@ void add_evaluate(CLI::App& app, Context& context) {
                    "by the data set's own lengths)")
       ->expected(2)
       ->check(CLI::Range(1, 1'000'000));
+  command->add_flag("--speed-until-loss",
+                    arguments->options.until_loss,
+                    "Frames per second without the frames from the first loss on, where some "
+                    "trackers answer at once");
   command->add_option("--against",
                       arguments->against,
                       "Another evaluation.json: how far do the two rankings agree?");

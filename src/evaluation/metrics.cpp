@@ -82,6 +82,18 @@ struct Offsets {
   }
 };
 
+void add_rates(std::span<const FramePair> frames, Score& score) {
+  std::vector<double> rates;
+  for (const FramePair& frame : frames.subspan(std::min<std::size_t>(1, frames.size())))
+    if (frame.seconds > 0) rates.push_back(1 / frame.seconds);
+  if (rates.empty()) return;
+  std::sort(rates.begin(), rates.end());
+  const std::size_t half = rates.size() / 2;
+  score.frames_per_second_median =
+      rates.size() % 2 == 1 ? rates[half] : (rates[half - 1] + rates[half]) / 2;
+  for (const double rate : rates) score.frames_per_second += rate / double(rates.size());
+}
+
 // What is averaged over sequences, and what over all their frames together.
 constexpr double Score::*kOfSequences[] = {&Score::x_mean_px,
                                            &Score::x_rmse_px,
@@ -123,16 +135,11 @@ Score score(std::span<const FramePair> frames, int width, int height) {
   score.frames = std::ssize(frames);
   Offsets offsets;
   std::int64_t after_first = 0;
-  double rates = 0;
-  std::int64_t timed = 0;
+  add_rates(frames, score);
   std::optional<Box> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FramePair& frame = frames[i];
     if (frame.answer) last = frame.answer;
-    if (i > 0 && frame.seconds > 0) {
-      rates += 1 / frame.seconds;
-      ++timed;
-    }
     if (!frame.truth) continue;
     ++score.counted;
     add_curves(*frame.truth, i == 0 ? frame.truth : frame.answer, score);
@@ -160,7 +167,6 @@ Score score(std::span<const FramePair> frames, int width, int height) {
     score.success_50 /= n;
     score.success_75 /= n;
   }
-  if (timed > 0) score.frames_per_second = rates / static_cast<double>(timed);
   return score;
 }
 
@@ -185,6 +191,7 @@ Score mean_of(std::span<const Score> scores) {
       mean.normalised[k] += s.normalised[k];
     }
     mean.frames_per_second += s.frames_per_second;
+    mean.frames_per_second_median += s.frames_per_second_median;
     rates += s.frames_per_second > 0 ? 1 : 0;
   }
   if (n == 0) return mean;
@@ -194,7 +201,10 @@ Score mean_of(std::span<const Score> scores) {
   divided(mean.success, n);
   divided(mean.precision, n);
   divided(mean.normalised, n);
-  if (rates > 0) mean.frames_per_second /= rates;
+  if (rates > 0) {
+    mean.frames_per_second /= rates;
+    mean.frames_per_second_median /= rates;
+  }
   return mean;
 }
 

@@ -63,7 +63,9 @@ struct Score {
   double success_50 = 0;
   double success_75 = 0;
 
-  double frames_per_second = 0;  // mean of 1 / seconds, after the first frame; 0: not known
+  // Of 1 / seconds after the first frame, over the frames that have a time above 0; 0: not known.
+  double frames_per_second = 0;  // mean, as in OTB and GOT-10k
+  double frames_per_second_median = 0;
 };
 
 // Frames of one sequence, in order. width, height: of the picture; 0: unknown, nothing is cut. A
@@ -71,7 +73,8 @@ struct Score {
 // and the last answer's distance in the means.
 Score score(std::span<const FramePair> frames, int width, int height);
 
-// Over sequences: plain means of the sequences' numbers (OTB); GOT-10k's over all frames together.
+// Over sequences: plain means of the sequences' numbers (OTB), frames per second over those that
+// know them; GOT-10k's over all frames together.
 Score mean_of(std::span<const Score> scores);
 
 }  // namespace airtruth::evaluation

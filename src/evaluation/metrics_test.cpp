@@ -91,6 +91,20 @@ TEST(Score, ByHand) {
   EXPECT_DOUBLE_EQ(s.auc, (20 + 7) / 3.0 / 21);
 }
 
+// 2, 4 and 16 frames/s after the first frame, whose time is that of the start; 0 is no time.
+TEST(Score, MedianAndMeanOfTheRates) {
+  const Box box{0, 0, 10, 10};
+  std::vector<FramePair> frames;
+  for (const double seconds : {9.0, 0.5, 0.0, 0.25, 0.0625}) frames.push_back({box, box, seconds});
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second, 22.0 / 3);
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 4);
+  frames.push_back({box, box, 1e-6});
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 10);
+  const std::vector<Score> scores = {score(frames, 0, 0), score({frames.data(), 1}, 0, 0)};
+  EXPECT_EQ(scores[1].frames_per_second_median, 0);
+  EXPECT_DOUBLE_EQ(mean_of(scores).frames_per_second_median, 10);
+}
+
 TEST(Mean, WeighsSequencesForOtbAndFramesForGot) {
   const Box truth{0, 0, 10, 10};
   const std::vector<FramePair> good(3, {truth, truth, 0});

@@ -35,9 +35,9 @@ struct VotTruth {
 // pixels counted. Two boxes without a pixel between them are equal: 1.
 double pixel_overlap(const Box& a, const Box& b, int width, int height);
 
-// Of the frames from a start on (restarts: kBegun and the frames that follow), as the toolkit has it
-// for empty regions: an answer where the target is absent, and no answer where it is shown, have an
-// overlap of 0; no answer where it is absent has 1.
+// Of the frames from a start on (restarts: kBegun and the frames that follow), as the toolkit has
+// it for empty regions: an answer where the target is absent, and no answer where it is shown, have
+// an overlap of 0; no answer where it is absent has 1.
 double frame_overlap(const VotFrame& frame, const std::optional<Box>& truth, int width, int height);
 
 struct Restart {
@@ -78,8 +78,8 @@ struct MultiStart {
 // A run fails at the first of 10 frames with the target, one after another, whose overlap is at
 // most 0.1; its first frame has an overlap of 0, as in the toolkit. The toolkit takes the mean
 // overlap of a failed run at frame j beyond its end over j - 1 frames, within it over j, and ends
-// the curve at high - 1; both are kept. EAO is the curve's mean over [low, high - 1], the part of it
-// that there is: beyond the longest run, where no run is active, the toolkit counts zeros.
+// the curve at high - 1; both are kept. EAO is the curve's mean over [low, high - 1], the part of
+// it that there is: beyond the longest run, where no run is active, the toolkit counts zeros.
 MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
                             std::pair<int, int> eao_range);
 

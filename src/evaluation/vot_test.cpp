@@ -91,8 +91,8 @@ TEST(FrameOverlap, OfEmptyRegionsAsTheToolkitHasIt) {
     EXPECT_EQ(frame_overlap(unknown, kTruth, width, height), 0);
     EXPECT_EQ(frame_overlap(none, std::nullopt, width, height), 1);
     EXPECT_EQ(frame_overlap(unknown, std::nullopt, width, height), 1);
-    EXPECT_EQ(
-        frame_overlap({Mark::kAnswer, Box{-30, -30, 10, 10}}, std::nullopt, width, height), 0);
+    EXPECT_EQ(frame_overlap({Mark::kAnswer, Box{-30, -30, 10, 10}}, std::nullopt, width, height),
+              0);
   }
 }
 

@@ -41,12 +41,18 @@ std::vector<FramePair> pairs_of(const TruthClip& truth, const Results::Run& run)
   return pairs;
 }
 
-void add_one_pass(const TruthClip& truth, const Results::Run& run, ScoredSequence& scored) {
-  const std::vector<FramePair> pairs = pairs_of(truth, run);
+void add_one_pass(const TruthClip& truth,
+                  const Results::Run& run,
+                  bool until_loss,
+                  ScoredSequence& scored) {
+  std::vector<FramePair> pairs = pairs_of(truth, run);
+  const auto lost = evaluation::first_loss(pairs);
+  if (until_loss && lost)
+    for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
   scored.score = evaluation::score(pairs, truth.clip.width, truth.clip.height);
   scored.outcomes = evaluation::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
   for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
-  if (const auto lost = evaluation::first_loss(pairs)) {
+  if (lost) {
     const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
     scored.loss = {frame.frame, frame.time_s, truth.range_m[*lost]};
     if (!scored.loss->time_s && truth.clip.frame_rate_hz)
@@ -112,8 +118,8 @@ std::vector<Results> results_in(const fs::path& folder,
 
 class Scoring {
  public:
-  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range)
-      : truths_(truths), eao_range_(eao_range) {}
+  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range, bool until_loss)
+      : truths_(truths), eao_range_(eao_range), until_loss_(until_loss) {}
 
   // found[i] belongs to the i-th truth.
   ScoredTracker operator()(const std::string& name, const std::vector<Results>& found) const {
@@ -127,7 +133,8 @@ class Scoring {
       ScoredSequence scored;
       scored.truth = i;
       scored.name = truths_[i].clip.name;
-      if (!results.one_pass.empty()) add_one_pass(truths_[i], results.one_pass.front(), scored);
+      if (!results.one_pass.empty())
+        add_one_pass(truths_[i], results.one_pass.front(), until_loss_, scored);
       if (!results.restart.empty()) {
         restarts.push_back(restart_runs(truths_[i], results));
         scored.restart = evaluation::restart_score({&restarts.back(), 1}, eao_range_);
@@ -159,7 +166,7 @@ class Scoring {
       std::vector<double> values;
       std::vector<double> weights;
       for (const Score& score : scores) {
-        if (score.counted == 0) continue;
+        if (score.counted == 0 || (measure.zero_is_unknown && score.*measure.value == 0)) continue;
         values.push_back(score.*measure.value);
         if (measure.weighs_by_frames) weights.push_back(static_cast<double>(score.counted - 1));
       }
@@ -192,6 +199,7 @@ class Scoring {
 
   const std::vector<TruthClip>& truths_;
   std::pair<int, int> eao_range_;
+  bool until_loss_ = false;
 };
 
 Comparison compared(const ScoredTracker& a, const ScoredTracker& b) {
@@ -234,8 +242,9 @@ void warn_of_short_curve(const std::string& tracker,
                   end,
                   range.first,
                   last,
-                  range.first <= end && range.first <= last ? "the part up to there counts"
-                                                            : "nothing is there, so it has no EAO"));
+                  range.first <= end && range.first <= last
+                      ? "the part up to there counts"
+                      : "nothing is there, so it has no EAO"));
 }
 
 void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
@@ -282,7 +291,8 @@ const std::vector<Measure>& measures() {
       {"y_mean_px", &Score::y_mean_px, false, false},
       {"y_rmse_px", &Score::y_rmse_px, false, false},
       {"y_most_px", &Score::y_most_px, false, false},
-      {"frames_per_second", &Score::frames_per_second, true, false}};
+      {"frames_per_second", &Score::frames_per_second, true, false, true},
+      {"frames_per_second_median", &Score::frames_per_second_median, true, false, true}};
   return all;
 }
 
@@ -291,6 +301,7 @@ Assessment assess(const fs::path& set,
                   const AssessOptions& options) {
   Assessment assessment;
   assessment.set = name_of(set);
+  assessment.until_loss = options.until_loss;
   assessment.truths = truths_of(dataset::LabelledSet(set));
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
   // Results first: what is wrong with them is said before minutes of video are read.
@@ -302,7 +313,7 @@ Assessment assess(const fs::path& set,
     found[name] = results_in(folder, assessment.truths, options);
   }
   if (options.with_film) add_films(assessment.truths, options);
-  const Scoring scored(assessment.truths, assessment.eao_range);
+  const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);
   for (const fs::path& folder : results)
     assessment.trackers.push_back(scored(name_of(folder), found[name_of(folder)]));
   warn_of_short_curves(assessment, options.warn);

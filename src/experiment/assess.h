@@ -26,7 +26,8 @@ struct Measure {
   const char* name;
   double evaluation::Score::*value;
   bool more_is_better;
-  bool weighs_by_frames;  // GOT-10k's are over all frames together
+  bool weighs_by_frames;         // GOT-10k's are over all frames together
+  bool zero_is_unknown = false;  // sequences without the number are left out
 };
 const std::vector<Measure>& measures();
 
@@ -75,11 +76,14 @@ struct Assessment {
   std::vector<ScoredTracker> trackers;  // best AUC first
   std::vector<Comparison> comparisons;  // of each pair
   std::pair<int, int> eao_range{};      // frames
+  bool until_loss = false;              // of the frames per second: AssessOptions
 };
 
 struct AssessOptions {
   int origin_px = 0;                             // what the results call the first pixel, 0 or 1
   std::optional<std::pair<int, int>> eao_range;  // else by the data set's lengths
+  bool until_loss = false;                       // frames per second without the frames from the
+                                                 // first loss on
   bool with_film = true;                         // contrast and stills, for which videos are read
   int jobs = 0;                                  // 0: one per core
   Warn warn;

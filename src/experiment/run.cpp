@@ -62,7 +62,7 @@ class Follower {
       const tracking::Answer answer = tracker_->update();
       seconds_ =
           answer.seconds.value_or(std::chrono::duration<double>(Clock::now() - start).count());
-      box = answer.box_px;
+      if (!answer.lost) box = answer.box_px;
       ++answers;
       spent += seconds_;
     });

@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/suggest.h"
 #include "evaluation/metrics.h"
 #include "exchange/text.h"
+#include "experiment/vot_regions.h"
 
 namespace airtruth::experiment {
 namespace {
@@ -26,6 +28,7 @@ constexpr std::array<std::pair<const char*, Protocol>, 3> kProtocols = {
      {"restart", Protocol::kRestart},
      {"multistart", Protocol::kMultiStart}}};
 constexpr const char* kVotFolder = "baseline";
+constexpr const char* kBinary = ".bin";
 constexpr std::size_t kAnchorDigits = 8;
 constexpr std::size_t kMotColumns = 6;  // at least: frame, id, x, y, w, h
 
@@ -36,46 +39,31 @@ std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int
   return sound ? std::optional(box) : std::nullopt;
 }
 
-VotFrame frame_of(const exchange::Line& line, const fs::path& file, int origin_px) {
-  const std::vector<double> n = exchange::numbers_of(line, file);
-  if (n.size() == 1) {
-    if (n[0] == 1) return {Mark::kBegun, {}};
-    if (n[0] == 2) return {Mark::kFailed, {}};
-    return {Mark::kUnknown, {}};
-  }
-  // VOT's toolkit reads a region with a NaN as the mark 0.
-  if (std::any_of(n.begin(), n.end(), [](double value) { return std::isnan(value); }))
-    return {Mark::kUnknown, {}};
-  if (n.size() == 4) return {Mark::kAnswer, box_from(n, 0, origin_px)};
-  if (n.size() < 6 || n.size() % 2 != 0)
-    throw Error(fmt::format("has {} numbers; expected x,y,width,height", n.size()),
-                {file.string(), line.number});
-  BoxBounds bounds;
-  for (std::size_t i = 0; i < n.size(); i += 2)
-    bounds.add({n[i] - origin_px, n[i + 1] - origin_px});
-  const Box box = bounds.box().value();
-  return {Mark::kAnswer, box_from({box.x, box.y, box.width, box.height}, 0, 0)};
-}
-
 Trajectory read_trajectory(const fs::path& file, int origin_px) {
+  if (file.extension() == kBinary) return read_binary_trajectory(file, origin_px);
   Trajectory trajectory;
   for (const exchange::Line& line : exchange::lines_of(file))
-    trajectory.push_back(frame_of(line, file, origin_px));
+    trajectory.push_back(region_of(line, file, origin_px));
   return trajectory;
 }
 
-// Empty where there is none. Of several columns (GOT-10k's repetitions)
-// the first.
+// Empty where there is none; 0 for a blank line, which is how VOT's toolkit leaves a frame without
+// a time. Of several columns (GOT-10k's repetitions) the first.
 std::vector<double> read_times(const fs::path& file, std::size_t frames) {
-  std::vector<double> seconds;
-  if (fs::exists(file))
-    for (const exchange::Line& line : exchange::lines_of(file)) {
-      const std::vector<double> numbers = exchange::numbers_of(line, file);
-      seconds.push_back(numbers.empty() ? 0 : numbers.front());
-    }
-  if (!seconds.empty() && seconds.size() != frames)
-    throw Error(fmt::format("has {} lines; its results have {}", seconds.size(), frames),
-                {file.string()});
+  if (!fs::exists(file)) return {};
+  const std::vector<exchange::Line> filled = exchange::lines_of(file);
+  const std::string text = read_file(file);
+  const auto ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  const std::size_t lines = ends + (text.empty() || text.back() == '\n' ? 0 : 1);
+  const bool has_blanks = filled.size() != frames;
+  if (has_blanks && lines != frames)
+    throw Error(fmt::format("has {} lines; its results have {}", lines, frames), {file.string()});
+  std::vector<double> seconds(frames, 0);
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const std::vector<double> numbers = exchange::numbers_of(filled[i], file);
+    const std::size_t at = has_blanks ? static_cast<std::size_t>(filled[i].number - 1) : i;
+    if (!numbers.empty()) seconds[at] = numbers.front();
+  }
   return seconds;
 }
 
@@ -131,7 +119,7 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
 
 bool is_mot(const fs::path& file) {
   const auto lines = exchange::lines_of(file);
-  if (lines.empty()) return false;
+  if (lines.empty() || lines.front().text.starts_with('m')) return false;
   const std::size_t count = exchange::numbers_of(lines.front(), file).size();
   // Seven or more, but eight are a polygon's, unless it begins like a frame and an id.
   return count == 7 || count >= 9;
@@ -177,13 +165,22 @@ bool is_anchor_name(const fs::path& file, const std::string& sequence) {
   return file.stem().string().size() == sequence.size() + 1 + kAnchorDigits;
 }
 
+// Text before binary where a run has both, as the toolkit reads them.
+std::vector<fs::path> vot_files(const fs::path& folder) {
+  std::vector<fs::path> files = exchange::files_with(folder, ".txt");
+  for (const fs::path& file : exchange::files_with(folder, kBinary))
+    if (!fs::exists(fs::path(file).replace_extension(".txt"))) files.push_back(file);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 void add_vot_runs(const fs::path& folder,
                   const exchange::Clip& clip,
                   int origin_px,
                   Results& results) {
   if (!fs::is_directory(folder)) return;
   const std::int64_t length = std::ssize(clip.frames);
-  for (const fs::path& file : exchange::files_with(folder, ".txt")) {
+  for (const fs::path& file : vot_files(folder)) {
     const auto number = number_of(file, clip.name);
     if (!number) continue;
     Results::Run run{read_trajectory(file, origin_px), {}, file};
@@ -259,7 +256,7 @@ std::string text_of(const Trajectory& trajectory) {
 
 std::string text_of(const std::vector<double>& seconds) {
   std::string text;
-  for (const double s : seconds) text += fmt::format("{:.6f}\n", s);
+  for (const double s : seconds) text += fmt::format("{:.9f}\n", s);
   return text;
 }
 
@@ -290,7 +287,7 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(place)) {
       const std::string name = entry.path().filename().string();
       if (!entry.is_directory()) continue;
-      for (const fs::path& file : exchange::files_with(entry.path(), ".txt"))
+      for (const fs::path& file : vot_files(entry.path()))
         if (number_of(file, name)) names.insert(name);
     }
   };

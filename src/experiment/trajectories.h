@@ -17,7 +17,8 @@
 //                                             begun, 2 where it failed, 0 for frames passed over
 //   multistart/SEQUENCE/SEQUENCE_00000050.txt VOT's runs from an anchor
 //   .../SEQUENCE_001_time.value               their seconds
-// What others write is read as well: VOT's folder "baseline" in place of the last two, GOT-10k's
+// What others write is read as well: VOT's folder "baseline" in place of the last two, its binary
+// runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's
 // SEQUENCE/SEQUENCE_001.txt, and MOTChallenge's SEQUENCE.txt.
 namespace airtruth::experiment {
 
@@ -37,7 +38,7 @@ fs::path times_file(const fs::path& trajectory, Protocol protocol);
 
 // An answer without a box is "nan,nan,nan,nan".
 std::string text_of(const evaluation::Trajectory& trajectory);
-std::string text_of(const std::vector<double>& seconds);
+std::string text_of(const std::vector<double>& seconds);  // to the nanosecond
 
 // What a folder holds for a sequence.
 struct Results {
@@ -54,7 +55,8 @@ struct Results {
 };
 
 // `origin_px`: what the results call the first pixel, 0 or 1 (MOTChallenge's: always 1). Boxes that
-// are not finite or have no area are answers without a box; polygons become the box that bounds
+// have no area are answers without a box, those with a NaN too in one pass; in
+// VOT's runs they are kUnknown, as in its toolkit. Polygons and masks become the box that bounds
 // them. Of MOTChallenge's tracks it takes the one that overlaps the truth most where any first
 // does. Error at file and line for what is no result, for runs of another length than the clip, and
 // for times of another length than their run.
