@@ -84,14 +84,15 @@ void draw_inset(cv::Mat& tile,
   view(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
   cv::rectangle(
       tile, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), colour, 1);
-  const std::string words =
-      intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
-  const int margin = 4;
-  const std::string shown = fitted(words, kTileTextPx, place.width - 2 * margin);
+  constexpr int kInsetMarginPx = 4;
+  const std::string range =
+      intruder.range_m ? fmt::format(" {:.0f} m", *intruder.range_m) : std::string();
+  const int room = place.width - 2 * kInsetMarginPx - text_width(range, kTileTextPx);
+  const std::string shown = fitted(intruder.id, kTileTextPx, room) + range;
   const TextSize size = text_size(shown, kTileTextPx);
   text_in(tile,
           shown,
-          {place.x + margin, place.y + margin, size.width, size.height},
+          {place.x + kInsetMarginPx, place.y + kInsetMarginPx, size.width, size.height},
           kTileTextPx,
           colour);
 }
