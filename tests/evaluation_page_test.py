@@ -6,6 +6,8 @@ drawn, the player shows what its cursor says, tables sort, trackers can be hidde
 plots as files.
 """
 
+import itertools
+import math
 import os
 import re
 import shutil
@@ -14,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 
+from numbered_clip import READ_NUMBER, box_of, write_otb
 from report_page_test import looked_at
 
 CATALOGUE = """
@@ -78,7 +81,7 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   out.right = await at(0.99);
   out.middle = await at(0.55);
   id('play').click();
-  await wait(500);
+  for (let k = 0; k < 40 && shownFrame() <= out.middle[0] + 1; ++k) await wait(50);
   out.played = shownFrame();
   id('next').click();
   await wait(200);
@@ -102,6 +105,105 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
 })().catch((error) => { document.getElementById('result').textContent = JSON.stringify({ broken: String(error) }); });
 """
 
+# Of a page whose sequences carry their frames' numbers as pixels.
+NUMBERS = """
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const trap = `<script>window.found = []; for (const kind of ['error', 'warn']) console[kind] = (...all) => found.push(all.join(' '));
+window.alert = () => found.push('alert');
+addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.target.src), true);<` + `/script>`;
+""" + READ_NUMBER + """
+(async () => {
+  const text = await (await fetch('numbered/report.html')).text();
+  const frame = document.getElementById('frame');
+  const loaded = new Promise((done) => frame.addEventListener('load', done));
+  frame.srcdoc = text.replace('<head>', '<head>' + trap);
+  await loaded;
+  await wait(500);
+  const page = frame.contentDocument;
+  const id = (name) => page.getElementById(name);
+  const named = () => Number(/frame (\\d+)/.exec(id('caption').textContent)[1]);
+  const out = { opened: id('sequence').selectedOptions[0].textContent, rows: page.querySelectorAll('#losses tbody tr').length };
+  out.options = [...id('sequence').options].map((o) => o.textContent);
+  out.trackers = [...page.querySelectorAll('#shown label')].map((l) => l.textContent);
+  out.elements = page.querySelectorAll('#shown label > :not(input):not(.dot), td > :not(.dot):not(.range):not(b):not(span), option *').length;
+  out.pairs = [[named(), numberOn(id('whole'))]];
+  for (const value of [1, 2, 3, 57, 100, 101, 150, 198, 199]) {
+    id('frame').value = value;
+    id('frame').dispatchEvent(new frame.contentWindow.Event('input', { bubbles: true }));
+    await wait(100);
+    out.pairs.push([named(), numberOn(id('whole'))]);
+  }
+  id('play').click(); // from its end on: begins again
+  for (let k = 0; k < 12; ++k) { await wait(63); out.pairs.push([named(), numberOn(id('whole'))]); }
+  out.colours = frame.contentWindow.eval('[airtruth.ink, ...airtruth.colours.slice(0, 6)]');
+  out.found = frame.contentWindow.found;
+  document.getElementById('result').textContent = JSON.stringify(out);
+})().catch((error) => { document.getElementById('result').textContent = JSON.stringify({ broken: String(error) }); });
+"""
+
+NAMES = ["a without results", "b \"numbered\" 100% '<script>alert(1)<script>"]
+HOSTILE = ["<script>alert(1)<script>", "<img src=x onerror=alert(1)>", "' onclick=alert(1) \" %n", "plain"]
+
+
+def numbered(airtruth, browser, root):
+    """The page opens on the sequence that has results and shows the frame that it names; names are inert; colours differ."""
+    run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, cwd=root)
+    write_otb(root + "/otb", NAMES, 200)
+    run("dataset", "import", "otb", "--format", "otb", "-o", "clips")
+    for offset, tracker in enumerate(HOSTILE):
+        os.makedirs(f"{root}/hostile/{tracker}")
+        with open(f"{root}/hostile/{tracker}/{NAMES[1]}.txt", "w", encoding="utf-8") as file:
+            for number in range(200):
+                x, y, width, height = box_of(number)
+                file.write(f"{x + 2 * offset},{y + offset},{width},{height}\n")
+    run("evaluate", "clips", *[f"hostile/{name}" for name in HOSTILE], "-o", "numbered")
+    for size in ((1600, 3600), (400, 9000)):
+        out = looked_at(browser, root, size, NUMBERS)
+        faults = []
+        for what, got, wanted in (
+                ("complaints", out.get("found", out), []),
+                ("opened on", out.get("opened"), NAMES[1]),
+                ("trackers with results", out.get("rows"), len(HOSTILE)),
+                ("sequences", out.get("options"), [NAMES[0] + " (no results)", NAMES[1]]),
+                ("trackers", sorted(out.get("trackers", [])), sorted(HOSTILE)),
+                ("markup made of names", out.get("elements"), 0),
+                ("frames not the ones named", [p for p in out.get("pairs", []) if p[0] != p[1]], [])):
+            if got != wanted:
+                faults.append(f"{what}: {got!r}; expected {wanted!r}")
+        seen = {p[0] for p in out.get("pairs", [])}
+        if not {0, 199} <= seen or len(seen) < 8:
+            faults.append(f"frames seen: {sorted(seen)}")
+        nearest = nearest_colours(out["colours"])
+        if nearest[0] < 15:
+            faults.append(f"colours too near to each other: {nearest}")
+        if faults:
+            sys.exit("evaluation_page_test: numbered clip at %dx%d\n  %s" % (*size, "\n  ".join(faults)))
+
+
+# Colours as people see them who lack one kind of cone: Machado, Oliveira and Fernandes (2009), full deficiency, in linear RGB.
+VISION = {"normal": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+          "protan": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)),
+          "deutan": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)),
+          "tritan": ((1.255528, -0.076749, -0.178779), (-0.078411, 0.930809, 0.147602), (0.004733, 0.691367, 0.303900))}
+
+
+def lab(colour, vision):
+    """CIELAB (D65) of #rrggbb as that vision sees it."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+              for c in (int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5))]
+    r, g, b = (min(1, max(0, sum(m * c for m, c in zip(row, linear)))) for row in VISION[vision])
+    xyz = ((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.95047, 0.2126 * r + 0.7152 * g + 0.0722 * b,
+           (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883)
+    x, y, z = (v ** (1 / 3) if v > 216 / 24389 else v * 24389 / 27 / 116 + 16 / 116 for v in xyz)
+    return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+
+def nearest_colours(colours):
+    """The two that are nearest to each other: CIE76 difference (2.3 is just noticeable), vision, both."""
+    return min((math.dist(lab(a, vision), lab(b, vision)), vision, a, b)
+               for vision in VISION for a, b in itertools.combinations(colours, 2))
+
+
 TRACKERS = ["am3", "am3s", "opencv-kcf", "opencv-mosse"]
 
 
@@ -117,6 +219,7 @@ def main():
         print("evaluation_page_test: skipped: no chromium")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="airtruth_evaluation_") as root:
+        numbered(airtruth, browser, root)
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, cwd=root)
         with open(root + "/c.toml", "w", encoding="utf-8") as file:
             file.write(CATALOGUE)

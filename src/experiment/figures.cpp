@@ -22,19 +22,22 @@ namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-constexpr Colour kTruthColour = {0, 160, 70};
-constexpr std::array<Colour, 12> kColours = {{{11, 107, 203},
-                                              {212, 101, 47},
-                                              {130, 80, 223},
-                                              {191, 135, 0},
-                                              {207, 34, 46},
-                                              {27, 158, 158},
-                                              {191, 57, 137},
-                                              {110, 118, 129},
-                                              {122, 92, 46},
-                                              {77, 45, 0},
-                                              {10, 48, 105},
-                                              {45, 164, 78}}};
+// As on the page (dataset/page/common.js): black is of truth alone, and the first six are told
+// apart with every kind of colour vision.
+constexpr Colour kTruthColour = {0, 0, 0};
+constexpr Colour kTruthOnPictures = {255, 255, 255};  // with a dark rim
+constexpr std::array<Colour, 12> kColours = {{{0, 114, 178},
+                                              {230, 159, 0},
+                                              {213, 94, 0},
+                                              {86, 180, 233},
+                                              {170, 51, 119},
+                                              {0, 158, 115},
+                                              {93, 58, 155},
+                                              {140, 86, 75},
+                                              {127, 127, 127},
+                                              {184, 176, 0},
+                                              {244, 166, 200},
+                                              {46, 78, 142}}};
 constexpr std::size_t kFilmPictures = 6;
 constexpr int kFilmColumns = 3;
 
@@ -324,7 +327,7 @@ class Figures {
       const std::size_t at = count > 1 ? k * (truth.stills.size() - 1) / (count - 1) : 0;
       const TruthClip::Still& still = truth.stills[at];
       std::vector<report::ColouredBox> boxes;
-      if (const auto box = truth.box(still.index)) boxes.push_back({*box, kTruthColour});
+      if (const auto box = truth.box(still.index)) boxes.push_back({*box, kTruthOnPictures});
       for (std::size_t t = 0; t < assessment_.trackers.size(); ++t)
         if (const ScoredSequence* sequence = scored(t, index))
           if (const auto& box = sequence->answers[still.index])

@@ -16,8 +16,8 @@ struct ColouredBox {
   std::array<std::uint8_t, 3> rgb{};
 };
 
-// A JPEG's picture with boxes drawn on it, the first under the others. `scale`: pixels of the JPEG
-// for each of the boxes' own. Error where the bytes are no JPEG.
+// A JPEG's picture with boxes drawn on it, the first under the others and with a dark rim.
+// `scale`: pixels of the JPEG for each of the boxes' own. Error where the bytes are no JPEG.
 image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes);
 
 }  // namespace airtruth::report

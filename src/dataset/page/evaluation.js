@@ -2,17 +2,24 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, colours, element, most, number, line, axis, legend } = airtruth;
+  const { byId, bins, colours, counted, dash, element, ink, most, number, line, axis, legend } = airtruth;
   const trackers = data.trackers;
-  const TRUTH = '#00b34a';
-  trackers.forEach((tracker, k) => { tracker.colour = colours[k % colours.length]; });
+  trackers.forEach((tracker, k) => {
+    tracker.colour = colours[k % colours.length];
+    tracker.dash = dash(k);
+  });
   const scored = trackers.filter((tracker) => tracker.overall);
 
-  const dotted = (name, colour) => {
-    const cell = element('td');
+  const dotOf = (tracker) => {
     const dot = element('span', '', 'dot');
-    dot.style.background = colour;
-    cell.append(dot, document.createTextNode(name));
+    dot.style.background = tracker.dash.length
+      ? `repeating-linear-gradient(90deg, ${tracker.colour} 0 ${tracker.dash[0] / 2}px, transparent 0 ${tracker.dash[0] / 2 + 2}px)`
+      : tracker.colour;
+    return dot;
+  };
+  const dotted = (tracker) => {
+    const cell = element('td');
+    cell.append(dotOf(tracker), document.createTextNode(tracker.name));
     return cell;
   };
 
@@ -57,7 +64,7 @@
       for (const row of sorted) {
         const line = body.insertRow();
         columns.forEach((column, k) => {
-          if (k === 0) { line.append(dotted(row.name, row.colour)); return; }
+          if (k === 0) { line.append(dotted(row)); return; }
           const cell = line.insertCell();
           if (column.draw) column.draw(cell, row);
           else cell.textContent = number(column.of(row), column.digits);
@@ -115,7 +122,7 @@
 
   const drawCurves = () => {
     const curve = (name, step) =>
-      scored.map((t) => line(t.name, t.overall[name].map((v, k) => ({ x: k * step, y: v })), t.colour));
+      scored.map((t) => line(t.name, t.overall[name].map((v, k) => ({ x: k * step, y: v })), t.colour, { borderDash: t.dash }));
     const share = { min: 0, max: 1 };
     plot('success', curve('success', 0.05), axis('overlap', share), axis('share of frames', share));
     plot('precision', curve('precision', 1), axis('centre error, px'), axis('share of frames', share));
@@ -140,15 +147,15 @@
       const value = (t, from) => (t.breakdown[key].find((b) => b.from === from) || { overlap: null }).overlap;
       new Chart(byId(`by-${key}`), {
         type: 'line',
-        data: { labels: edges.map(label), datasets: scored.map((t) => line(t.name, edges.map((e) => value(t, e)), t.colour, { pointRadius: 2.5 })) },
-        options: { plugins: { legend: none }, scales: { y: { min: 0, title: { display: true, text: 'overlap' } } } },
+        data: { labels: edges.map(label), datasets: scored.map((t) => line(t.name, edges.map((e) => value(t, e)), t.colour, { pointRadius: 2.5, borderDash: t.dash })) },
+        options: { plugins: { legend: none }, scales: { x: bins(), y: { min: 0, title: { display: true, text: 'overlap' } } } },
       });
     }
     const names = [...new Set(scored.flatMap((t) => Object.keys(t.breakdown.background)))].sort();
     new Chart(byId('by-background'), {
       type: 'bar',
       data: { labels: names, datasets: scored.map((t) => ({ label: t.name, backgroundColor: t.colour, data: names.map((n) => (t.breakdown.background[n] || { overlap: null }).overlap) })) },
-      options: { plugins: { legend: none }, scales: { y: { beginAtZero: true, title: { display: true, text: 'overlap' } } } },
+      options: { plugins: { legend: none }, scales: { x: bins(), y: { beginAtZero: true, title: { display: true, text: 'overlap' } } } },
     });
   };
 
@@ -160,7 +167,7 @@
     const body = table.createTBody();
     for (const a of scored) {
       const row = body.insertRow();
-      row.append(dotted(a.name, a.colour));
+      row.append(dotted(a));
       for (const b of scored) {
         const cell = row.insertCell();
         const found = data.comparisons.find((c) => (c.a === a.name && c.b === b.name) || (c.a === b.name && c.b === a.name));
@@ -183,7 +190,7 @@
     let sequence = null;
     let at = 0; // index into the sequence's series
     let charts = [];
-    let timer = null;
+    let playing = 0; // which call of play() goes on
     let asked = 0;
 
     const cursor = {
@@ -204,20 +211,21 @@
 
     const middle = (box, side) => (box ? box[side] + box[side + 2] / 2 : null);
     const shownTrackers = () => sequence.trackers.filter((one) => !hidden.has(one.tracker));
-    const colourOf = (one) => trackers[one.tracker].colour;
+    const trackerOf = (one) => trackers[one.tracker];
 
     const drawSeries = () => {
       charts.forEach((chart) => chart.destroy());
       const points = (values) => values.map((y, i) => ({ x: sequence.frame[i], y }));
       const of = (boxes, side) => points(boxes.map((box) => middle(box, side)));
+      const lineOf = (one, values) => line(trackerOf(one).name, values, trackerOf(one).colour, { borderWidth: 1.3, borderDash: trackerOf(one).dash });
       const series = (id, side, title) => {
-        const sets = [line('truth', of(sequence.truth, side), TRUTH, { borderWidth: 3, order: 1 })];
-        for (const one of shownTrackers()) sets.push(line(trackers[one.tracker].name, of(one.boxes, side), colourOf(one), { borderWidth: 1 }));
+        const sets = [line('truth', of(sequence.truth, side), ink, { borderWidth: 3.5, order: 1 })];
+        for (const one of shownTrackers()) sets.push(lineOf(one, of(one.boxes, side)));
         return [id, sets, axis(title)];
       };
       const distance = (one) => points(sequence.truth.map((box, i) =>
         box && one.boxes[i] ? Math.hypot(middle(one.boxes[i], 0) - middle(box, 0), middle(one.boxes[i], 1) - middle(box, 1)) : null));
-      const errors = shownTrackers().map((one) => line(trackers[one.tracker].name, distance(one), colourOf(one), { borderWidth: 1 }));
+      const errors = shownTrackers().map((one) => lineOf(one, distance(one)));
       charts = [series('x', 0, 'X of the centre, px'), series('y', 1, 'Y of the centre, px'), ['error', errors, axis('centre error, px', { beginAtZero: true })]].map(
         ([id, sets, y]) =>
           new Chart(byId(id), {
@@ -233,61 +241,85 @@
           }));
     };
 
-    // The picture nearest to where we are, with the boxes of its own frame.
-    const nearestStill = () =>
-      sequence.stills.reduce((best, still) => (Math.abs(still.at - at) < Math.abs(best.at - at) ? still : best), sequence.stills[0]);
+    // Where there are pictures, the cursor rests on frames that have one: what is shown is always the
+    // frame that is named, with the boxes of that frame.
+    const nearestStill = (index) =>
+      sequence.stills.reduce((best, still) => (Math.abs(still.at - index) < Math.abs(best.at - index) ? still : best), sequence.stills[0]);
 
-    const outline = (context, box, colour, x, y, scale, width) => {
+    const outline = (context, box, x, y, scale, colour, width, dashes) => {
       if (!box) return;
+      context.setLineDash(dashes);
       context.strokeStyle = colour;
       context.lineWidth = width;
       context.strokeRect((box[0] - x) * scale - 1, (box[1] - y) * scale - 1, box[2] * scale + 2, box[3] * scale + 2);
     };
-    const drawPicture = (canvas, base64, still, x, y, px) => {
+    const drawPicture = (canvas, image, still, x, y, px) => {
       const context = canvas.getContext('2d');
-      const mine = asked;
-      const image = new Image();
-      image.onload = () => {
-        if (mine !== asked) return;
-        context.drawImage(image, 0, 0, canvas.width, canvas.height);
-        const scale = canvas.width / px;
-        outline(context, sequence.truth[still.at], TRUTH, x, y, scale, 3);
-        for (const one of shownTrackers()) outline(context, one.boxes[still.at], colourOf(one), x, y, scale, 1.5);
-      };
-      image.src = `data:image/jpeg;base64,${base64}`;
+      context.clearRect(0, 0, canvas.width, canvas.height);
+      if (!image) return;
+      context.drawImage(image, 0, 0, canvas.width, canvas.height);
+      const scale = canvas.width / px;
+      outline(context, sequence.truth[still.at], x, y, scale, '#000000', 4.5, []);
+      outline(context, sequence.truth[still.at], x, y, scale, '#ffffff', 2, []);
+      for (const one of shownTrackers())
+        outline(context, one.boxes[still.at], x, y, scale, trackerOf(one).colour, 1.8, trackerOf(one).dash);
     };
-    const drawFrame = () => {
-      asked += 1;
-      const frame = sequence.frame[at];
-      const parts = [`frame ${frame}`];
-      if (sequence.range_m[at] !== null) parts.push(`range ${number(sequence.range_m[at])} m`);
-      if (sequence.truth[at]) parts.push(`${number(sequence.truth[at][2])} x ${number(sequence.truth[at][3])} px`);
+    const loaded = (id) => {
+      const holder = byId(id);
+      if (!holder) return Promise.resolve(null);
+      return new Promise((done) => {
+        const image = new Image();
+        image.onload = () => done(image);
+        image.onerror = () => done(null);
+        image.src = `data:image/jpeg;base64,${holder.textContent}`;
+      });
+    };
+
+    const captionOf = (index) => {
+      const parts = [`frame ${sequence.frame[index]}`];
+      if (sequence.range_m[index] !== null) parts.push(`range ${number(sequence.range_m[index])} m`);
+      if (sequence.truth[index]) parts.push(`${number(sequence.truth[index][2])} × ${number(sequence.truth[index][3])} px`);
       else parts.push('not seen');
-      if (sequence.stills.length) {
-        const still = nearestStill();
-        const text = (part) => byId(`${part}-${sequence.index}-${still.number}`);
-        byId('whole').height = Math.round((800 * sequence.height) / sequence.width);
-        drawPicture(byId('whole'), text('whole').textContent, still, 0, 0, sequence.width);
-        const close = byId('close');
-        close.getContext('2d').clearRect(0, 0, close.width, close.height);
-        if (text('close')) drawPicture(close, text('close').textContent, still, still.close_x, still.close_y, still.close_px);
-        if (still.at !== at) parts.push(`picture of frame ${sequence.frame[still.at]}`);
-      } else {
-        parts.push('no pictures');
-      }
-      byId('caption').textContent = parts.join(', ');
-      byId('frame').value = at;
+      if (!sequence.stills.length) parts.push('no pictures');
+      return parts.join(', ');
+    };
+    // Pictures, caption, slider and cursors change together, once the pictures are decoded.
+    const drawFrame = async () => {
+      asked += 1;
+      const mine = asked;
+      const index = at;
+      const still = sequence.stills.length ? nearestStill(index) : null;
+      const name = still ? `${sequence.index}-${still.number}` : '';
+      const [whole, close] = still ? await Promise.all([loaded(`whole-${name}`), loaded(`close-${name}`)]) : [null, null];
+      if (mine !== asked) return;
+      byId('whole').height = Math.round((800 * sequence.height) / sequence.width);
+      drawPicture(byId('whole'), whole, still, 0, 0, sequence.width);
+      drawPicture(byId('close'), close, still, still && still.close_x, still && still.close_y, still && still.close_px);
+      byId('caption').textContent = captionOf(index);
+      byId('frame').value = index;
       charts.forEach((chart) => chart.draw());
     };
 
     const go = (index) => {
-      at = Math.max(0, Math.min(sequence.frame.length - 1, index));
-      drawFrame();
+      const inside = Math.max(0, Math.min(sequence.frame.length - 1, index));
+      at = sequence.stills.length ? nearestStill(inside).at : inside;
+      return drawFrame();
     };
     const stop = () => {
-      clearInterval(timer);
-      timer = null;
+      playing += 1;
       byId('play').textContent = 'Play';
+    };
+    // Picture after picture, none before the one before it is drawn.
+    const play = async () => {
+      playing += 1;
+      const mine = playing;
+      byId('play').textContent = 'Pause';
+      const last = sequence.stills.length ? sequence.stills[sequence.stills.length - 1].at : 0;
+      if (at >= last) await go(0);
+      while (mine === playing && at < last) {
+        await Promise.all([go(sequence.stills.find((still) => still.at > at).at), new Promise((done) => setTimeout(done, 100))]);
+      }
+      if (mine === playing) stop();
     };
 
     const drawTable = () => {
@@ -298,7 +330,7 @@
       const body = table.createTBody();
       for (const one of sequence.trackers) {
         const row = body.insertRow();
-        row.append(dotted(trackers[one.tracker].name, colourOf(one)));
+        row.append(dotted(trackerOf(one)));
         const lost = one.first_loss
           ? `frame ${one.first_loss.frame}${one.first_loss.range_m === null ? '' : `, ${number(one.first_loss.range_m)} m`}`
           : 'never';
@@ -311,11 +343,12 @@
       sequence = data.sequences[index];
       byId('sequence').value = index;
       byId('frame').max = sequence.frame.length - 1;
-      byId('facts').textContent = `over ${sequence.background}, ${number(sequence.frames)} frames of ${sequence.width} x ${sequence.height}`;
+      byId('facts').textContent = `over ${sequence.background}, ${counted(sequence.frames, 'frame')} of ${sequence.width} × ${sequence.height}` +
+        (sequence.trackers.length ? '' : '; no tracker has results for it');
       at = 0;
       drawSeries();
       drawTable();
-      drawFrame();
+      go(0);
     };
 
     const seek = (event) => {
@@ -331,7 +364,7 @@
     const begin = () => {
       data.sequences.forEach((one, index) => {
         one.index = index;
-        const option = element('option', one.name);
+        const option = element('option', one.trackers.length ? one.name : `${one.name} (no results)`);
         option.value = index;
         byId('sequence').append(option);
       });
@@ -345,9 +378,7 @@
           drawSeries();
           drawFrame();
         });
-        const dot = element('span', '', 'dot');
-        dot.style.background = tracker.colour;
-        label.append(box, dot, document.createTextNode(tracker.name));
+        label.append(box, dotOf(tracker), document.createTextNode(tracker.name));
         byId('shown').append(label);
       });
       byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
@@ -355,26 +386,21 @@
       byId('previous').addEventListener('click', step(-1));
       byId('next').addEventListener('click', step(1));
       byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
-      byId('play').addEventListener('click', () => {
-        if (timer) { stop(); return; }
-        byId('play').textContent = 'Pause';
-        timer = setInterval(() => {
-          const later = sequence.stills.find((still) => still.at > at);
-          if (later) go(later.at); else stop();
-        }, 100);
-      });
+      byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
       for (const id of ['x', 'y', 'error']) {
         byId(id).addEventListener('pointermove', seek);
         byId(id).addEventListener('pointerdown', seek);
       }
-      if (data.sequences.length) show(0);
+      if (!data.sequences.length) return;
+      const first = data.sequences.find((one) => one.trackers.length && one.stills.length) || data.sequences.find((one) => one.trackers.length);
+      show(first ? first.index : 0);
     };
     return { begin };
   })();
 
   byId('title').textContent = `Trackers on ${data.dataset}`;
   document.title = byId('title').textContent;
-  byId('summary').textContent = `${number(trackers.length)} trackers, ${number(data.sequences.length)} sequences, ${number(data.frames)} frames; made by airtruth ${data.version}`;
+  byId('summary').textContent = `${counted(trackers.length, 'tracker')}, ${counted(data.sequences.length, 'sequence')}, ${counted(data.frames, 'frame')}; made by airtruth ${data.version}`;
   drawRanking();
   drawCurves();
   drawBreakdowns();
