@@ -3,18 +3,22 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
+#include <vector>
 
 namespace airtruth::video {
 
-// Images whose names differ in one number: "frames/%06d.png" and where the numbers begin.
+// The pictures of a clip that is stored as one file a frame, in the order of the frames.
 struct NumberedImages {
-  std::string pattern;
-  int first = 0;
+  std::vector<std::filesystem::path> files;  // at least one
+  bool has_gaps = false;                     // a number between the first and the last is missing
 };
 
-// `path` is such a pattern itself, or a folder of numbered images; empty otherwise. Throws Error
-// for a pattern that matches no file.
+// `path` is a folder of pictures, or a pattern of their names such as "frames/%06d.png"; empty
+// where it is neither. Of a folder: the pictures whose names differ in one last number alone
+// (img_7.png, img_08.png, 000000000139.jpg), in the order of that number, where these are more than
+// half of the folder's pictures; else all of one ending, in the order of their names with every run
+// of digits compared as a number (Airborne Object Tracking's TIMEFLIGHT.png). Throws Error for a
+// pattern that matches no file.
 std::optional<NumberedImages> numbered_images(const std::filesystem::path& path);
 
 }  // namespace airtruth::video

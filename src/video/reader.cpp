@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "video/libav.h"
 #include "video/numbered_images.h"
 
@@ -39,6 +40,8 @@ struct Reader::State {
   ReaderOptions options;
   Warn warn;
   InputPtr input;
+  std::vector<std::filesystem::path> pictures;  // one a frame; empty for a video
+  std::size_t next_picture = 0;
   CodecPtr codec;
   PacketPtr packet;
   FramePtr frame;
@@ -66,6 +69,7 @@ struct Reader::State {
   void open_input();
   void open_codec();
   void describe(const AVFrame& first);
+  int read_packet();  // fills `packet`; below 0 at the end, as libav has it
   bool decode_one();  // fills `frame`; false at the end
   std::optional<Frame> next();
   Frame to_frame();
@@ -78,10 +82,16 @@ void Reader::State::open_input() {
   AVDictionary* settings = nullptr;
   const AVInputFormat* format = nullptr;
   std::string url = path.string();
-  if (const auto images = numbered_images(path)) {
+  if (auto images = numbered_images(path)) {
+    if (images->has_gaps)
+      airtruth::warn(warn,
+                     path.string() + ": has gaps between the numbers of its " +
+                         std::to_string(images->files.size()) +
+                         " pictures; they are taken as consecutive frames");
+    pictures = std::move(images->files);
     format = av_find_input_format("image2");
-    url = images->pattern;
-    av_dict_set_int(&settings, "start_number", images->first, 0);
+    url = pictures.front().string();
+    av_dict_set(&settings, "pattern_type", "none", 0);
   } else if (!std::filesystem::exists(path, ignored)) {
     fail("does not exist; expected a video");
   } else if (std::filesystem::is_directory(path, ignored)) {
@@ -137,6 +147,7 @@ void Reader::State::open_codec() {
   if (info.frame_count_estimate <= 0 && input->duration > 0)
     info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
         static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
+  if (!pictures.empty()) info.frame_count_estimate = std::ssize(pictures);
   pts_step = std::max<std::int64_t>(
       1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
   if (stream.sample_aspect_ratio.num > 0) info.sample_aspect = rational(stream.sample_aspect_ratio);
@@ -179,6 +190,21 @@ void Reader::State::describe(const AVFrame& first) {
   }
 }
 
+// libav's own reader of numbered images ends at the first gap in the numbers.
+int Reader::State::read_packet() {
+  if (pictures.empty()) return av_read_frame(input.get(), packet.get());
+  if (next_picture == pictures.size()) return AVERROR_EOF;
+  const std::string bytes = read_file(pictures[next_picture]);
+  if (const int made = av_new_packet(packet.get(), static_cast<int>(bytes.size())); made < 0)
+    return made;
+  std::copy(bytes.begin(), bytes.end(), packet->data);
+  packet->stream_index = stream_index;
+  packet->flags |= AV_PKT_FLAG_KEY;
+  packet->pts = packet->dts = static_cast<std::int64_t>(next_picture++);
+  packet->duration = 1;
+  return 0;
+}
+
 bool Reader::State::decode_one() {
   for (;;) {
     av_frame_unref(frame.get());
@@ -192,7 +218,7 @@ bool Reader::State::decode_one() {
       if (draining) continue;
     }
     if (draining) continue;
-    const int read = av_read_frame(input.get(), packet.get());
+    const int read = read_packet();
     if (read < 0) {
       read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
       draining = true;

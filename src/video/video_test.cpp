@@ -132,6 +132,37 @@ TEST_F(Video, OddSizesAndNumberedImages) {
   }
 }
 
+// COCO's names have 12 digits and gaps between them; Airborne Object Tracking's are a time in
+// nanoseconds and the flight, which may end in a digit.
+TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
+  const std::vector<std::vector<std::string>> names = {
+      {"000000000139.png", "000000000285.png", "000000581929.png"},
+      {"9.png", "10.png", "111.png"},
+      {"9000000000000000000a1b-737.png",
+       "9000000000033333333a1b-737.png",
+       "10000000000000000000a1b-737.png"}};
+  for (std::size_t set = 0; set < names.size(); ++set) {
+    const fs::path folder = folder_ / ("set" + std::to_string(set));
+    fs::create_directories(folder);
+    for (std::size_t i = 0; i < 3; ++i)
+      ffmpeg("-f lavfi -i color=gray:s=16x16 -vf format=gray,geq=" + std::to_string(50 * (i + 1)) +
+             " -frames:v 1 -update 1 " + (folder / names[set][i]).string());
+    std::string warning;
+    Reader reader(folder, {}, [&](const std::string& message) { warning = message; });
+    EXPECT_EQ(reader.info().frame_count_estimate, 3);
+    for (int i = 0; i < 3; ++i) {
+      const auto frame = reader.next();
+      ASSERT_TRUE(frame) << folder;
+      EXPECT_EQ(frame->index, i);
+      EXPECT_NEAR(frame->time_s, i / 25.0, 1e-12);
+      EXPECT_NEAR(frame->picture.planes[0].row(0)[0], 50 * (i + 1), 1) << folder;
+    }
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.ends_early());
+    EXPECT_EQ(warning.find("gaps between the numbers of its 3") != std::string::npos, set < 2);
+  }
+}
+
 TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
   ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p plain.mp4");
   for (int rotation : {90, 180, 270}) {
