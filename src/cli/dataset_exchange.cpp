@@ -17,7 +17,7 @@ struct Export {
   std::string set;
   std::string out;
   std::string format;
-  std::string images = "jpg";
+  std::string images;
   std::string split = "by-background";
   std::vector<double> shares = {0.8, 0.1, 0.1};
   dataset::ExportOptions options;
@@ -34,7 +34,7 @@ void run_export(Export arguments, Context& context) {
   Console& console = context.console();
   dataset::ExportOptions& options = arguments.options;
   options.format = exchange::format_from_name(arguments.format);
-  options.images = images_from_name(arguments.images);
+  if (!arguments.images.empty()) options.images = images_from_name(arguments.images);
   options.split = dataset::split_from_name(arguments.split);
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
@@ -131,7 +131,9 @@ void add_dataset_exchange(CLI::App& group, Context& context) {
   export_command
       ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
       ->required();
-  export_command->add_option("--images", out->images, "jpg (default), png or none");
+  export_command->add_option("--images",
+                             out->images,
+                             "jpg (default; for aot, whose readers open no jpg: png), png or none");
   export_command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
       ->check(CLI::PositiveNumber);
   export_command->add_option("--split",
@@ -145,6 +147,10 @@ void add_dataset_exchange(CLI::App& group, Context& context) {
   export_command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
   export_command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
+  export_command->add_flag("--mot-classes",
+                           out->options.mot_classes,
+                           "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
+                           "one class that MOT17's evaluation counts)");
   export_command
       ->add_option("--jobs,-j", out->options.jobs, "Sequences at a time (default: one per core)")
       ->check(CLI::Range(1, 1024));

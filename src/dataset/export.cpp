@@ -20,21 +20,38 @@ using Json = nlohmann::ordered_json;
 
 const char* extension_of(Images images) { return images == Images::kPng ? ".png" : ".jpg"; }
 
+// The pictures that are written; Error for those that the format's reader does not open.
+Images images_of(const ExportOptions& options) {
+  const exchange::Pictures wanted = exchange::pictures_of(options.format);
+  if (!options.images) return wanted == exchange::Pictures::kPngAlone ? Images::kPng : Images::kJpg;
+  if (wanted == exchange::Pictures::kPngAlone && *options.images == Images::kJpg)
+    throw Error(std::string("images is jpg, and the readers of ") + exchange::name(options.format) +
+                " open TIMEFLIGHT.png alone; expected png or none");
+  if (wanted == exchange::Pictures::kJpgExpected && *options.images == Images::kPng)
+    warn(options.warn,
+         std::string("the got10k toolkit reads *.jpg alone of ") + exchange::name(options.format) +
+             " sequences, and the pictures are png");
+  return *options.images;
+}
+
 // What decides every byte of an export.
 Json options_json(const fs::path& set, const ExportOptions& options) {
   const char* split = options.split == Split::kNone           ? "none"
                       : options.split == Split::kByBackground ? "by-background"
                                                               : "by-sequence";
   const fs::path record = set / "dataset.json";
-  return {{"set", fs::absolute(set).lexically_normal().string()},
-          {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
-          {"format", exchange::name(options.format)},
-          {"images", options.images == Images::kNone ? "none" : extension_of(options.images) + 1},
-          {"every", options.every},
-          {"split", split},
-          {"shares", options.shares},
-          {"seed", options.seed},
-          {"one_class", options.one_class}};
+  Json json = {
+      {"set", fs::absolute(set).lexically_normal().string()},
+      {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
+      {"format", exchange::name(options.format)},
+      {"images", *options.images == Images::kNone ? "none" : extension_of(*options.images) + 1},
+      {"every", options.every},
+      {"split", split},
+      {"shares", options.shares},
+      {"seed", options.seed},
+      {"one_class", options.one_class}};
+  if (options.mot_classes) json["mot_classes"] = true;
+  return json;
 }
 
 // The folder of an export while it is being made.
@@ -92,7 +109,7 @@ class Export {
 
   ExportSummary run() {
     survey();
-    if (options_.images != Images::kNone) write_images();
+    if (*options_.images != Images::kNone) write_images();
     write_labels();
     write_file(place_.root() / "LOSS.md", exchange::loss(options_.format));
     place_.finish({{"sequences", summary_.sequences},
@@ -111,8 +128,14 @@ class Export {
         categories.insert(options_.one_class ? "aircraft" : category);
     }
     parts_ = parted(facts, options_.split, options_.shares, options_.seed, options_.warn);
+    // GOT-10k's toolkit asserts that a subset is train, val or test, and scores val by its truth.
+    if (options_.format == exchange::Format::kGot10k)
+      for (auto& [name, part] : parts_)
+        if (part == "all") part = "val";
     write_.categories = {categories.begin(), categories.end()};
-    write_.image_extension = extension_of(options_.images);
+    write_.image_extension = extension_of(*options_.images);
+    write_.with_images = *options_.images != Images::kNone;
+    write_.mot_classes = options_.mot_classes;
     const std::vector<std::string> order = {"train", "val", "test", "all"};
     for (const std::string& part : order)
       if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
@@ -177,9 +200,11 @@ class Export {
   std::map<std::int64_t, std::vector<fs::path>> places_of(const exchange::Clip& clip,
                                                           const std::string& part) const {
     std::map<std::int64_t, std::vector<fs::path>> places;
-    for (const exchange::Clip& one : exchange::arranged(options_.format, clip))
+    for (const exchange::Clip& one : exchange::arranged(options_.format, clip)) {
+      const std::vector<fs::path> files = writer_->images(one, part);
       for (std::size_t i = 0; i < one.frames.size(); ++i)
-        places[one.frames[i].frame].push_back(place_.root() / writer_->image(one, part, i));
+        places[one.frames[i].frame].push_back(place_.root() / files[i]);
+    }
     return places;
   }
 
@@ -213,7 +238,12 @@ class Export {
 
 }  // namespace
 
-ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& options) {
+ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& wanted) {
+  ExportOptions options = wanted;
+  options.images = images_of(wanted);
+  if (options.mot_classes && options.format != exchange::Format::kMot)
+    throw Error(std::string("numbered classes are asked for, and ") +
+                exchange::name(options.format) + " holds its classes anyway; expected format mot");
   const LabelledSet labelled(set);
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {

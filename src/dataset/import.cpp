@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/version.h"
-#include "exchange/text.h"
+#include "video/numbered_images.h"
 #include "video/reader.h"
 
 namespace airtruth::dataset {
@@ -20,18 +20,8 @@ using Json = nlohmann::ordered_json;
 // only where there is one for each.
 void match_pictures(exchange::Clip& clip, const Warn& warn) {
   if (clip.media.empty() || fs::is_regular_file(clip.media)) return;
-  const bool is_folder = fs::is_directory(clip.media);
-  const std::string name = clip.media.filename().string();
-  const std::string prefix = is_folder ? "" : name.substr(0, name.find('%'));
-  const fs::path folder = is_folder ? clip.media : clip.media.parent_path();
-  std::size_t pictures = 0;
-  for (const fs::path& file : exchange::entries(folder)) {
-    const std::string stem = file.stem().string();
-    const std::string extension = file.extension().string();
-    const bool is_picture = extension == ".jpg" || extension == ".jpeg" || extension == ".png";
-    const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
-    if (is_picture && (is_folder || stem.substr(0, digits) == prefix)) ++pictures;
-  }
+  const auto images = video::numbered_images(clip.media);
+  const std::size_t pictures = images ? images->files.size() : 0;
   if (pictures != clip.frames.size()) {
     airtruth::warn(warn,
                    clip.media.string() + ": holds " + std::to_string(pictures) +

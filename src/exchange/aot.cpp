@@ -12,19 +12,56 @@
 #include "exchange/parts.h"
 #include "exchange/text.h"
 
-// Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit", DATASET.md): one
-// groundtruth.json; `samples` holds a flight a clip, its `entities` one entry for each object of
-// each frame, and one without id and bb for a frame that shows none. Boxes are [left, top, width,
-// height] from (0, 0); time in nanoseconds; ids are a kind and a number, "Airplane1".
+// Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit": docs/DATASET.md,
+// core/flight.py, core/frame.py, core/metrics): one groundtruth.json; `samples` holds a flight a
+// clip, its `entities` one entry for each object of each frame, and one without id and bb for a
+// frame that shows none. Boxes are [left, top, width, height] from (0, 0); ids are a kind and a
+// number, "Airplane1". A picture is Images/FLIGHT/TIMEFLIGHT.png with the entity's time in
+// nanoseconds: the metrics join detections to truth by that name alone, over all flights, and the
+// loader makes it from time and flight. `metadata` holds fps and the duration in milliseconds.
 namespace airtruth::exchange {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Added to every time: as AOT's own, which count from 1970, all have 19 digits. So the names of
+// pictures sort by time, and those of two flights differ whatever the flights are called.
+constexpr std::int64_t kTimeOriginNs = 1'500'000'000'000'000'000;
+// A time that is farther than this from the first frame (5 years) is no time of a clip.
+constexpr double kLongestClipS = 1.5e8;
+// AOT's own rate, for clips whose frame rate is unknown.
+constexpr double kNominalRateHz = 10;
+
+// Times of the frames in nanoseconds from the first. Where they are unknown or two are equal, they
+// follow from the frame rate.
+struct Times {
+  std::vector<std::int64_t> ns;
+  double rate_hz = kNominalRateHz;
+  bool is_rate_nominal = false;
+  bool are_nominal = false;
+};
+
+Times times_of(const Clip& clip) {
+  Times times;
+  times.is_rate_nominal = !clip.frame_rate_hz;
+  times.rate_hz = clip.frame_rate_hz.value_or(kNominalRateHz);
+  for (const LabelledFrame& frame : clip.frames) {
+    const bool is_later = frame.time_s && std::abs(*frame.time_s) < kLongestClipS &&
+                          (times.ns.empty() || std::llround(*frame.time_s * 1e9) > times.ns.back());
+    if (!is_later) times.are_nominal = true;
+    if (times.are_nominal) break;
+    times.ns.push_back(std::llround(*frame.time_s * 1e9));
+  }
+  if (!times.are_nominal) return times;
+  times.ns.clear();
+  for (std::size_t i = 0; i < clip.frames.size(); ++i)
+    times.ns.push_back(std::llround(static_cast<double>(i) / times.rate_hz * 1e9));
+  return times;
+}
+
 class AotWriter : public Writer {
  public:
-  AotWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {
+  AotWriter(fs::path root, const WriteOptions& options) : root_(std::move(root)) {
     for (const std::string& part : options.parts) {
       fs::create_directories(file_of(part).parent_path());
       files_[part].open(part_path(file_of(part)), std::ios::binary);
@@ -32,18 +69,27 @@ class AotWriter : public Writer {
     }
   }
 
-  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
-    return fs::path(part) / "Images" / clip.name / name_of(i);
+  std::vector<fs::path> images(const Clip& clip, const std::string& part) const override {
+    std::vector<fs::path> files;
+    for (const std::int64_t time_ns : times_of(clip).ns)
+      files.push_back(fs::path(part) / "Images" / clip.name / name_of(clip, time_ns));
+    return files;
   }
 
   void add(const Clip& clip, const std::string& part) override {
+    const Times times = times_of(clip);
     Json entities = Json::array();
-    for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, entities);
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, times.ns[i], entities);
+    const double duration_ms = static_cast<double>(clip.frames.size()) / times.rate_hz * 1000;
     Json about = {{"data_path", "Images/" + clip.name + "/"},
                   {"flight_id", clip.name},
+                  {"fps", times.rate_hz},
                   {"number_of_frames", clip.frames.size()},
-                  {"resolution", {{"height", clip.height}, {"width", clip.width}}}};
-    if (clip.frame_rate_hz) about["fps"] = *clip.frame_rate_hz;
+                  {"duration", duration_ms},
+                  {"resolution", {{"height", clip.height}, {"width", clip.width}}},
+                  {"time_origin_ns", kTimeOriginNs}};
+    if (times.is_rate_nominal) about["fps_is_nominal"] = true;
+    if (times.are_nominal) about["time_is_nominal"] = true;
     std::ofstream& file = files_.at(part);
     file << (any_[part] ? ",\n" : "\n") << Json(clip.name).dump() << ":"
          << Json{{"metadata", about}, {"entities", entities}}.dump();
@@ -64,17 +110,17 @@ class AotWriter : public Writer {
   fs::path file_of(const std::string& part) const {
     return root_ / part / "ImageSets" / "groundtruth.json";
   }
-  std::string name_of(std::size_t i) const {
-    return padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
+  static std::string name_of(const Clip& clip, std::int64_t time_ns) {
+    return std::to_string(kTimeOriginNs + time_ns) + clip.name + ".png";
   }
 
-  void add_frame(const Clip& clip, std::size_t i, Json& entities) const {
+  static void add_frame(const Clip& clip, std::size_t i, std::int64_t time_ns, Json& entities) {
     const LabelledFrame& frame = clip.frames[i];
     Json bare = Json::object();
-    if (frame.time_s) bare["time"] = std::llround(*frame.time_s * 1e9);
+    bare["time"] = kTimeOriginNs + time_ns;
     bare["blob"] = {{"frame", i}};
     bare["flight_id"] = clip.name;
-    bare["img_name"] = name_of(i);
+    bare["img_name"] = name_of(clip, time_ns);
     if (frame.labels.empty()) bare["labels"] = Json::object();
     if (frame.labels.empty()) entities.push_back(bare);
     for (const Label& label : frame.labels) {
@@ -91,7 +137,6 @@ class AotWriter : public Writer {
   }
 
   fs::path root_;
-  WriteOptions options_;
   std::map<std::string, std::ofstream> files_;
   std::map<std::string, bool> any_;
 };
@@ -105,7 +150,10 @@ class FlightReader {
 
   Clip read() {
     const JsonObject about = flight_.object("metadata");
-    clip_.frame_rate_hz = about.maybe_number("fps");
+    if (!about.maybe_truth("fps_is_nominal").value_or(false))
+      clip_.frame_rate_hz = about.maybe_number("fps");
+    has_times_ = !about.maybe_truth("time_is_nominal").value_or(false);
+    origin_ns_ = about.maybe_integer("time_origin_ns");
     if (about.has("resolution")) {
       clip_.width = side_of(about.object("resolution").number("width"));
       clip_.height = side_of(about.object("resolution").number("height"));
@@ -116,7 +164,13 @@ class FlightReader {
         whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMostFrames);
     if (!frames) about.fail("number_of_frames is no number of frames");
     clip_.frames.resize(static_cast<std::size_t>(*frames));
-    for (const JsonObject& entity : flight_.objects("entities")) add(entity);
+    const std::vector<JsonObject> entities = flight_.objects("entities");
+    // Times of the published files count from 1970; ours from the flight's first frame.
+    if (!origin_ns_)
+      for (const JsonObject& entity : entities)
+        if (const auto time = entity.maybe_integer("time"))
+          origin_ns_ = std::min(origin_ns_.value_or(*time), *time);
+    for (const JsonObject& entity : entities) add(entity);
     for (std::size_t i = 0; i < clip_.frames.size(); ++i)
       clip_.frames[i].frame = static_cast<std::int64_t>(i);
     return clip_;
@@ -130,7 +184,8 @@ class FlightReader {
     const auto i = static_cast<std::size_t>(number);
     if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
     LabelledFrame& frame = clip_.frames[i];
-    if (const auto time = entity.maybe_number("time")) frame.time_s = *time / 1e9;
+    const auto time = entity.maybe_integer("time");
+    if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
     if (!entity.has("id") || !entity.has("bb")) return;
     const std::vector<double> bb = entity.numbers("bb");
     if (bb.size() != 4) entity.fail("bb has not 4 numbers");
@@ -150,7 +205,7 @@ class FlightReader {
       left_out_.add("boxes that are empty or outside their image", entity.place());
   }
 
-  // The published files write NaN as a string or leave it out.
+  // The published files write NaN, a string or nothing where a range is unknown.
   static std::optional<double> range_of(const JsonObject& blob) {
     try {
       return blob.maybe_number("range_distance_m");
@@ -173,6 +228,8 @@ class FlightReader {
   const JsonObject& flight_;
   LeftOut& left_out_;
   std::map<std::string, std::int64_t> tracks_;
+  std::optional<std::int64_t> origin_ns_;
+  bool has_times_ = true;
   Clip clip_;
 };
 

@@ -15,6 +15,10 @@
 
 // COCO (Lin et al. 2014; cocodataset.org, "Data format"): one JSON file with images, annotations
 // and categories; ids from 1, boxes [x, y, width, height] from the top-left corner at (0, 0).
+// pycocotools (PythonAPI/pycocotools/coco.py) reads id, bbox, area, iscrowd and segmentation of
+// every annotation; without masks the segmentation is the box as a polygon, which is what loadRes()
+// itself makes of a box. An annotation with iscrowd = 1 is a region in which detections do not
+// count, no object.
 // Videos and tracks as the video data sets that grew from it have them: videos, video_id, frame_id,
 // track_id.
 namespace airtruth::exchange {
@@ -31,7 +35,7 @@ struct Lists {
   std::int64_t next_annotation = 1;
 };
 
-class CocoWriter : public Writer {
+class CocoWriter : public IndexedWriter {
  public:
   CocoWriter(fs::path root, const WriteOptions& options)
       : root_(std::move(root)), options_(options) {
@@ -41,10 +45,6 @@ class CocoWriter : public Writer {
       lists.images.open(list(part, "images"), std::ios::binary);
       lists.annotations.open(list(part, "annotations"), std::ios::binary);
     }
-  }
-
-  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
-    return fs::path("images") / part / file_name(clip, i);
   }
 
   void add(const Clip& clip, const std::string& part) override {
@@ -70,6 +70,10 @@ class CocoWriter : public Writer {
   }
 
  private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path("images") / part / file_name(clip, i);
+  }
+
   fs::path folder() const { return root_ / "annotations"; }
   fs::path list(const std::string& part, const std::string& what) const {
     return folder() / ("." + part + "." + what + ".part");
@@ -96,14 +100,16 @@ class CocoWriter : public Writer {
     for (const Label& label : frame.labels) {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
-      Json json = {{"id", number},
-                   {"image_id", id},
-                   {"video_id", video},
-                   {"category_id", category_id(label.category)},
-                   {"track_id", label.track},
-                   {"bbox", {b.x, b.y, b.width, b.height}},
-                   {"area", b.area()},
-                   {"iscrowd", 0}};
+      Json json = {
+          {"id", number},
+          {"image_id", id},
+          {"video_id", video},
+          {"category_id", category_id(label.category)},
+          {"track_id", label.track},
+          {"bbox", {b.x, b.y, b.width, b.height}},
+          {"area", b.area()},
+          {"iscrowd", 0},
+          {"segmentation", {{b.x, b.y, b.x, b.bottom(), b.right(), b.bottom(), b.right(), b.y}}}};
       if (label.visible) json["visibility"] = *label.visible;
       if (label.occluded) json["occluded"] = *label.occluded;
       if (label.truncated) json["truncated"] = *label.truncated;
@@ -121,7 +127,9 @@ class CocoWriter : public Writer {
     const fs::path file = folder() / ("instances_" + part + ".json");
     {
       std::ofstream out(part_path(file), std::ios::binary);
-      out << "{\"info\":{\"description\":\"made by airtruth\"},\n\"categories\":"
+      out << "{\"info\":{\"description\":\"made by airtruth; segmentations are the boxes as "
+             "polygons\"},"
+             "\n\"licenses\":[],\n\"categories\":"
           << categories.dump() << ",\n\"videos\":" << lists.videos.dump() << ",\n\"images\":[";
       append(out, list(part, "images"));
       out << "],\n\"annotations\":[";
@@ -226,6 +234,10 @@ class CocoReader {
         left_out_.add("annotations of images that are not listed", annotation.place());
         continue;
       }
+      if (annotation.maybe_truth("iscrowd").value_or(false)) {
+        left_out_.add("crowds (iscrowd = 1), which are regions and no objects", annotation.place());
+        continue;
+      }
       Label label;
       const auto category = categories_.find(annotation.whole("category_id"));
       if (category == categories_.end()) annotation.fail("category_id names no category");
@@ -279,12 +291,23 @@ class CocoReader {
     Clip clip;
     clip.name = fs::path(video.name).filename().string();
     clip.frame_rate_hz = video.frame_rate_hz;
+    bool same_size = true;
     for (const std::int64_t id : video.images) {
       Picture& picture = pictures_.at(id);
+      same_size = same_size && (clip.frames.empty() ||
+                                (picture.width == clip.width && picture.height == clip.height));
       clip.width = picture.width;
       clip.height = picture.height;
       picture.labels.frame = picture.frame;
       clip.frames.push_back(picture.labels);
+    }
+    if (!same_size) {
+      warn(warn_,
+           file_.string() + ": the pictures of " + clip.name +
+               " differ in size, as those of no video do; they are imported without size and "
+               "pictures");
+      clip.width = clip.height = 0;
+      return clip;
     }
     if (!video.images.empty()) clip.media = media_of(pictures_.at(video.images.front()).file_name);
     return clip;

@@ -11,7 +11,10 @@
 
 // "CVAT for video 1.1" (docs.cvat.ai, "XML annotation format"), a file a clip: a <track> an object,
 // with a <box> in every frame that shows it and one with outside="1" where it has gone. Frames from
-// 0, corners from (0, 0).
+// 0, corners from (0, 0). Where there are pictures, an <image> a frame names its file: CVAT's and
+// datumaro's readers (dataset_manager/formats/cvat.py; plugins/data_formats/cvat/base.py) take
+// images/frame_000000.png for a frame without one, and datumaro's refuses a name whose file is not
+// there.
 namespace airtruth::exchange {
 namespace {
 
@@ -25,15 +28,10 @@ pugi::xml_node add(pugi::xml_node node, const char* name, const std::string& tex
 
 std::string number(double value) { return fmt::format("{}", value); }
 
-class CvatWriter : public Writer {
+class CvatWriter : public IndexedWriter {
  public:
   CvatWriter(fs::path root, const WriteOptions& options)
       : root_(std::move(root)), options_(options) {}
-
-  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
-    return fs::path(part) / clip.name / "images" /
-           ("frame_" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension);
-  }
 
   void add(const Clip& clip, const std::string& part) override {
     pugi::xml_document document;
@@ -43,6 +41,7 @@ class CvatWriter : public Writer {
     pugi::xml_node top = document.append_child("annotations");
     exchange::add(top, "version", "1.1");
     add_task(top.append_child("meta").append_child("task"), clip);
+    if (options_.with_images) add_images(top, clip);
     for (const std::int64_t track : tracks_of(clip)) add_track(top, clip, track);
     fs::create_directories(root_ / part / clip.name);
     write_file(root_ / part / clip.name / "annotations.xml", text_of(document));
@@ -51,6 +50,24 @@ class CvatWriter : public Writer {
   void finish() override {}
 
  private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path(part) / clip.name / "images" / file_name(i);
+  }
+  std::string file_name(std::size_t i) const {
+    return "frame_" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
+  }
+
+  void add_images(pugi::xml_node top, const Clip& clip) const {
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+      pugi::xml_node image = top.append_child("image");
+      image.append_attribute("id") = static_cast<unsigned long long>(i);
+      image.append_attribute("name") = file_name(i).c_str();
+      if (clip.width <= 0 || clip.height <= 0) continue;
+      image.append_attribute("width") = clip.width;
+      image.append_attribute("height") = clip.height;
+    }
+  }
+
   void add_task(pugi::xml_node task, const Clip& clip) const {
     const std::size_t last = clip.frames.empty() ? 0 : clip.frames.size() - 1;
     exchange::add(task, "name", clip.name);
@@ -127,12 +144,13 @@ class CvatWriter : public Writer {
   WriteOptions options_;
 };
 
-Label label_of(const XmlFile& xml, const pugi::xml_node& track, const pugi::xml_node& box) {
+Label label_of(const XmlFile& xml,
+               const pugi::xml_node& box,
+               const std::string& category,
+               std::int64_t track) {
   Label label;
-  const auto id = whole_in(xml.attribute(track, "id"), 0, 1'000'000'000);
-  if (!id) xml.fail(track, "has an id that is no whole number");
-  label.track = *id + 1;
-  label.category = track.attribute("label").value();
+  label.track = track;
+  label.category = category;
   const double x = xml.attribute(box, "xtl");
   const double y = xml.attribute(box, "ytl");
   label.box_px = {x, y, xml.attribute(box, "xbr") - x, xml.attribute(box, "ybr") - y};
@@ -168,6 +186,7 @@ class CvatReader {
   Clip read() {
     const pugi::xml_node top = xml_.top("annotations");
     about(top.child("meta"));
+    for (const pugi::xml_node& image : top.children("image")) add_image(image);
     for (const pugi::xml_node& track : top.children("track")) add(track);
     for (std::size_t i = 0; i < clip_.frames.size(); ++i) {
       clip_.frames[i].frame = static_cast<std::int64_t>(i);
@@ -197,14 +216,31 @@ class CvatReader {
       clip_.media = images;
   }
 
+  // "CVAT for images 1.1" has its boxes here; of tracks' boxes it names the pictures alone.
+  void add_image(const pugi::xml_node& image) {
+    const auto number = whole_in(xml_.attribute(image, "id"), 0, kMostFrames);
+    if (!number) xml_.fail(image, "has an id that is no whole number from 0 on");
+    const auto frame = static_cast<std::size_t>(*number);
+    if (frame >= clip_.frames.size()) clip_.frames.resize(frame + 1);
+    if (clip_.width == 0) {
+      clip_.width = side_of(number_in(image.attribute("width").value()));
+      clip_.height = side_of(number_in(image.attribute("height").value()));
+    }
+    std::int64_t track = 0;
+    for (const pugi::xml_node& box : image.children("box"))
+      put(label_of(xml_, box, box.attribute("label").value(), ++track), frame);
+  }
+
   void add(const pugi::xml_node& track) {
+    const auto id = whole_in(xml_.attribute(track, "id"), 0, 1'000'000'000);
+    if (!id) xml_.fail(track, "has an id that is no whole number");
     std::optional<Label> last;
     std::size_t last_frame = 0;
     for (const pugi::xml_node& box : track.children("box")) {
       const auto number = whole_in(xml_.attribute(box, "frame"), 0, kMostFrames);
       if (!number) xml_.fail(box, "has a frame that is no whole number from 0 on");
       const auto frame = static_cast<std::size_t>(*number);
-      const Label label = label_of(xml_, track, box);
+      const Label label = label_of(xml_, box, track.attribute("label").value(), *id + 1);
       if (last) {
         const bool gone = xml_.attribute(box, "outside") != 0;
         for (std::size_t i = last_frame + 1; i < frame; ++i)

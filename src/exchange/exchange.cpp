@@ -112,6 +112,18 @@ bool is_single_object(Format format) {
   return format == Format::kOtb || format == Format::kGot10k || format == Format::kVot;
 }
 
+Pictures pictures_of(Format format) {
+  if (format == Format::kAot) return Pictures::kPngAlone;
+  if (format == Format::kOtb || format == Format::kGot10k) return Pictures::kJpgExpected;
+  return Pictures::kAny;
+}
+
+std::vector<fs::path> IndexedWriter::images(const Clip& clip, const std::string& part) const {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) files.push_back(image(clip, part, i));
+  return files;
+}
+
 std::vector<Clip> arranged(Format format, const Clip& clip) {
   if (!is_single_object(format)) return {clip};
   std::vector<Clip> clips;

@@ -46,20 +46,28 @@ struct WriteOptions {
   std::vector<std::string> categories;  // every one that the clips use, in the order of the classes
   std::vector<std::string> parts;       // "train", "val", ...
   std::string image_extension = ".jpg";
+  bool with_images = true;   // pictures are written beside the labels
+  bool mot_classes = false;  // MOT: classes numbered from 1 in place of 1 for every object
 };
 
 // Writes a set into a folder, clip by clip; of those written no more than names are held.
 class Writer {
  public:
   virtual ~Writer() = default;
-  // Where the picture of clip.frames[i] belongs, relative to the folder. `clip` as arranged().
-  virtual fs::path image(const Clip& clip, const std::string& part, std::size_t i) const = 0;
+  // Where the pictures of clip.frames belong, relative to the folder, one for each. `clip` as
+  // arranged().
+  virtual std::vector<fs::path> images(const Clip& clip, const std::string& part) const = 0;
   virtual void add(const Clip& clip, const std::string& part) = 0;
   virtual void finish() = 0;
 };
 std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);
+
+// What the format's own reader does with pictures: AOT's opens PNG alone, those of OTB and GOT-10k
+// look for *.jpg.
+enum class Pictures { kAny, kPngAlone, kJpgExpected };
+Pictures pictures_of(Format format);
 
 // LOSS.md: what a format keeps of our truth, and what it has no place for.
 std::string loss(Format format);

@@ -2,7 +2,9 @@
 #include "exchange/json_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -14,8 +16,43 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr auto kLargestInteger =
+    static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+// Outside of strings NaN, Infinity and -Infinity become null.
+std::string without_python_words(const std::string& text) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '"') {
+      std::size_t end = i + 1;
+      while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+      end = std::min(end + 1, text.size());
+      result.append(text, i, end - i);
+      i = end;
+      continue;
+    }
+    const std::size_t word = i + (text[i] == '-' || text[i] == '+' ? 1 : 0);
+    std::size_t end = word;
+    std::string lower;
+    while (end < text.size() && is_letter(text[end]) && lower.size() < 9)
+      lower += static_cast<char>(std::tolower(static_cast<unsigned char>(text[end++])));
+    if (lower == "nan" || lower == "inf" || lower == "infinity") {
+      result += "null";
+      i = end;
+    } else {
+      end = std::max(end, i + 1);
+      result.append(text, i, end - i);
+      i = end;
+    }
+  }
+  return result;
+}
+
 std::shared_ptr<const Json> parsed(const std::filesystem::path& file) {
-  const std::string text = read_file(file, std::size_t{8} << 30);
+  const std::string text = without_python_words(read_file(file, std::size_t{8} << 30));
   try {
     return std::make_shared<const Json>(Json::parse(text));
   } catch (const Json::parse_error& error) {
@@ -69,6 +106,17 @@ std::int64_t JsonObject::whole(const char* key) const {
 std::optional<double> JsonObject::maybe_number(const char* key) const {
   if (!has(key)) return std::nullopt;
   return number(key);
+}
+
+std::optional<std::int64_t> JsonObject::maybe_integer(const char* key) const {
+  if (!has(key)) return std::nullopt;
+  const Json& value = at(key);
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > kLargestInteger)
+    fail(std::string(key) + " is too large");
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  const double rounded = std::round(number(key));
+  if (!(std::abs(rounded) < 9e18)) fail(std::string(key) + " is too large");
+  return static_cast<std::int64_t>(rounded);
 }
 
 std::optional<bool> JsonObject::maybe_truth(const char* key) const {

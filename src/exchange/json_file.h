@@ -11,7 +11,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 // JSON as users bring it. Every fault is one Error that names the file and the place in it
-// ("annotations[12]: has no image_id").
+// ("annotations[12]: has no image_id"). The words that Python's json adds to JSON, NaN and Infinity
+// in any case and with a sign, are read as null.
 namespace airtruth::exchange {
 
 class JsonObject {
@@ -23,6 +24,9 @@ class JsonObject {
   double number(const char* key) const;
   std::int64_t whole(const char* key) const;
   std::optional<double> maybe_number(const char* key) const;
+  // Exact, where a double rounds times in nanoseconds since 1970. A number with a fraction is
+  // rounded.
+  std::optional<std::int64_t> maybe_integer(const char* key) const;
   std::optional<bool> maybe_truth(const char* key) const;  // true, false, 0, 1
   std::vector<double> numbers(const char* key) const;
   // Empty where the key is missing or is anything else (COCO's run lengths).

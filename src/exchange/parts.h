@@ -2,11 +2,21 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "exchange/exchange.h"
 
 // The formats' own writers and readers, for exchange.cpp alone.
 namespace airtruth::exchange {
+
+// A writer that names a picture by its place in the clip.
+class IndexedWriter : public Writer {
+ public:
+  std::vector<fs::path> images(const Clip& clip, const std::string& part) const final;
+
+ private:
+  virtual fs::path image(const Clip& clip, const std::string& part, std::size_t i) const = 0;
+};
 
 std::unique_ptr<Writer> coco_writer(const fs::path& root, const WriteOptions& options);
 std::unique_ptr<Writer> yolo_writer(const fs::path& root, const WriteOptions& options);

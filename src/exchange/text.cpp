@@ -152,6 +152,15 @@ bool is_in_picture(const Box& box, int width, int height) {
   return box.x < width && box.y < height && box.right() > 0 && box.bottom() > 0;
 }
 
+std::optional<Box> clipped(const Box& box, int width, int height) {
+  if (!is_in_picture(box, width, height)) return std::nullopt;
+  if (width <= 0 || height <= 0) return box;
+  const double x = std::max(box.x, 0.0);
+  const double y = std::max(box.y, 0.0);
+  return Box{
+      x, y, std::min(box.right(), double(width)) - x, std::min(box.bottom(), double(height)) - y};
+}
+
 void LeftOut::add(const std::string& why, const std::string& first) {
   auto& [count, where] = found_[why];
   if (count++ == 0) where = first;

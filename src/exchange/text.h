@@ -60,6 +60,10 @@ std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder);
 // what is read, with a warning that names `what`.
 bool is_in_picture(const Box& box, int width, int height);
 
+// The part of a box that lies in the picture (of unknown size: all of it); empty where there is
+// none.
+std::optional<Box> clipped(const Box& box, int width, int height);
+
 // Counts what was left out, and says so once.
 class LeftOut {
  public:

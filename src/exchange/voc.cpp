@@ -9,7 +9,12 @@
 
 // Pascal VOC (Everingham et al. 2010; VOC2012 development kit, section 4): Annotations/NAME.xml,
 // JPEGImages/NAME.jpg, ImageSets/Main/PART.txt. Pixels count from 1 and both corners belong to the
-// box: xmin = x + 1, xmax = x + width.
+// box: xmin = x + 1, xmax = x + width. Corners are whole numbers, of the pixels that the box
+// touches within the picture. The development kit's VOCreadrecxml.m wants folder, filename,
+// source.database, size and segmented, and finds the picture at FOLDER/JPEGImages/FILENAME; its XML
+// reader (VOCxml2struct.m) takes elements, tabs and line ends alone. Python's readers take int() of
+// the corners, of truncated and of difficult. So truncated, occluded and difficult are always
+// there: 0 where they are unknown, and then named in <unknown>.
 namespace airtruth::exchange {
 namespace {
 
@@ -21,16 +26,12 @@ void add_number(pugi::xml_node node, const char* name, double value) {
   add_text(node, name, fmt::format("{}", value));
 }
 
-class VocWriter : public Writer {
+class VocWriter : public IndexedWriter {
  public:
   VocWriter(fs::path root, const WriteOptions& options)
       : root_(std::move(root)), options_(options) {
     fs::create_directories(root_ / "Annotations");
     fs::create_directories(root_ / "ImageSets" / "Main");
-  }
-
-  fs::path image(const Clip& clip, const std::string&, std::size_t i) const override {
-    return fs::path("JPEGImages") / (stem(clip, i) + options_.image_extension);
   }
 
   void add(const Clip& clip, const std::string& part) override {
@@ -47,6 +48,10 @@ class VocWriter : public Writer {
   }
 
  private:
+  fs::path image(const Clip& clip, const std::string&, std::size_t i) const override {
+    return fs::path("JPEGImages") / (stem(clip, i) + options_.image_extension);
+  }
+
   static std::string stem(const Clip& clip, std::size_t i) {
     return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
   }
@@ -54,30 +59,39 @@ class VocWriter : public Writer {
   std::string annotation(const Clip& clip, std::size_t i) const {
     pugi::xml_document document;
     pugi::xml_node top = document.append_child("annotation");
-    add_text(top, "folder", "JPEGImages");
+    add_text(top, "folder", fs::absolute(root_).lexically_normal().filename().string());
     add_text(top, "filename", stem(clip, i) + options_.image_extension);
+    pugi::xml_node source = top.append_child("source");
+    add_text(source, "database", "airtruth");
+    add_text(source, "annotation", "airtruth");
+    add_text(source, "image", clip.name);
     pugi::xml_node size = top.append_child("size");
     add_number(size, "width", clip.width);
     add_number(size, "height", clip.height);
     add_number(size, "depth", 3);
     add_number(top, "segmented", 0);
-    for (const Label& label : clip.frames[i].labels) add_object(top, label);
-    return text_of(document);
+    for (const Label& label : clip.frames[i].labels) add_object(top, label, clip);
+    return bare_text_of(document);
   }
 
-  static void add_object(pugi::xml_node top, const Label& label) {
+  static void add_object(pugi::xml_node top, const Label& label, const Clip& clip) {
+    const auto cut = clipped(label.box_px, clip.width, clip.height);
+    if (!cut) return;
     pugi::xml_node object = top.append_child("object");
     add_text(object, "name", label.category);
     add_text(object, "pose", "Unspecified");
-    if (label.truncated) add_number(object, "truncated", *label.truncated ? 1 : 0);
-    if (label.occluded) add_number(object, "occluded", *label.occluded ? 1 : 0);
+    add_number(object, "truncated", label.truncated.value_or(false) ? 1 : 0);
+    add_number(object, "occluded", label.occluded.value_or(false) ? 1 : 0);
     add_number(object, "difficult", 0);
+    std::string unknown = label.truncated ? "" : "truncated";
+    if (!label.occluded) unknown += unknown.empty() ? "occluded" : " occluded";
+    if (!unknown.empty()) add_text(object, "unknown", unknown);
     pugi::xml_node box = object.append_child("bndbox");
-    const Box& b = label.box_px;
-    add_number(box, "xmin", b.x + 1);
-    add_number(box, "ymin", b.y + 1);
-    add_number(box, "xmax", b.right());
-    add_number(box, "ymax", b.bottom());
+    const PixelBox pixels = pixels_of(*cut);
+    add_number(box, "xmin", pixels.x + 1);
+    add_number(box, "ymin", pixels.y + 1);
+    add_number(box, "xmax", pixels.right());
+    add_number(box, "ymax", pixels.bottom());
   }
 
   fs::path root_;
@@ -86,6 +100,8 @@ class VocWriter : public Writer {
 };
 
 std::optional<bool> flag(const pugi::xml_node& object, const char* name) {
+  const std::string unknown = std::string(" ") + object.child_value("unknown") + " ";
+  if (unknown.find(std::string(" ") + name + " ") != std::string::npos) return std::nullopt;
   const auto value = number_in(object.child_value(name));
   return value ? std::optional(*value != 0) : std::nullopt;
 }

@@ -79,4 +79,10 @@ std::string text_of(const pugi::xml_document& document) {
   return out.str();
 }
 
+std::string bare_text_of(const pugi::xml_document& document) {
+  std::ostringstream out;
+  document.save(out, "\t", pugi::format_default | pugi::format_no_declaration, pugi::encoding_utf8);
+  return out.str();
+}
+
 }  // namespace airtruth::exchange

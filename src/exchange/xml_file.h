@@ -33,5 +33,7 @@ std::optional<double> number_in(const std::string& text);
 
 // The document, indented by two blanks.
 std::string text_of(const pugi::xml_document& document);
+// For readers that know elements alone: indented by tabs, without an XML declaration.
+std::string bare_text_of(const pugi::xml_document& document);
 
 }  // namespace airtruth::exchange

@@ -13,19 +13,20 @@
 // YOLO as Ultralytics reads it (docs.ultralytics.com, "Detection dataset format"):
 // images/PART/*.jpg and labels/PART/*.txt of the same name, a line "class x y width height" an
 // object, class from 0, the box's centre and size as shares of the picture. A picture that shows
-// nothing has an empty file.
+// nothing has an empty file. Its loader (ultralytics/data/utils.py) refuses a picture with a
+// coordinate outside of 0..1: boxes are cut at the picture's edge. `path` in data.yaml is absolute,
+// since a relative one counts from the user's own folder of data sets.
 namespace airtruth::exchange {
 namespace {
 
-class YoloWriter : public Writer {
+class YoloWriter : public IndexedWriter {
  public:
   YoloWriter(fs::path root, const WriteOptions& options)
       : root_(std::move(root)), options_(options) {
-    for (const std::string& part : options.parts) fs::create_directories(root_ / "labels" / part);
-  }
-
-  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
-    return fs::path("images") / part / (stem(clip, i) + options_.image_extension);
+    for (const std::string& part : options.parts) {
+      fs::create_directories(root_ / "labels" / part);
+      fs::create_directories(root_ / "images" / part);  // which the loader looks for
+    }
   }
 
   void add(const Clip& clip, const std::string& part) override {
@@ -43,16 +44,26 @@ class YoloWriter : public Writer {
       return std::find(options_.parts.begin(), options_.parts.end(), part) != options_.parts.end();
     };
     const std::string train = has("train") ? "train" : options_.parts.front();
-    std::string text = "train: images/" + train + "\n";
+    std::string text = "# Change `path` when the folder is moved.\npath: " +
+                       quoted(fs::absolute(root_).lexically_normal().string()) + "\n";
+    text += "train: images/" + train + "\n";
     text += "val: images/" + (has("val") ? std::string("val") : train) + "\n";
     if (has("test")) text += "test: images/test\n";
     text += "names:\n";
     for (std::size_t i = 0; i < options_.categories.size(); ++i)
-      text += fmt::format("  {}: {}\n", i, nlohmann::json(options_.categories[i]).dump());
+      text += fmt::format("  {}: {}\n", i, quoted(options_.categories[i]));
     write_file(root_ / "data.yaml", text);
   }
 
  private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path("images") / part / (stem(clip, i) + options_.image_extension);
+  }
+
+  // YAML's double-quoted strings hold JSON's.
+  static std::string quoted(const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
   static std::string stem(const Clip& clip, std::size_t i) {
     return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
   }
@@ -60,13 +71,14 @@ class YoloWriter : public Writer {
   std::string line_of(const Label& label, const Clip& clip) const {
     const auto& all = options_.categories;
     const auto category = std::find(all.begin(), all.end(), label.category) - all.begin();
-    const Box& b = label.box_px;
+    const auto b = clipped(label.box_px, clip.width, clip.height);
+    if (!b) return {};
     return fmt::format("{} {} {} {} {}\n",
                        category,
-                       (b.x + b.width / 2) / clip.width,
-                       (b.y + b.height / 2) / clip.height,
-                       b.width / clip.width,
-                       b.height / clip.height);
+                       (b->x + b->width / 2) / clip.width,
+                       (b->y + b->height / 2) / clip.height,
+                       b->width / clip.width,
+                       b->height / clip.height);
   }
 
   fs::path root_;

@@ -128,12 +128,11 @@ std::optional<NumberedImages> in_folder(const fs::path& folder) {
 
 // Where a pattern's number stands: its first and its past-the-last character.
 std::optional<std::pair<std::size_t, std::size_t>> number_in_pattern(const std::string& name) {
-  const auto percent = name.find('%');
+  const auto percent = name.rfind('%');
   if (percent == std::string::npos) return std::nullopt;
   auto end = percent + 1;
   while (end < name.size() && is_digit(name[end])) ++end;
-  if (end >= name.size() || name[end] != 'd' || name.find('%', end) != std::string::npos)
-    return std::nullopt;
+  if (end >= name.size() || name[end] != 'd') return std::nullopt;
   return std::pair(percent, end + 1);
 }
 
