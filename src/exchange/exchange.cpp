@@ -39,13 +39,14 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kMot,
      "mot",
      "MOTChallenge",
-     "box, class, track, visibility; range in metres as the tenth column, which its readers pass "
-     "over",
+     "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
+     "the "
+     "class of a track in tracks.txt, and as the number of the class where that was asked for",
      "time stamps (a frame rate alone), occlusion and truncation as such"},
     {Format::kVoc,
      "voc",
      "Pascal VOC",
-     "box, class, truncated, occluded",
+     "box (the whole pixels that it touches), class, truncated, occluded",
      "track, time, visibility, range"},
     {Format::kCvat,
      "cvat",
