@@ -104,6 +104,15 @@ def main():
                 wanted = [tuple(map(float, place(i))) for i in range(FRAMES)]
                 if boxes != wanted:
                     sys.exit(f"trax_clients_test: {name} on {sequence}: {boxes}")
+        over_sockets = run("track", "set", "--only", "first", "-o", "sockets", "-t", f"a=trax-socket:{example} --several",
+                           f"b=trax-socket:python3 '{clients}/template_tracker.py'")
+        if over_sockets.returncode != 0 or over_sockets.stderr:
+            sys.exit(f"trax_clients_test: sockets: {over_sockets.stderr}")
+        for name in ("a", "b"):
+            with open(f"{root}/sockets/{name}/first.txt", encoding="utf-8") as mine, \
+                 open(f"{root}/results/template/first.txt", encoding="utf-8") as file:
+                if mine.read() != file.read():
+                    sys.exit(f"trax_clients_test: {name} over a socket finds other boxes")
         for name, (script, word) in ODD.items():
             file = f"{root}/{name}.sh"
             with open(file, "w", encoding="utf-8") as out:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "trax/region.h"
@@ -37,6 +38,14 @@ std::vector<std::string> list_of(std::string_view text) {
 
 bool holds(const std::vector<std::string>& items, std::string_view item) {
   return std::find(items.begin(), items.end(), item) != items.end();
+}
+
+// Empty for what is not handed over here. The protocol's text says "data", its library "buffer".
+std::optional<ImageKind> image_kind_of(std::string_view name) {
+  if (name == "path") return ImageKind::kPath;
+  if (name == "memory") return ImageKind::kMemory;
+  if (name == "buffer" || name == "data") return ImageKind::kBuffer;
+  return std::nullopt;
 }
 
 // Version 1 had other names for two of them.
@@ -89,13 +98,13 @@ Hello hello_of(const Message& message) {
                         std::string(message.property("trax.version").substr(0, 20)) +
                         "'; expected 1 to 4");
   const auto images = list_of(property(message, "trax.image", "trax.format.image"));
-  if (!images.empty() && !holds(images, "path")) {
-    if (holds(images, "memory"))
-      hello.images = ImageKind::kMemory;
-    else if (holds(images, "buffer") || holds(images, "data"))
-      hello.images = ImageKind::kBuffer;
-    else
+  if (!images.empty()) {
+    const auto first = std::find_if(images.begin(), images.end(), [](const std::string& name) {
+      return image_kind_of(name).has_value();
+    });
+    if (first == images.end())
       throw ProtocolError("it takes no pictures by path, memory or buffer");
+    hello.images = *image_kind_of(*first);
   }
   const auto regions = list_of(property(message, "trax.region", "trax.format.region"));
   hello.takes_rectangles = regions.empty() || holds(regions, "rectangle");

@@ -26,7 +26,7 @@ struct SessionOptions {
 struct Hello {
   std::string name;
   int version = 1;
-  ImageKind images = ImageKind::kPath;  // of what it takes: a path, else memory, else a buffer
+  ImageKind images = ImageKind::kPath;  // the first that it names
   bool takes_rectangles = true;         // else polygons, else masks
   bool takes_polygons = false;
   bool is_for_one_run = false;  // has a "vot" property: cannot be begun twice

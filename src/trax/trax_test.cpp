@@ -143,6 +143,10 @@ TEST(Hello, OfOldTrackersAndOfThoseThatAskTooMuch) {
   EXPECT_EQ(hello_of({Type::kHello, {}, {}}).version, 1);
   EXPECT_EQ(hello_of({Type::kHello, {}, {{"trax.image", "memory,url"}}}).images,
             ImageKind::kMemory);
+  EXPECT_EQ(hello_of({Type::kHello, {}, {{"trax.image", "url;memory;path;"}}}).images,
+            ImageKind::kMemory);
+  EXPECT_EQ(hello_of({Type::kHello, {}, {{"trax.image", "path;url;memory;buffer;"}}}).images,
+            ImageKind::kPath);
   EXPECT_EQ(hello_of({Type::kHello, {}, {{"trax.image", "url;data;"}}}).images, ImageKind::kBuffer);
   EXPECT_FALSE(hello_of({Type::kHello, {}, {{"trax.region", "mask;"}}}).takes_rectangles);
   EXPECT_TRUE(hello_of({Type::kHello, {}, {{"vot", "wrapper"}}}).is_for_one_run);
