@@ -253,6 +253,42 @@ def write(folder, name, text):
         file.write(text)
 
 
+def check_ranges_and_speed(run_airtruth, place):
+    """By hand: 60 frames whose curves end at 59, and a tracker of 1 us that is lost from frame 30 on and then answers in 4 ns."""
+    length, lost = 60, 30
+    truth = [(100.0 + i, 80.0, 20.0, 10.0) for i in range(length)]
+    answers = truth[:lost] + [(500.0, 400.0, 20.0, 10.0)] * (length - lost)
+    write(place + "/csv", "a.csv", "frame,x,y,w,h\n" + "".join(f"{i},{','.join(map(repr, b))}\n" for i, b in enumerate(truth)))
+    write(place + "/mine", "a.txt", lines(answers, ""))
+    write(place + "/mine", "a_time.txt", "0.5\n" + "0.000001000\n" * (lost - 1) + "0.000000004\n" * (length - lost))
+    write(place + "/mine/baseline/a", "a_001.txt", lines([1] + truth[1:], ""))
+    write(place + "/mine/multistart/a", "a_00000000.txt", lines([1] + truth[1:], ""))
+    run_airtruth("dataset", "import", place + "/csv", "-f", "csv", "--size", f"{WIDTH}x{HEIGHT}", "-o", place + "/set")
+
+    def evaluated(*options):
+        done = run_airtruth("evaluate", place + "/set", place + "/mine", "--no-page", "-o", place + "/evaluation", *options)
+        if done.returncode != 0:
+            sys.exit(f"evaluate_test: {options}: {done.stderr}")
+        with open(place + "/evaluation/evaluation.json", encoding="utf-8") as file:
+            evaluation = json.load(file)
+        return evaluation, evaluation["trackers"][0], done.stderr
+
+    evaluation, tracker, warnings = evaluated()
+    speed = tracker["overall"]
+    wanted = {"frames_per_second": (29 * 1e6 + 30 * 2.5e8) / 59, "frames_per_second_median": 2.5e8}
+    off = list(differences(speed, wanted, "all frames"))
+    if evaluation["eao_range"] != [58, 59] or tracker["restart"]["eao"] != 1 or tracker["multistart"]["eao"] != 1 or warnings or off:
+        sys.exit(f"evaluate_test: the default range {evaluation['eao_range']}, {off}: {warnings}")
+    _, tracker, _ = evaluated("--speed-until-loss")
+    off = list(differences(tracker["overall"], {"frames_per_second": 1e6, "frames_per_second_median": 1e6}, "until the loss"))
+    if off or tracker["sequences"][0]["first_loss"]["frame"] != lost:
+        sys.exit(f"evaluate_test: {off}")
+    for low, high, restart, multistart in ((60, 70, None, None), (50, 70, 1, 1)):
+        _, tracker, warnings = evaluated("--eao-range", str(low), str(high))
+        if warnings.count("runs ends at 59") != 2 or (tracker["restart"]["eao"], tracker["multistart"]["eao"]) != (restart, multistart):
+            sys.exit(f"evaluate_test: --eao-range {low} {high}: {tracker['restart']['eao']} {tracker['multistart']['eao']} {warnings}")
+
+
 def main():
     airtruth = os.path.abspath(sys.argv[1])
     run_airtruth = lambda *command: subprocess.run([airtruth, *command], capture_output=True, text=True)
@@ -312,6 +348,7 @@ def main():
             if len(found["sequences"]) != 4 or off:
                 sys.exit("evaluate_test: seed %d\n  %s" % (seed, "\n  ".join(off[:10])))
             checked += 9
+        check_ranges_and_speed(run_airtruth, root + "/ranges")
         place = os.path.join(root, "0")
         truth = drawn(random.Random(0))[0]
         for name, text, expected in (
