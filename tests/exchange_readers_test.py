@@ -6,7 +6,8 @@ exchange_readers_test.py AIRTRUTH
 
 Two sets are exported: one that `dataset build` makes, of which all is known, and one that `dataset import` makes of boxes
 in CSV, of which nothing else is. Each reader below follows the code or the rules that its docstring names, with the types
-that these demand, and hands back the boxes in pixels from 0; they must be those of truth.jsonl and of the CSV.
+that these demand, and hands back the boxes in pixels from 0; they must be those of truth.jsonl and of the CSV. Two sets named and written as
+their publishers do are imported with their pictures.
 """
 import configparser
 import csv
@@ -62,7 +63,8 @@ name = "{background}-{trajectory}-{aircraft}"
 video = "mkv"
 """
 
-# Frame, x, y, width, height: whole and broken pixels, two objects in one frame, one over the picture's edge.
+# Frame, x, y, width, height: whole and broken pixels, two objects in one frame, one over the picture's edge. The second
+# object is there in one frame alone, of which the toolkits of single objects want no sequence.
 IMPORTED = [(0, 10, 20, 30, 40), (0, 100.5, 7.25, 12.5, 9), (2, 11.5, 20, 30.25, 40), (5, 150, 100, 14, 30)]
 
 
@@ -95,7 +97,8 @@ class Clip:
             whole_ones = [i for i in shown if (i, track) not in self.cut]
             first = whole_ones[0] if whole_ones else shown[0]
             name = self.name if len(self.tracks()) == 1 else f"{self.name}-{track}"
-            clips[name] = [frame.get(track) for frame in self.frames[first:shown[-1] + 1]]
+            if shown[-1] > first:
+                clips[name] = [frame.get(track) for frame in self.frames[first:shown[-1] + 1]]
         return clips
 
 
@@ -499,7 +502,7 @@ class Readers(unittest.TestCase):
             got = {}
             for name, folder in self.sequences(out):
                 (file,) = glob.glob(glob.escape(str(folder)) + "/groundtruth*.txt")
-                boxes = numpy.loadtxt(io.StringIO(pathlib.Path(file).read_text().replace(",", " ")), ndmin=2)
+                boxes = numpy.loadtxt(io.StringIO(pathlib.Path(file).read_text().replace(",", " ")))
                 self.assertEqual(boxes.shape[1], 4)
                 if has_pictures:
                     pictures = sorted(glob.glob(glob.escape(str(folder)) + "/img/*.jpg"))
@@ -516,7 +519,7 @@ class Readers(unittest.TestCase):
                 self.assertTrue(set(self.parts(out)) <= {"train", "val", "test"})
                 got = {}
                 for name, folder in self.sequences(out):
-                    boxes = numpy.loadtxt(folder / "groundtruth.txt", delimiter=",", ndmin=2)
+                    boxes = numpy.loadtxt(folder / "groundtruth.txt", delimiter=",")
                     if has_pictures:
                         pictures = sorted(glob.glob(glob.escape(str(folder)) + "/*.jpg"))
                         self.assertEqual(len(pictures), len(boxes))
@@ -571,6 +574,60 @@ class Readers(unittest.TestCase):
                 self.assertTrue(all(got[name][i] is not None for i in starts))
                 self.assertEqual(values["anchor"][0], 1)
             self.check_single(got, clips)
+
+    def import_again(self, form, source, pictures):
+        """Imports a set of others, and exports it with its pictures, which are then all read: the boxes by frame."""
+        out = self.root / f"again-{form}"
+        airtruth("dataset", "import", source, "--format", form, "--out", out)
+        airtruth("dataset", "export", out, "--format", "coco", "--images", "png", "--out", out / "coco")
+        data = json.loads((out / "coco/annotations/instances_train.json").read_text())
+        got = {image["id"]: [] for image in data["images"]}
+        for image, original in zip(data["images"], pictures, strict=True):
+            copy = cv2.imread(str(out / "coco/images/train" / image["file_name"]))
+            self.assertTrue((copy == cv2.imread(str(original))).all(), original)
+        for annotation in data["annotations"]:
+            got[annotation["image_id"]].append(tuple(annotation["bbox"]))
+        return list(got.values())
+
+    def flat_pictures(self, folder, names):
+        """Pictures that tell their place by their grey, written in another order than that of their names."""
+        folder.mkdir(parents=True)
+        for i in reversed(range(len(names))):
+            cv2.imwrite(str(folder / names[i]), numpy.full((48, 64, 3), 40 * i + 20, numpy.uint8))
+        return [folder / name for name in names]
+
+    def test_import_of_coco_by_its_own_names(self):
+        """cocodataset.org: instances_val2017.json, val2017/000000000139.jpg: 12 digits, with gaps; iscrowd = 1."""
+        self.where = "import of COCO"
+        source = self.root / "coco2017"
+        names = ["000000000139.png", "000000000285.png", "000000581929.png"]
+        pictures = self.flat_pictures(source / "val2017", names)
+        images = [{"id": int(name[:12]), "file_name": name, "width": 64, "height": 48} for name in names]
+        boxes = [{"id": 1, "image_id": 139, "category_id": 5, "bbox": [1, 2, 3, 4], "area": 12, "iscrowd": 0},
+                 {"id": 2, "image_id": 285, "category_id": 5, "bbox": [9, 9, 9, 9], "area": 81, "iscrowd": 1},
+                 {"id": 3, "image_id": 581929, "category_id": 5, "bbox": [5.5, 6, 7, 8], "area": 56, "iscrowd": 0}]
+        (source / "annotations").mkdir()
+        (source / "annotations/instances_val2017.json").write_text(json.dumps(
+            {"images": list(reversed(images)), "annotations": boxes, "categories": [{"id": 5, "name": "airplane"}]}))
+        self.assertEqual(self.import_again("coco", source, pictures), [[(1, 2, 3, 4)], [], [(5.5, 6, 7, 8)]])
+
+    def test_import_of_aot_by_its_own_names(self):
+        """airborne-detection-starter-kit, docs/DATASET.md: times since 1970, flights in hexadecimal, NaN."""
+        self.where = "import of AOT"
+        source = self.root / "aot2021/part1"
+        flight = "1f9a42f2d2194622b845bf5ad9ba1f17"
+        times = [1544528583848547865, 1544528583922625208, 1544528584035335403]
+        names = [f"{time}{flight}.png" for time in times]
+        pictures = self.flat_pictures(source / "Images" / flight, names)
+        entities = [{"time": time, "blob": {"frame": i, "range_distance_m": math.nan}, "labels": {"is_above_horizon": 1},
+                     "flight_id": flight, "img_name": names[i]} for i, time in enumerate(times)]
+        entities[1].update(id="Airplane1", bb=[1.5, 2, 3, 4])
+        (source / "ImageSets").mkdir()
+        (source / "ImageSets/groundtruth.json").write_text(json.dumps({"metadata": {}, "samples": {flight: {
+            "metadata": {"data_path": f"train3/{flight}/", "fps": 10.0, "number_of_frames": 3, "duration": 300.0,
+                         "resolution": {"height": 48, "width": 64}}, "entities": entities}}}))
+        self.assertIn("NaN", (source / "ImageSets/groundtruth.json").read_text())
+        self.assertEqual(self.import_again("aot", source, pictures), [[], [(1.5, 2, 3, 4)], []])
 
 
 if __name__ == "__main__":

@@ -196,11 +196,20 @@ class Export {
     summary_.images += written;
   }
 
+  // The clips that the format makes of one. The toolkits of single objects refuse sequences of one
+  // frame, whose truth they read as four numbers and no table.
+  std::vector<exchange::Clip> arranged(const exchange::Clip& clip) const {
+    std::vector<exchange::Clip> clips = exchange::arranged(options_.format, clip);
+    if (exchange::is_single_object(options_.format))
+      std::erase_if(clips, [](const exchange::Clip& one) { return one.frames.size() < 2; });
+    return clips;
+  }
+
   // Which pictures are made of which frame.
   std::map<std::int64_t, std::vector<fs::path>> places_of(const exchange::Clip& clip,
                                                           const std::string& part) const {
     std::map<std::int64_t, std::vector<fs::path>> places;
-    for (const exchange::Clip& one : exchange::arranged(options_.format, clip)) {
+    for (const exchange::Clip& one : arranged(clip)) {
       const std::vector<fs::path> files = writer_->images(one, part);
       for (std::size_t i = 0; i < one.frames.size(); ++i)
         places[one.frames[i].frame].push_back(place_.root() / files[i]);
@@ -216,10 +225,13 @@ class Export {
       ++summary_.sequences;
       summary_.frames += std::ssize(clip.frames);
       summary_.frames_of_part[part] += std::ssize(clip.frames);
-      const auto clips = exchange::arranged(options_.format, clip);
-      if (clips.empty())
+      const auto clips = arranged(clip);
+      if (const std::size_t tracks = exchange::tracks_of(clip).size();
+          exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
         warn(options_.warn,
-             name + " never shows an object, and " + exchange::name(options_.format) +
+             name +
+                 (tracks == 0 ? " never shows an object" : " shows an object in one frame alone") +
+                 ", and " + exchange::name(options_.format) +
                  " has no place for such a sequence: it is left out");
       for (const exchange::Clip& one : clips) writer_->add(one, part);
     }

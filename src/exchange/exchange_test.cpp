@@ -484,6 +484,20 @@ TEST(Vot, MasksPolygonsAndSpecialRegions) {
   EXPECT_EQ(frames[6].labels.at(0).box_px, (Box{1.5, 2, 3, 4}));
 }
 
+TEST(Yolo, PolygonsCountByTheirBounds) {
+  const Folder folder;
+  folder.file("labels/train/s_000000.txt", "0 0.1 0.2 0.3 0.2 0.3 0.6\n1 0.5 0.5 0.2 0.4 0.9\n");
+  const auto clips = read_clips(Format::kYolo, folder.path(), {{{100, 50}}, "aircraft"}, {});
+  ASSERT_EQ(clips.at(0).frames.at(0).labels.size(), 2u);
+  const Box polygon = clips[0].frames[0].labels[0].box_px;
+  EXPECT_NEAR(polygon.x, 10, 1e-9);
+  EXPECT_NEAR(polygon.y, 10, 1e-9);
+  EXPECT_NEAR(polygon.width, 20, 1e-9);
+  EXPECT_NEAR(polygon.height, 20, 1e-9);
+  // A sixth number is a detector's confidence.
+  EXPECT_NEAR(clips[0].frames[0].labels[1].box_px.width, 20, 1e-9);
+}
+
 TEST(Cvat, ForImagesHasItsBoxesInThePictures) {
   const Folder folder;
   const fs::path file =

@@ -19,36 +19,36 @@ using Json = nlohmann::ordered_json;
 constexpr auto kLargestInteger =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+// The letters from `at` on, in lower case; none of JSON's words is longer than Infinity.
+std::string word_at(const std::string& text, std::size_t at) {
+  std::string word;
+  while (at < text.size() && word.size() < 9 &&
+         std::isalpha(static_cast<unsigned char>(text[at])) != 0)
+    word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[at++])));
+  return word;
+}
 
 // Outside of strings NaN, Infinity and -Infinity become null.
-std::string without_python_words(const std::string& text) {
+std::string without_python_words(std::string text) {
   std::string result;
-  result.reserve(text.size());
-  for (std::size_t i = 0; i < text.size();) {
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '"') {
-      std::size_t end = i + 1;
-      while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
-      end = std::min(end + 1, text.size());
-      result.append(text, i, end - i);
-      i = end;
+      ++i;
+      while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
       continue;
     }
-    const std::size_t word = i + (text[i] == '-' || text[i] == '+' ? 1 : 0);
-    std::size_t end = word;
-    std::string lower;
-    while (end < text.size() && is_letter(text[end]) && lower.size() < 9)
-      lower += static_cast<char>(std::tolower(static_cast<unsigned char>(text[end++])));
-    if (lower == "nan" || lower == "inf" || lower == "infinity") {
-      result += "null";
-      i = end;
-    } else {
-      end = std::max(end, i + 1);
-      result.append(text, i, end - i);
-      i = end;
+    if (text[i] != 'n' && text[i] != 'N' && text[i] != 'i' && text[i] != 'I') continue;
+    const std::string word = word_at(text, i);
+    if (word == "nan" || word == "inf" || word == "infinity") {
+      const bool has_sign = i > copied && (text[i - 1] == '-' || text[i - 1] == '+');
+      result.append(text, copied, i - copied - (has_sign ? 1 : 0)).append("null");
+      copied = i + word.size();
     }
+    i += word.size() - 1;
   }
-  return result;
+  if (copied == 0) return text;
+  return result.append(text, copied);
 }
 
 std::shared_ptr<const Json> parsed(const std::filesystem::path& file) {

@@ -58,10 +58,7 @@ class SingleObjectWriter : public IndexedWriter {
   }
 
   void finish() override {
-    for (const std::string& part : options_.parts) {
-      fs::create_directories(root_ / part);
-      write_file(root_ / part / "list.txt", lists_[part]);
-    }
+    for (const auto& [part, list] : lists_) write_file(root_ / part / "list.txt", list);
   }
 
  private:

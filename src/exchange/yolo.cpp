@@ -187,15 +187,26 @@ class YoloReader {
            LabelledFrame& frame) {
     const std::vector<double> n = numbers_of(line, file);
     const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
-    if (!whole) throw Error("is no 'class x y width height'", {file.string(), line.number});
+    // More than one number after the box makes a polygon, as of segmentation: "class x y x y x y".
+    const bool is_polygon = n.size() > 6;
+    if (!whole || (is_polygon && n.size() % 2 == 0))
+      throw Error("is no 'class x y width height' and no 'class' with a polygon",
+                  {file.string(), line.number});
     const auto category = static_cast<std::size_t>(*whole);
     Label label;
     label.track = static_cast<std::int64_t>(frame.labels.size()) + 1;
     label.category = category < names_.size() ? names_[category] : std::to_string(category);
-    label.box_px = {(n[1] - n[3] / 2) * size.first,
-                    (n[2] - n[4] / 2) * size.second,
-                    n[3] * size.first,
-                    n[4] * size.second};
+    if (is_polygon) {
+      BoxBounds bounds;
+      for (std::size_t i = 1; i < n.size(); i += 2)
+        bounds.add({n[i] * size.first, n[i + 1] * size.second});
+      label.box_px = *bounds.box();
+    } else {
+      label.box_px = {(n[1] - n[3] / 2) * size.first,
+                      (n[2] - n[4] / 2) * size.second,
+                      n[3] * size.first,
+                      n[4] * size.second};
+    }
     if (!is_in_picture(label.box_px, size.first, size.second))
       return left_out_.add("boxes that are empty or outside their image",
                            file.string() + ":" + std::to_string(line.number));
