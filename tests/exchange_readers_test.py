@@ -4,10 +4,10 @@
 
 exchange_readers_test.py AIRTRUTH
 
-Two sets are exported: one that `dataset build` makes, of which all is known, and one that `dataset import` makes of boxes
-in CSV, of which nothing else is. Each reader below follows the code or the rules that its docstring names, with the types
-that these demand, and hands back the boxes in pixels from 0; they must be those of truth.jsonl and of the CSV. Two sets named and written as
-their publishers do are imported with their pictures.
+Two sets are exported: one that `dataset build` makes, of which all is known, and one that `dataset import` makes of
+boxes in CSV, of which nothing else is. Each reader below follows the code or the rules that its docstring names, with
+the types that these demand, and hands back the boxes in pixels from 0; they must be those of truth.jsonl and of the
+CSV. Two sets named and written as their publishers do are imported with their pictures.
 """
 import configparser
 import csv
