@@ -91,7 +91,10 @@ class Session {
       blur_.add(frame->picture,
                 step ? std::optional<Pixel>(apply(*step, centre) - centre) : std::nullopt);
       std::optional<motion::FrameMotion> turned;
-      if (turning_) turned = turning_->next(frame->picture, frame->time_s, frame->damaged);
+      if (turning_) {
+        turned = turning_->next(frame->picture, frame->time_s, frame->damaged);
+        cam_from_first_.push_back(*turned->rotation);
+      }
       if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
       if (frame->index % every_ == 1 && before) {
         noise_.add(*before, frame->picture);
@@ -217,6 +220,17 @@ class Session {
       lack("air.airlight", measured.why);
     take_extinction(measured);
     take_sun(air, first_from_level.has_value());
+    if (first_from_level) take_yaw(*first_from_level);
+  }
+
+  void take_yaw(const Quaternion& first_from_world) {
+    const auto heading_deg = [&](const Quaternion& cam_from_first) {
+      const Quaternion world_from_cam = (cam_from_first * first_from_world).conjugate();
+      return yaw_pitch_roll(world_from_cam * cam_from_body()).yaw_deg;
+    };
+    for (const Quaternion& cam_from_first : cam_from_first_)
+      result_.yaw_from_first_deg.push_back(
+          std::remainder(heading_deg(cam_from_first) - heading_deg(cam_from_first_.front()), 360));
   }
 
   // cam_from_world of the first frame, by the median of what its horizons say.
@@ -293,6 +307,7 @@ class Session {
   std::optional<motion::Estimator> turning_;
   std::vector<std::optional<Homography>> steps_;
   std::vector<double> quantisers_;
+  std::vector<Quaternion> cam_from_first_;  // of every frame; empty without a lens
   std::vector<Sampled> sampled_;
   std::int64_t total_ = 0;
   std::int64_t every_ = 2;

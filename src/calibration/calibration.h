@@ -78,6 +78,10 @@ struct Calibration {
   std::map<std::string, std::vector<Estimate>> values;
   std::map<std::string, std::string> missing;  // key: why not
   std::map<std::string, std::string> notes;    // key: what to know about the value
+  // Of each frame: the heading of the camera, in degrees from that of the first frame, which turns
+  // the sun's azimuth for a sequence that begins at a later frame. Empty without a lens or a
+  // horizon.
+  std::vector<double> yaw_from_first_deg;
   std::vector<NoisePoint> noise;
   EdgeProfile edge;
   std::vector<Horizon> horizons;

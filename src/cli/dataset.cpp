@@ -7,9 +7,9 @@
 #include "cli/commands.h"
 #include "dataset/build.h"
 #include "dataset/check.h"
+#include "dataset/plan.h"
 #include "dataset/slurm.h"
 #include "dataset/verify.h"
-#include "synthetic/flight.h"
 
 namespace airtruth::cli {
 namespace {
@@ -69,56 +69,85 @@ void build(DatasetArguments arguments, Context& context) {
   if (!summary.failures.empty()) context.exit_code = 1;
 }
 
-// What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
-constexpr double kCoreSecondsPerFrame = 0.034;
-constexpr double kCoreSecondsPerFlownFrame = 0.16;
-constexpr double kBytesPerFrame = 15'000;
-constexpr double kBytesPerSequence = 580'000;  // preview.jpg
+// "r000012   90  day   c172/news at 31 px"
+std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& item) {
+  std::string aircraft;
+  for (std::size_t k = 0; k < item.scene.intruders.size(); ++k) {
+    aircraft += (k > 0 ? ", " : "") + item.scene.intruders[k].aircraft;
+    if (k >= item.drawn.encounters.size()) continue;
+    const dataset::Encounter& encounter = item.drawn.encounters[k];
+    aircraft += encounter.size_px ? fmt::format(" at {:.0f} px", *encounter.size_px)
+                                  : fmt::format(" at {:.0f} m", *encounter.range_m);
+  }
+  return fmt::format("{:<28} {:>6}  {:<12} {}",
+                     item.name,
+                     item.frame_count > 0 ? std::to_string(item.frame_count) : "all",
+                     catalogue.backgrounds[item.background].name,
+                     aircraft.empty() ? "no intruder" : aircraft);
+}
+
+// "8 to 120 px, half of them below 31 px", of numbers in rising order.
+std::string spread_of(const std::vector<double>& values, const char* unit) {
+  return fmt::format("{:.0f} to {:.0f} {}, half of them below {:.0f} {}",
+                     values.front(),
+                     values.back(),
+                     unit,
+                     values[values.size() / 2],
+                     unit);
+}
+
+void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
+  std::string types;
+  std::size_t liveries = 0;
+  for (const auto& [type, by_livery] : plan.aircraft) {
+    std::int64_t count = 0;
+    for (const auto& [livery, of_livery] : by_livery) count += of_livery;
+    liveries += by_livery.size();
+    types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, count);
+  }
+  console.result(fmt::format("intruders: {} in {} sequences; {} sequences without one",
+                             plan.intruders,
+                             plan.sequences - plan.negatives,
+                             plan.negatives));
+  if (!types.empty())
+    console.result(
+        fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));
+  if (!plan.sizes_px.empty()) console.result("sizes: " + spread_of(plan.sizes_px, "px"));
+  if (!plan.ranges_m.empty()) console.result("ranges: " + spread_of(plan.ranges_m, "m"));
+  if (plan.not_flyable == 0) return;
+  for (const std::string& words : plan.not_flyable_words) console.warning(words);
+  console.warning(fmt::format("{} of {} intruders have a path that their type cannot fly",
+                              plan.not_flyable,
+                              plan.intruders));
+}
 
 // Frames and bytes in round numbers: what a sequence costs is known only once it is made.
 void plan(const DatasetArguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   dataset::check_sources(catalogue, {});
-  const dataset::Expansion expansion(catalogue);
   constexpr std::int64_t kMostListed = 50;
-  std::vector<double> size_of;  // of each background's frame, in frames of 1280x960
-  double core_s = 0;
-  for (const dataset::Background& background : catalogue.backgrounds) {
-    const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
-    size_of.push_back(flight != nullptr ? flight->width * flight->height / (1280.0 * 960.0) : 1);
-    if (flight != nullptr)
-      core_s += flight->frame_count * size_of.back() * kCoreSecondsPerFlownFrame;
-  }
-  std::int64_t frames = 0;
-  std::int64_t open_ended = 0;
-  double bytes = 0;
   Console& console = context.console();
-  for (std::int64_t i = 0; i < expansion.size(); ++i) {
-    if (context.stop.stop_requested()) throw Interrupted();
-    const dataset::Item item = expansion.at(i);
-    const double size = static_cast<double>(item.frame_count) * size_of[item.background];
-    frames += item.frame_count;
-    core_s += size * kCoreSecondsPerFrame;
-    bytes += size * kBytesPerFrame + kBytesPerSequence * size_of[item.background];
-    open_ended += item.frame_count == 0 ? 1 : 0;
-    if (i >= kMostListed) continue;
-    console.result(fmt::format("{:<28} {:>6}  {:<12} {}",
-                               item.name,
-                               item.frame_count > 0 ? std::to_string(item.frame_count) : "all",
-                               catalogue.backgrounds[item.background].name,
-                               item.scene.intruders[0].aircraft));
-  }
-  if (expansion.size() > kMostListed)
-    console.result(fmt::format("... and {} more", expansion.size() - kMostListed));
-  console.result(
-      fmt::format("{} sequences, {} frames{}: about {} of one core, {}",
-                  expansion.size(),
-                  frames,
-                  open_ended > 0 ? fmt::format(" and {} videos to their end", open_ended) : "",
-                  time_of(core_s),
-                  bytes < 1e9    ? fmt::format("{:.0f} MB", bytes / 1e6)
-                  : bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9)
-                                 : fmt::format("{:.1f} TB", bytes / 1e12)));
+  const auto list = [&](const dataset::Item& item) {
+    if (item.index < kMostListed) console.result(plan_line(catalogue, item));
+  };
+  const dataset::Plan plan = dataset::plan_of(catalogue, list, context.stop);
+  if (plan.sequences > kMostListed)
+    console.result(fmt::format("... and {} more", plan.sequences - kMostListed));
+  say_what_is_drawn(plan, console);
+  const std::string measuring =
+      plan.calibration_s > 0
+          ? fmt::format(", {} of them to measure cameras", time_of(plan.calibration_s))
+          : "";
+  console.result(fmt::format(
+      "{} sequences, {} frames{}: about {} of one core{}, {}",
+      plan.sequences,
+      plan.frames,
+      plan.open_ended > 0 ? fmt::format(" and {} videos to their end", plan.open_ended) : "",
+      time_of(plan.core_s),
+      measuring,
+      plan.bytes < 1e9    ? fmt::format("{:.0f} MB", plan.bytes / 1e6)
+      : plan.bytes < 1e12 ? fmt::format("{:.1f} GB", plan.bytes / 1e9)
+                          : fmt::format("{:.1f} TB", plan.bytes / 1e12)));
 }
 
 void status(const DatasetArguments& arguments, Context& context) {

@@ -39,7 +39,7 @@ sequence::Options options_from(const RenderArguments& arguments, Context& contex
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&console](const sequence::Progress& progress) {
-    console.progress("rendering", progress.frames_done, progress.frames_total);
+    console.progress(progress.stage, progress.frames_done, progress.frames_total);
   };
   return options;
 }

@@ -6,6 +6,7 @@
 #include "sequence/mask_picture.h"
 #include "sequence/virtual_flight.h"
 #include "sequence/world.h"
+#include "video/reader.h"
 #include "video/still.h"
 
 namespace airtruth::dataset {
@@ -25,7 +26,9 @@ BackgroundFiles fly(const Background& background,
                     const Folder& folder,
                     const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
-  const BackgroundFiles files{stem.string() + ".mp4", stem.string() + ".mask.png"};
+  BackgroundFiles files;
+  files.video = stem.string() + ".mp4";
+  files.mask = stem.string() + ".mask.png";
   // The video is the last to appear.
   if (fs::exists(files.video)) return files;
   fs::create_directories(folder.backgrounds());
@@ -41,16 +44,37 @@ BackgroundFiles fly(const Background& background,
   return files;
 }
 
+BackgroundFiles files_of(const Background& background,
+                         const Folder& folder,
+                         const BuildOptions& options) {
+  BackgroundFiles files;
+  if (const auto given = options.videos.find(background.name); given != options.videos.end()) {
+    files.video = given->second;
+    return files;
+  }
+  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
+    return fly(background, *flight, folder, options);
+  files.video = std::get<fs::path>(background.source);
+  files.mask = background.mask;
+  return files;
+}
+
 }  // namespace
 
 BackgroundFiles prepare(const Background& background,
                         const Folder& folder,
                         const BuildOptions& options) {
-  if (const auto given = options.videos.find(background.name); given != options.videos.end())
-    return {given->second, std::nullopt};
-  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
-    return fly(background, *flight, folder, options);
-  return {std::get<fs::path>(background.source), background.mask};
+  BackgroundFiles files = files_of(background, folder, options);
+  add_facts(files);
+  return files;
+}
+
+void add_facts(BackgroundFiles& files) {
+  const video::StreamInfo info = video::Reader(files.video, {.threads = 1}).info();
+  files.width = info.width;
+  files.height = info.height;
+  files.frame_rate_hz = info.frame_rate.value();
+  files.frames = info.frame_count_estimate;
 }
 
 }  // namespace airtruth::dataset

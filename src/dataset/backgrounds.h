@@ -13,4 +13,7 @@ BackgroundFiles prepare(const Background& background,
                         const Folder& folder,
                         const BuildOptions& options);
 
+// Fills size, rate and number of frames from the video. Error where it cannot be read.
+void add_facts(BackgroundFiles& files);
+
 }  // namespace airtruth::dataset

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/file_lock.h"
 #include "dataset/backgrounds.h"
 #include "dataset/check.h"
 #include "dataset/folder.h"
@@ -48,6 +49,7 @@ class Work {
   // What there is to do, and which backgrounds and how much of them it takes.
   void count() {
     needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
+    is_used_.assign(catalogue_.backgrounds.size(), false);
     bool any = false;
     for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
       const Item item = expansion_.at(i);
@@ -59,6 +61,9 @@ class Work {
         continue;
       }
       ++missing_;
+      is_used_[item.background] = true;
+      // A clip that begins anywhere is measured from its own first frame, as it is made.
+      if (item.rule != nullptr && item.rule->starts_at_random) continue;
       auto& needed = needed_[item.background];
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
@@ -70,7 +75,7 @@ class Work {
   void prepare_backgrounds() {
     files_.resize(catalogue_.backgrounds.size());
     for (std::size_t i = 0; i < files_.size(); ++i) {
-      if (!needed_[i]) continue;
+      if (!is_used_[i]) continue;
       if (options_.stop.stop_requested()) throw Interrupted();
       const WaitingLock lock(
           folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
@@ -79,27 +84,28 @@ class Work {
     }
   }
 
-  // The motion of a background, once for all the sequences over it.
+  // The motion and the camera of a background, once for all the sequences over it.
   void measure(std::size_t i) {
-    scene::Scene scene;
+    scene::Scene scene = scene_over(catalogue_, i);
     scene.background.video = files_[i].video;
     scene.background.mask = files_[i].mask;
     scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
-    if (*needed_[i] > 0) scene.background.frame_count = *needed_[i];
-    scene.motion = catalogue_.backgrounds[i].motion;
-    scene.lens = catalogue_.backgrounds[i].lens;
-    scene.composite = catalogue_.composite;
-    scene.seed = catalogue_.seed;
+    if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
     sequence::Options how;
     how.cache = folder_.cache();
     how.stop = options_.stop;
     how.warn = options_.warn;
+    const std::string& name = catalogue_.backgrounds[i].name;
+    std::string stage = "measuring the motion of " + name;
     how.progress = [&](const sequence::Progress& p) {
-      report({p.frames_done,
-              p.frames_total,
-              "measuring the motion of " + catalogue_.backgrounds[i].name});
+      report({p.frames_done, p.frames_total, stage});
     };
-    sequence::measure_ahead(scene, how);
+    if (needed_[i]) sequence::measure_ahead(scene, how);
+    stage = "measuring the camera of " + name;
+    try {
+      sequence::calibrate_ahead(scene, how);
+    } catch (const Error&) {  // each sequence over this background says so; the others are made
+    }
   }
 
   void make_sequences() {
@@ -113,7 +119,6 @@ class Work {
   }
 
   void make(Item& item) {
-    place(item, catalogue_, files_[item.background]);
     sequence::Options how;
     how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
     how.cache = folder_.cache();
@@ -123,6 +128,7 @@ class Work {
       warn(options_.warn, item.name + ": " + message);
     };
     try {
+      place(item, catalogue_, files_[item.background]);
       const sequence::Summary done = sequence::render(item.scene, folder_.sequences(), how);
       const std::lock_guard lock(mutex_);
       ++summary_.made;
@@ -151,8 +157,9 @@ class Work {
   int jobs_ = 1;
   std::int64_t total_ = 0;
   std::int64_t missing_ = 0;
-  std::vector<std::optional<std::int64_t>>
-      needed_;  // of each background: frames, 0 to its end; empty: none
+  std::vector<bool> is_used_;  // each background
+  // Of each background: frames whose motion is measured ahead, 0 to its end; empty: none.
+  std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
   std::atomic<std::int64_t> next_ = 0;
   std::mutex mutex_;

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <set>
 
-#include "aircraft/catalogue.h"
 #include "base/files.h"
-#include "base/suggest.h"
-#include "dataset/expand.h"
+#include "dataset/drawn_rule.h"
+#include "dataset/names.h"
 #include "dataset/slurm_options.h"
 #include "scene/tables.h"
 
@@ -15,8 +14,6 @@ namespace airtruth::dataset {
 namespace {
 
 using scene::TableReader;
-
-constexpr std::int64_t kMost = 1'000'000'000;
 
 std::string required(const TableReader& table, std::string_view key) {
   if (auto text = table.text(key)) return *text;
@@ -93,105 +90,12 @@ Trajectory trajectory_from(const TableReader& table) {
 }
 
 template <typename Things>
-std::size_t place_of(const Things& things,
-                     const std::string& name,
-                     const char* what,
-                     const Where& where) {
-  std::vector<std::string> names;
-  for (const auto& thing : things) names.push_back(thing.name);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  const auto nearest = nearest_spelling(name, names);
-  throw Error("there is no " + std::string(what) + " '" + name + "'" +
-                  (nearest ? "; did you mean '" + *nearest + "'?" : ""),
-              where);
-}
-
-template <typename Things>
 void refuse_twice(const Things& things, const char* what, const std::string& file) {
   std::set<std::string> seen;
   for (const auto& thing : things)
     if (!seen.insert(thing.name).second)
       throw Error("two tables [[" + std::string(what) + "]] are named '" + thing.name + "'",
                   {file});
-}
-
-// Names in the array at `key`, each a pattern over the things' names; all of them where the key is
-// absent.
-template <typename Things>
-std::vector<std::size_t> places_of(const TableReader& table,
-                                   std::string_view key,
-                                   const Things& things,
-                                   const char* what) {
-  std::vector<std::size_t> result;
-  const auto patterns = table.texts(key);
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    const bool wanted =
-        !patterns ||
-        std::any_of(patterns->begin(), patterns->end(), [&](const std::string& pattern) {
-          return matches(pattern, things[i].name);
-        });
-    if (wanted) result.push_back(i);
-  }
-  for (const std::string& pattern : patterns.value_or(std::vector<std::string>{})) {
-    const bool used = std::any_of(things.begin(), things.end(), [&](const auto& thing) {
-      return matches(pattern, thing.name);
-    });
-    if (!used) place_of(things, pattern, what, table.where(key));
-  }
-  if (result.empty()) throw Error("there is no [[" + std::string(what) + "]]", table.where());
-  return result;
-}
-
-Range range_from(const TableReader& table, std::string_view key, const Range& otherwise) {
-  const auto values = table.tuple(key, {scene::kFinite, scene::kFinite});
-  if (!values) return otherwise;
-  if ((*values)[0] > (*values)[1])
-    table.fail(key, std::string(key) + " falls; expected [low, high]");
-  return {(*values)[0], (*values)[1]};
-}
-
-std::vector<std::string> aircraft_from(const TableReader& table) {
-  const auto patterns = table.texts("aircraft");
-  if (!patterns)
-    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
-                table.where());
-  std::vector<std::string> names;
-  const auto entries = aircraft::list_aircraft();
-  for (const std::string& pattern : *patterns) {
-    const std::size_t before = names.size();
-    for (const auto& entry : entries)
-      if (matches(pattern, entry.name)) names.push_back(entry.name);
-    if (names.size() == before)
-      table.fail("aircraft", "no aircraft fits '" + pattern + "'; see `airtruth aircraft list`");
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
-Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
-  Drawn drawn;
-  drawn.name = table.file_name("name").value_or("r{index}");
-  if (drawn.name.find("{index}") == std::string::npos)
-    table.fail("name", "name has no {index}; every sequence needs its own");
-  drawn.count = table.whole("count", 1, kMost).value_or(1);
-  drawn.frame_count = table.whole("frame_count", 1, kMost).value_or(drawn.frame_count);
-  drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
-  drawn.aircraft = aircraft_from(table);
-  drawn.range_m = range_from(table, "range_m", drawn.range_m);
-  if (drawn.range_m.low <= 0) table.fail("range_m", "range_m begins at or below 0");
-  drawn.azimuth_deg = range_from(table, "azimuth_deg", drawn.azimuth_deg);
-  drawn.elevation_deg = range_from(table, "elevation_deg", drawn.elevation_deg);
-  drawn.speed_mps = range_from(table, "speed_mps", drawn.speed_mps);
-  if (drawn.speed_mps.low <= 0) table.fail("speed_mps", "speed_mps begins at or below 0");
-  drawn.heading_deg = range_from(table, "heading_deg", drawn.heading_deg);
-  drawn.climb_deg = range_from(table, "climb_deg", drawn.climb_deg);
-  if (table.has("sun_azimuth_deg"))
-    drawn.sun_azimuth_deg = range_from(table, "sun_azimuth_deg", {});
-  if (table.has("sun_elevation_deg"))
-    drawn.sun_elevation_deg = range_from(table, "sun_elevation_deg", {});
-  return drawn;
 }
 
 Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
@@ -303,21 +207,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   for (const TableReader& table :
        root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
     catalogue.rules.emplace_back(product_from(table, catalogue));
-  for (const TableReader& table : root.tables("random",
-                                              {"name",
-                                               "count",
-                                               "frame_count",
-                                               "backgrounds",
-                                               "aircraft",
-                                               "range_m",
-                                               "azimuth_deg",
-                                               "elevation_deg",
-                                               "speed_mps",
-                                               "heading_deg",
-                                               "climb_deg",
-                                               "sun_azimuth_deg",
-                                               "sun_elevation_deg"}))
-    catalogue.rules.emplace_back(drawn_from(table, catalogue));
+  for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
   if (catalogue.rules.empty())
     throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
                 {file.string()});

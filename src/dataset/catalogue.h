@@ -72,21 +72,44 @@ struct Range {
   double high = 0;
 };
 
-// Intruders that cross the view: at a moment within the clip each is at a range and a direction
-// from the camera, flying straight.
+// An aircraft of the list with its liveries: "738" with "738/738-Ryanair" and others.
+struct AircraftType {
+  std::string name;
+  std::vector<std::string> liveries;  // names of `airtruth aircraft list`
+};
+
+// The sun at a time of day that is drawn, at a place and on a day (sun_position.h).
+struct DaytimeRange {
+  std::optional<Range> hours;  // local solar time; empty: hours that suit the type
+  double latitude_deg = 45;
+  int day_of_year = 172;
+};
+
+// Intruders that cross the view: at a moment within the clip, the meeting moment, each is at a
+// range and a direction from the camera; it flies straight or, with a bank, in a coordinated turn.
 struct Drawn {
   std::string name;  // pattern with {index}
+  Where where;
   std::int64_t count = 0;
   std::int64_t frame_count = 90;
   std::vector<std::size_t> backgrounds;
-  std::vector<std::string> aircraft;  // names of `airtruth aircraft list`
+  std::vector<AircraftType> types;  // drawn first; then a livery of the type
   Range range_m{100, 2000};
-  Range azimuth_deg{-30, 30};   // from the boresight, to the right
-  Range elevation_deg{-5, 20};  // up
-  Range speed_mps{40, 140};
+  std::optional<Range> size_px;  // longest side of the exact box at the meeting moment; in place of
+                                 // range_m
+  Range azimuth_deg{-30, 30};    // from the boresight, to the right
+  Range elevation_deg{-5, 20};   // up
+  std::optional<Range> speed_mps;  // empty: suits the type
   Range heading_deg{0, 360};
-  Range climb_deg{-5, 5};
+  std::optional<Range> climb_deg;  // empty: within 5 degrees, and what suits the type
+  std::optional<Range> bank_deg;   // right wing down; empty: straight, or what suits the type
+  bool bank_suits_type = false;
   std::optional<Range> sun_azimuth_deg, sun_elevation_deg;  // else the background's
+  std::optional<DaytimeRange> daytime;                      // in place of these two
+  double negatives = 0;  // share of sequences without an intruder
+  std::int64_t fewest_intruders = 1, most_intruders = 1;
+  bool numbers_intruders = false;  // ids are intruder-1, intruder-2, ...; else "intruder"
+  bool starts_at_random = false;   // anywhere in the background where the clip fits
 };
 
 using Rule = std::variant<Listed, Product, Drawn>;

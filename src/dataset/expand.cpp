@@ -2,18 +2,17 @@
 #include "dataset/expand.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/seed.h"
+#include "dataset/meeting.h"
 
 namespace airtruth::dataset {
 namespace {
 
-constexpr double kRateHz =
-    30;  // of a background whose own rate is not known yet: only for drawing when they meet
+constexpr double kAssumedRateHz = 30;        // of a background whose own rate is not known
+constexpr double kProvisionalRangeM = 1000;  // where the range follows from a size, until place()
 
 std::int64_t size_of(const Rule& rule) {
   if (const auto* product = std::get_if<Product>(&rule))
@@ -29,22 +28,6 @@ std::string filled(std::string pattern, std::string_view key, const std::string&
        at = pattern.find(key, at + value.size()))
     pattern.replace(at, key.size(), value);
   return pattern;
-}
-
-scene::Scene scene_over(const Catalogue& catalogue, const Background& background) {
-  scene::Scene scene;
-  scene.lens = background.lens;
-  scene.camera = background.camera;
-  scene.motion = background.motion;
-  scene.camera_model = background.camera_model;
-  scene.realism = background.realism;
-  scene.light = background.light;
-  scene.render = catalogue.render;
-  scene.composite = catalogue.composite;
-  scene.output = catalogue.output;
-  scene.file = catalogue.file;
-  scene.background.where = background.where;
-  return scene;
 }
 
 std::int64_t frames_of(const Catalogue& catalogue,
@@ -69,7 +52,7 @@ Item item_of(const Catalogue& catalogue,
   item.background = background;
   const Trajectory& path = catalogue.trajectories[trajectory];
   item.frame_count = frames_of(catalogue, background, frame_count, path.frame_count);
-  item.scene = scene_over(catalogue, catalogue.backgrounds[background]);
+  item.scene = scene_over(catalogue, background);
   scene::Intruder intruder;
   intruder.id = catalogue.aircraft[aircraft].name;
   intruder.aircraft = catalogue.aircraft[aircraft].aircraft;
@@ -98,62 +81,52 @@ Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index
   return item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
 }
 
-double drawn(Random& random, const Range& range) { return random.uniform(range.low, range.high); }
-
-template <typename T>
-const T& drawn(Random& random, const std::vector<T>& things) {
-  return things[std::min(
-      things.size() - 1,
-      static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size())))];
-}
-
-// Straight through a point of the view at a moment of the clip, well past both its ends.
-std::vector<Vector3> straight_line(Random& random,
-                                   const Drawn& rule,
-                                   const scene::Camera& camera,
-                                   double speed_mps,
-                                   double clip_s) {
-  const double meeting_s = random.uniform(0.2, 0.8) * clip_s;
-  const double range_m =
-      rule.range_m.low * std::pow(rule.range_m.high / rule.range_m.low, random.uniform());
-  const double azimuth = radians(drawn(random, rule.azimuth_deg));
-  const double elevation = radians(drawn(random, rule.elevation_deg));
-  const double heading = radians(drawn(random, rule.heading_deg));
-  const double climb = radians(drawn(random, rule.climb_deg));
-  const Vector3 in_body(std::cos(elevation) * std::cos(azimuth),
-                        std::cos(elevation) * std::sin(azimuth),
-                        -std::sin(elevation));
-  const Vector3 meeting = camera.position_ned_m + meeting_s * camera.velocity_ned_mps +
-                          range_m * (world_from_body(camera.attitude_yaw_pitch_roll_deg) * in_body);
-  const Vector3 velocity = speed_mps * Vector3(std::cos(climb) * std::cos(heading),
-                                               std::cos(climb) * std::sin(heading),
-                                               -std::sin(climb));
-  return {meeting - meeting_s * velocity, meeting + (clip_s + 1 - meeting_s) * velocity};
-}
-
+// What a rule of [[random]] draws for one sequence. Its paths are provisional: those of a clip at
+// kAssumedRateHz, until place() knows the background.
 Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
-  Random random =
-      Seed(catalogue.seed).stream("sequence " + rule.name, static_cast<std::uint64_t>(index));
   Item item;
   item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
-  item.background = drawn(random, rule.backgrounds);
+  item.rule = &rule;
+  item.drawn = draw(rule, catalogue.seed, index);
+  item.background = item.drawn.background;
   item.frame_count = rule.frame_count;
-  item.scene = scene_over(catalogue, catalogue.backgrounds[item.background]);
-  scene::Intruder intruder;
-  intruder.id = "intruder";
-  intruder.aircraft = drawn(random, rule.aircraft);
-  const double clip_s = static_cast<double>(rule.frame_count) / kRateHz;
-  intruder.speed_mps = drawn(random, rule.speed_mps);
-  intruder.waypoints_ned_m =
-      straight_line(random, rule, item.scene.camera, *intruder.speed_mps, clip_s);
-  if (rule.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
-  if (rule.sun_elevation_deg)
-    item.scene.light.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
-  item.scene.intruders = {intruder};
+  item.scene = scene_over(catalogue, item.background);
+  if (item.drawn.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = *item.drawn.sun_azimuth_deg;
+  if (item.drawn.sun_elevation_deg)
+    item.scene.light.sun_elevation_deg = *item.drawn.sun_elevation_deg;
+  const DrawnClip clip{rule.frame_count, kAssumedRateHz};
+  for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
+    const Encounter& encounter = item.drawn.encounters[k];
+    scene::Intruder intruder = intruder_of(rule, encounter, k);
+    lay_path(intruder,
+             encounter,
+             item.scene.camera,
+             clip,
+             encounter.range_m.value_or(kProvisionalRangeM));
+    item.scene.intruders.push_back(std::move(intruder));
+  }
   return item;
 }
 
 }  // namespace
+
+scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
+  const Background& background = catalogue.backgrounds[place];
+  scene::Scene scene;
+  scene.lens = background.lens;
+  scene.camera = background.camera;
+  scene.motion = background.motion;
+  scene.camera_model = background.camera_model;
+  scene.realism = background.realism;
+  scene.light = background.light;
+  scene.render = catalogue.render;
+  scene.composite = catalogue.composite;
+  scene.output = catalogue.output;
+  scene.seed = catalogue.seed;
+  scene.file = catalogue.file;
+  scene.background.where = background.where;
+  return scene;
+}
 
 Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
   for (const Rule& rule : catalogue.rules) {
@@ -171,16 +144,43 @@ Item Expansion::at(std::int64_t index) const {
                  catalogue_.rules[rule]);
   item.index = index;
   item.scene.name = item.name;
-  item.scene.seed = catalogue_.seed;
   return item;
 }
 
+namespace {
+
+// The first frame of a clip that begins anywhere in its background where it fits.
+std::int64_t random_first_frame(const Item& item,
+                                std::int64_t first_frame,
+                                const BackgroundFiles& files) {
+  if (files.frames <= 0)
+    throw Error("start is random, but " + files.video.string() +
+                    " does not state how many frames it has; expected start = \"first\", or a "
+                    "file that does",
+                item.rule->where);
+  const std::int64_t places =
+      std::max<std::int64_t>(1, files.frames - first_frame - item.frame_count + 1);
+  const auto place = static_cast<std::int64_t>(item.drawn.start_share * double(places));
+  return first_frame + std::min(place, places - 1);
+}
+
+}  // namespace
+
 void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
   const Background& background = catalogue.backgrounds[item.background];
-  item.scene.background.video = files.video;
-  item.scene.background.mask = files.mask;
-  item.scene.background.first_frame = background.first_frame;
-  if (item.frame_count > 0) item.scene.background.frame_count = item.frame_count;
+  scene::Background& placed = item.scene.background;
+  placed.video = files.video;
+  placed.mask = files.mask;
+  placed.first_frame = background.first_frame;
+  if (item.frame_count > 0) placed.frame_count = item.frame_count;
+  if (item.rule == nullptr) return;
+  if (item.rule->starts_at_random)
+    placed.first_frame = random_first_frame(item, background.first_frame, files);
+  DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
+  if (files.frames > placed.first_frame)
+    clip.frames = std::min(clip.frames, files.frames - placed.first_frame);
+  for (std::size_t k = 0; k < item.scene.intruders.size(); ++k)
+    meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height});
 }
 
 bool matches(std::string_view pattern, std::string_view name) {

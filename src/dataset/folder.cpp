@@ -2,9 +2,7 @@
 #include "dataset/folder.h"
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -40,21 +38,5 @@ FolderLock::FolderLock(const Folder& folder, bool shared) {
 }
 
 FolderLock::~FolderLock() { ::close(file_); }
-
-WaitingLock::WaitingLock(const fs::path& file, const std::stop_token& stop) {
-  fs::create_directories(file.parent_path());
-  file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0)
-    throw Error(std::string("cannot create: ") + std::strerror(errno), {file.string()});
-  while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    if (stop.stop_requested()) {
-      ::close(file_);
-      throw Interrupted();
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-}
-
-WaitingLock::~WaitingLock() { ::close(file_); }
 
 }  // namespace airtruth::dataset

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <stop_token>
 #include <string>
 
 #include "dataset/catalogue.h"
@@ -42,19 +41,6 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();
-
- private:
-  int file_ = -1;
-};
-
-// Held while one process makes what others would make as well; the others wait. Interrupted on
-// stop.
-class WaitingLock {
- public:
-  WaitingLock(const fs::path& file, const std::stop_token& stop);
-  WaitingLock(const WaitingLock&) = delete;
-  WaitingLock& operator=(const WaitingLock&) = delete;
-  ~WaitingLock();
 
  private:
   int file_ = -1;

@@ -88,12 +88,12 @@ bool is_memory(std::string_view text) {
   return is_digits(text);
 }
 
-using Rule = bool (*)(std::string_view);
+using ValueRule = bool (*)(std::string_view);
 
 struct SlurmKey {
   std::string_view key;
   std::string_view option;
-  Rule holds;
+  ValueRule holds;
   std::string_view expected;
 };
 

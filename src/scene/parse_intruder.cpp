@@ -130,8 +130,6 @@ std::vector<Intruder> intruders_from(const TableReader& root) {
                              before->second));
     result.push_back(std::move(intruder));
   }
-  if (result.empty())
-    throw Error("has no [[intruder]]; expected at least one", {root.where().file});
   return result;
 }
 

@@ -209,8 +209,6 @@ TEST(SceneErrors, PathsAndTimes) {
 }
 
 TEST(SceneErrors, Intruders) {
-  EXPECT_EQ(message_of(Parts{.intruder = ""}.text()),
-            "s.toml: has no [[intruder]]; expected at least one");
   EXPECT_EQ(message_of(Parts{.intruder = "[[intruder]]\n" + kPath}.text()),
             "s.toml:6:1: has no aircraft; expected a name (see `airtruth aircraft "
             "list`) or a model file");

@@ -129,6 +129,11 @@ bool TableReader::says(std::string_view key, std::string_view word) const {
   return value != nullptr && value->is_string() && value->value_or(std::string_view()) == word;
 }
 
+bool TableReader::is_array(std::string_view key) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_array();
+}
+
 Where TableReader::where() const { return place(*table_); }
 
 Where TableReader::where(std::string_view key) const {

@@ -49,6 +49,7 @@ class TableReader {
 
   bool has(std::string_view key) const;
   bool says(std::string_view key, std::string_view word) const;  // is the value this very string?
+  bool is_array(std::string_view key) const;                     // is the value an array?
   Where where() const;                      // the table's; no line where the file lacks the table
   Where where(std::string_view key) const;  // the value's
 

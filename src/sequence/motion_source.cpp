@@ -12,9 +12,6 @@
 #include "video/telemetry.h"
 
 namespace airtruth::sequence {
-namespace {
-
-// Every number of a lens, so that two lenses never share a cached motion.
 std::string words_of(const lens::Lens& lens) {
   const annotation::LensFacts facts = facts_of(lens);
   return fmt::format("{} {} {} {}",
@@ -23,8 +20,6 @@ std::string words_of(const lens::Lens& lens) {
                      fmt::join(facts.principal_point_px, ","),
                      fmt::join(facts.distortion, ","));
 }
-
-}  // namespace
 
 std::string sha256_of_video(const fs::path& video) {
   if (fs::is_regular_file(video)) return sha256_of_file(video);

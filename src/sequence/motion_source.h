@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 // numbered images.
 std::string sha256_of_video(const fs::path& video);
 
+// Every number of a lens, so that two lenses never share what is cached for one of them.
+std::string words_of(const lens::Lens& lens);
+
 class MotionSource {
  public:
   // model "none": identity for every frame.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/outputs.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -79,7 +80,7 @@ Outputs::Outputs(const fs::path& folder,
       video_(folder / (scene.name + video::extension(video::format_from_name(scene.output.video)))),
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),
-      evision_(scene.intruders.size()),
+      evision_(std::max<std::size_t>(1, scene.intruders.size())),
       sheet_(scene.name, info.frame_count_estimate) {
   if (!truth_)
     throw Error(std::string("cannot create: ") + std::strerror(errno),
@@ -93,6 +94,7 @@ void Outputs::write(const video::Frame& frame, const annotation::Frame& truth) {
     throw Error(std::string("cannot write: ") + std::strerror(errno),
                 {(folder_ / "truth.jsonl").string()});
   camera_ned_m_.push_back(truth.camera_position_ned_m);
+  if (truth.intruders.empty()) evision_[0].push_back(std::nullopt);
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
     evision_[i].push_back(intruder.state == annotation::State::kEnded

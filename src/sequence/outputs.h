@@ -52,7 +52,9 @@ class Outputs {
   video::Writer writer_;
   std::ofstream truth_;
   std::vector<Vector3> camera_ned_m_;
-  std::vector<std::vector<std::optional<annotation::EvisionFrame>>> evision_;  // [intruder][frame]
+  std::vector<std::vector<std::optional<annotation::EvisionFrame>>>
+      evision_;  // [intruder][frame]; of a scene
+                 // without intruders one without positions
   report::ContactSheet sheet_;
 };
 

@@ -2,13 +2,18 @@
 #include "sequence/resolve.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "calibration/cache.h"
 #include "calibration/calibration.h"
 #include "scene/camera_keys.h"
 #include "sequence/ambient.h"
+#include "sequence/motion_source.h"
+#include "sequence/paint.h"
 #include "sequence/world.h"
 
 namespace airtruth::sequence {
@@ -36,6 +41,13 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
   return file;
 }
 
+// Where calibrations are kept; empty: nowhere.
+fs::path calibrations_of(const Options& options) {
+  if (!options.use_cache) return {};
+  return (options.cache.empty() ? cache_folder() : options.cache) / "calibration";
+}
+
+// On the whole clip, so that all scenes over one clip have one camera.
 calibration::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
                                      const image::Mask* mask,
@@ -46,12 +58,53 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   if (!scene.camera.path_file && scene.camera.position_ned_m.z() < 0)
     how.altitude_m = -scene.camera.position_ned_m.z();
   how.tone = tone_of(scene.camera_model);
-  how.heading_deg = scene.camera.attitude_yaw_pitch_roll_deg.yaw_deg;
-  how.first_frame = scene.background.first_frame;
-  how.frame_count = scene.background.frame_count;
   how.stop = options.stop;
   how.warn = options.warn;
-  return calibration::calibrate(scene.background.video, how);
+  how.progress = [&](std::int64_t done, std::int64_t total) {
+    if (options.progress) options.progress({done, total, "measuring the camera"});
+  };
+  calibration::CacheKey key;
+  key.video_sha256 = sha256_of_video(scene.background.video);
+  if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
+  key.lens = words_of(*how.lens);
+  key.altitude_m = how.altitude_m;
+  key.tone = how.tone;
+  return calibration::calibrate_once(scene.background.video, how, calibrations_of(options), key);
+}
+
+// From north, where the calibration has it from the heading of the camera in the clip's first
+// frame.
+double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration& found) {
+  const auto first = static_cast<std::size_t>(scene.background.first_frame);
+  const double turned_deg =
+      first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
+  const auto camera = camera_path(scene.camera).at(0);
+  const double heading_deg = camera ? yaw_pitch_roll(camera->world_from_body).yaw_deg : 0;
+  const double azimuth_deg = std::remainder(
+      found.values.at("light.sun_azimuth_deg")[0].value + heading_deg - turned_deg, 360);
+  return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
+}
+
+bool is_wanted(const scene::Scene& scene, const std::string& key) {
+  const auto& named = scene.camera_model.automatic;
+  return scene.realism.automatic || std::find(named.begin(), named.end(), key) != named.end();
+}
+
+// Fills what the scene does not state from its camera file; is a value that is wanted still
+// missing?
+bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
+  bool is_missing = false;
+  scene::CameraModel& model = scene.camera_model;
+  scene::for_each_camera_key(
+      [&](const char* key, auto& stated, const auto& filed) {
+        if (!stated) stated = filed;
+        is_missing = is_missing || (!stated && is_wanted(scene, key));
+      },
+      model,
+      file.model);
+  if (!model.readout) model.readout = file.model.readout;
+  if (!model.gamma) model.gamma = file.gamma;
+  return is_missing;
 }
 
 // The chroma-key method has no place for what a camera and its air do; half of it would be worse.
@@ -93,20 +146,7 @@ scene::Scene resolved(const scene::Scene& scene,
   const lens::ImageSize size{info.width, info.height};
   scene::CameraFile file;
   if (scene.realism.file) file = file_of(scene, size);
-  const auto wanted = [&](const std::string& key) {
-    const auto& named = model.automatic;
-    return scene.realism.automatic || std::find(named.begin(), named.end(), key) != named.end();
-  };
-  bool measure = false;
-  scene::for_each_camera_key(
-      [&](const char* key, auto& stated, const auto& filed) {
-        if (!stated) stated = filed;
-        measure = measure || (!stated && wanted(key));
-      },
-      model,
-      file.model);
-  if (!model.readout) model.readout = file.model.readout;
-  if (!model.gamma) model.gamma = file.gamma;
+  const bool measure = fill_from_file(result, file);
   std::optional<double> azimuth = file.sun_azimuth_deg;
   std::optional<double> elevation = file.sun_elevation_deg;
   if (measure) {
@@ -114,7 +154,7 @@ scene::Scene resolved(const scene::Scene& scene,
     const scene::CameraModel from_clip = calibration::model_of(found);
     scene::for_each_camera_key(
         [&](const char* key, auto& stated, const auto& seen) {
-          if (stated || !wanted(key)) return;
+          if (stated || !is_wanted(scene, key)) return;
           stated = seen;
           if (stated) return;
           const std::string what =
@@ -129,7 +169,7 @@ scene::Scene resolved(const scene::Scene& scene,
         from_clip);
     if (!model.readout) model.readout = from_clip.readout;
     if (!azimuth && found.values.contains("light.sun_azimuth_deg")) {
-      azimuth = found.values.at("light.sun_azimuth_deg")[0].value;
+      azimuth = sun_azimuth_deg(scene, found);
       elevation = found.values.at("light.sun_elevation_deg")[0].value;
     }
   }
@@ -140,6 +180,26 @@ scene::Scene resolved(const scene::Scene& scene,
   model.automatic.clear();
   result.realism = {};
   return result;
+}
+
+bool needs_calibration(const scene::Scene& scene) {
+  if (scene.composite.method == "chroma-key") return false;
+  scene::Scene filled = scene;
+  scene::CameraFile file;
+  if (scene.realism.file) file = scene::read_camera_file(*scene.realism.file);
+  // A shutter angle is an exposure, once the frame rate is known.
+  if (filled.camera_model.angle_deg) filled.camera_model.exposure_s = 0;
+  return fill_from_file(filled, file);
+}
+
+void calibrate_ahead(const scene::Scene& scene, const Options& options) {
+  if (!needs_calibration(scene)) return;
+  scene::Scene filled = scene;
+  const video::StreamInfo info = video::Reader(scene.background.video, {}, options.warn).info();
+  const lens::ImageSize size{info.width, info.height};
+  if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
+  const auto mask = read_mask(scene, size);
+  measured_on(filled, size, mask ? &*mask : nullptr, options);
 }
 
 }  // namespace airtruth::sequence

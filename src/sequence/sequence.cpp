@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "sequence/ambient.h"
+#include "sequence/flyable.h"
 #include "sequence/motion_source.h"
 #include "sequence/outputs.h"
 #include "sequence/paint.h"
@@ -219,8 +220,18 @@ class Run {
       warn(options_.warn,
            "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
                " frames; they are bridged, and truth.jsonl says which");
-    for (std::size_t i = 0; i < seen_.size(); ++i)
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      warn_not_flyable(i);
       if (!seen_[i]) warn_never_seen(i);
+    }
+  }
+
+  void warn_not_flyable(std::size_t i) const {
+    const Actor& actor = world_.actors[i];
+    const std::string words = words_beyond_limits(actor.aircraft, actor.path, 0, last_time_s_);
+    if (words.empty()) return;
+    warn(options_.warn,
+         to_string(scene_.intruders[i].where) + ": intruder '" + actor.id + "': " + words);
   }
 
   void warn_never_seen(std::size_t i) const {

@@ -19,14 +19,15 @@ namespace fs = std::filesystem;
 
 struct Progress {
   std::int64_t frames_done = 0;
-  std::int64_t frames_total = 0;  // 0: unknown
+  std::int64_t frames_total = 0;    // 0: unknown
+  const char* stage = "rendering";  // or "measuring the camera"
 };
 
 struct Options {
   bool overwrite = false;
   int threads = 0;  // 0: one per core. The annotation's bytes do not depend on it.
   bool use_cache = true;
-  fs::path cache;          // of motion; empty: the user's own (base/files.h)
+  fs::path cache;          // of motion and calibrations; empty: the user's own (base/files.h)
   std::optional<int> gpu;  // for chroma-key's OpenGL
   bool software_gl = false;
   Warn warn;
@@ -64,5 +65,13 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
 // Measures the motion of the scene's background and leaves it in the cache, where the cache does
 // not hold it already.
 void measure_ahead(const scene::Scene& scene, const Options& options);
+
+// Does the scene ask for values of its camera that neither it nor its camera file states? They are
+// measured on the whole clip, whatever part of it the scene uses.
+bool needs_calibration(const scene::Scene& scene);
+
+// Calibrates the scene's background and leaves the result in the cache, where the cache does not
+// hold it already. Nothing where the scene does not need it.
+void calibrate_ahead(const scene::Scene& scene, const Options& options);
 
 }  // namespace airtruth::sequence

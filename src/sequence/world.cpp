@@ -55,23 +55,6 @@ lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
 }
 
-trajectory::Path camera_path(const scene::Camera& camera) {
-  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
-  return trajectory::uniform(
-      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
-}
-
-trajectory::Path intruder_path(const scene::Intruder& intruder) {
-  const trajectory::AttitudeOverride attitude{
-      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
-  const trajectory::Path path =
-      intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
-      : intruder.speed_mps
-          ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
-          : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
-  return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
-}
-
 aircraft::LoadOptions load_options(const scene::Intruder& intruder, const trajectory::Path& path) {
   aircraft::LoadOptions options;
   if (const auto state = path.at(path.start_s())) {
@@ -94,8 +77,7 @@ struct Type {
 };
 
 Type load_type(const scene::Intruder& intruder, const trajectory::Path& path, const Warn& warn) {
-  const auto loaded = std::make_shared<const aircraft::Aircraft>(
-      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path), warn));
+  const auto loaded = aircraft_of(intruder, path, warn);
   return {loaded, std::make_shared<const render::Model>(loaded->mesh)};
 }
 
@@ -220,6 +202,32 @@ static std::string type_key(const scene::Intruder& intruder, const trajectory::P
   return key;
 }
 
+trajectory::Path path_of(const scene::Intruder& intruder) {
+  const trajectory::AttitudeOverride attitude{
+      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  return at_place(intruder.where, [&] {
+    const trajectory::Path path =
+        intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
+        : intruder.speed_mps
+            ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
+            : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
+    return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
+  });
+}
+
+std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                      const trajectory::Path& path,
+                                                      const Warn& warn) {
+  return std::make_shared<const aircraft::Aircraft>(
+      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path), warn));
+}
+
+trajectory::Path camera_path(const scene::Camera& camera) {
+  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  return trajectory::uniform(
+      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+}
+
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
   return at_place(lens.where, [&] {
     return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
@@ -233,7 +241,7 @@ World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& wa
               shutter_of(scene.camera_model)};
   std::map<std::string, Type> types;  // one BVH for all intruders of one type
   for (const scene::Intruder& intruder : scene.intruders) {
-    const trajectory::Path path = at_place(intruder.where, [&] { return intruder_path(intruder); });
+    const trajectory::Path path = path_of(intruder);
     Type& type = types[type_key(intruder, path)];
     if (!type.aircraft)
       type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });

@@ -36,6 +36,16 @@ struct World {
   Shutter shutter;
 };
 
+// Where the camera of a scene is at each time of its clip. Errors as of read_path_file().
+trajectory::Path camera_path(const scene::Camera& camera);
+
+// An intruder's path on the clip's clock, and its aircraft as it is loaded to fly there: gear and
+// flaps go by the airspeed and the height with which the path begins.
+trajectory::Path path_of(const scene::Intruder& intruder);
+std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                      const trajectory::Path& path,
+                                                      const Warn& warn);
+
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
 // The scene's camera model is resolved (resolve.h).
 World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+// How fast, how steep and how banked aircraft of a class fly: what draws paths that suit a type,
+// and what tells a path that the type cannot fly. docs/flight-limits.md has the table with its
+// sources. Speeds are true airspeeds in still air.
+namespace airtruth::aircraft {
+
+struct FlightLimits {
+  std::string_view name;  // of the class: "light piston"
+  // What the class can fly at all: the lowest stall speed and the highest limit speed among its
+  // types, so that a path outside is flown by none of them.
+  double slowest_mps = 0;
+  double fastest_mps = 0;
+  double most_bank_deg = 0;
+  double most_climb_mps = 0;    // sustained
+  double most_descent_mps = 0;  // as a positive number
+  // What it ordinarily flies near other traffic: what is drawn where nothing is stated.
+  double usual_low_mps = 0;
+  double usual_high_mps = 0;
+  double usual_bank_deg = 0;
+  double first_hour = 0;  // of the day, local solar time
+  double last_hour = 0;
+};
+
+const std::vector<FlightLimits>& flight_classes();
+
+// The limits of an aircraft's class by its name in the aircraft list ("c172/news" or "c172");
+// nullptr where the type has no class here: model files, balloons, ships, the Space Shuttle.
+const FlightLimits* flight_limits(const std::string& aircraft);
+
+}  // namespace airtruth::aircraft

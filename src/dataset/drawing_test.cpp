@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/drawing.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "aircraft/flight_limits.h"
+#include "annotation/truth.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "dataset/build.h"
+#include "dataset/plan.h"
+#include "dataset/small_catalogue.h"
+#include "dataset/sun_position.h"
+#include "dataset/verify.h"
+#include "sequence/flyable.h"
+#include "sequence/world.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using testing::HasSubstr;
+
+Catalogue with_random(const std::string& keys) {
+  std::string text = kCatalogue;
+  text.resize(text.find("[[product]]"));
+  return parse_catalogue(text + "[output]\nvideo = \"mkv\"\n[[random]]\n" + keys, "c.toml");
+}
+
+std::string random_error(const std::string& keys) {
+  try {
+    with_random(keys);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const Drawn& rule_of(const Catalogue& catalogue) {
+  return std::get<Drawn>(catalogue.rules.front());
+}
+
+constexpr std::int64_t kMany = 4000;
+
+// 80 liveries of one type and 12 of another: each type is half of what is drawn. A binomial count
+// of n = 4000 and p = 1/2 has a standard deviation of 31.6; it is beyond four of them once in
+// 16,000.
+TEST(Drawing, TypesComeOutEvenAndSoDoTheirLiveries) {
+  const Catalogue catalogue = with_random("count = 4000\naircraft = [\"738/*\", \"c172/*\"]\n");
+  const Drawn& rule = rule_of(catalogue);
+  ASSERT_EQ(rule.types.size(), 2u);
+  ASSERT_GT(rule.types[0].liveries.size(), 4 * rule.types[1].liveries.size());
+  std::map<std::string, int> liveries;
+  int c172 = 0;
+  for (std::int64_t i = 0; i < kMany; ++i) {
+    const std::string name = draw(rule, 1, i).encounters[0].aircraft;
+    ++liveries[name];
+    c172 += name.starts_with("c172/") ? 1 : 0;
+  }
+  EXPECT_NEAR(c172, kMany / 2, 4 * std::sqrt(kMany * 0.25));
+  for (const AircraftType& type : rule.types) {
+    const double share = 0.5 / static_cast<double>(type.liveries.size());
+    for (const std::string& livery : type.liveries)
+      EXPECT_NEAR(liveries[livery], kMany * share, 5 * std::sqrt(kMany * share)) << livery;
+  }
+}
+
+TEST(Drawing, NegativesAreTheShareThatWasAskedFor) {
+  for (const double share : {0.2, 1.0 / 3, 0.0, 1.0}) {
+    Catalogue catalogue = with_random("aircraft = [\"c172/*\"]\n");
+    Drawn rule = rule_of(catalogue);
+    rule.negatives = share;
+    int negatives = 0;
+    for (std::int64_t i = 0; i < 1000; ++i) {
+      negatives += draw(rule, 7, i).encounters.empty() ? 1 : 0;
+      EXPECT_NEAR(negatives, share * static_cast<double>(i + 1), 1) << share;
+    }
+  }
+}
+
+// Of a log-uniform size u = log(size / low) / log(high / low) is uniform: in each of eight equal
+// bins 500 of 4,000, with a standard deviation of 20.9.
+TEST(Drawing, SizesAreEvenInTheirLogarithm) {
+  const Catalogue catalogue =
+      with_random("aircraft = [\"c172/*\", \"738/*\"]\nsize_px = [8, 128]\n");
+  std::array<int, 8> bins{};
+  for (std::int64_t i = 0; i < kMany; ++i) {
+    const double size = *draw(rule_of(catalogue), 1, i).encounters[0].size_px;
+    ASSERT_GE(size, 8);
+    ASSERT_LT(size, 128);
+    ++bins[static_cast<std::size_t>(8 * std::log(size / 8) / std::log(16.0))];
+  }
+  for (const int count : bins) EXPECT_NEAR(count, kMany / 8.0, 4 * 20.9);
+}
+
+TEST(Drawing, TheNumberOfIntrudersIsEvenOverItsRange) {
+  const Catalogue catalogue = with_random("aircraft = [\"c172/*\"]\nintruders = [1, 3]\n");
+  std::array<int, 4> counts{};
+  std::set<double> speeds;
+  for (std::int64_t i = 0; i < kMany; ++i) {
+    const DrawnSequence drawn = draw(rule_of(catalogue), 1, i);
+    ASSERT_GE(drawn.encounters.size(), 1u);
+    ASSERT_LE(drawn.encounters.size(), 3u);
+    ++counts[drawn.encounters.size()];
+    for (const Encounter& encounter : drawn.encounters) speeds.insert(encounter.speed_mps);
+  }
+  for (int n = 1; n <= 3; ++n) EXPECT_NEAR(counts[n], kMany / 3.0, 4 * std::sqrt(kMany * 2.0 / 9));
+  EXPECT_GT(speeds.size(), 2u * kMany - 200);  // each intruder is drawn for itself
+  const Catalogue two = with_random("aircraft = [\"c172/*\"]\nintruders = 2\n");
+  const Item item = Expansion(two).at(0);
+  ASSERT_EQ(item.scene.intruders.size(), 2u);
+  EXPECT_EQ(item.scene.intruders[0].id, "intruder-1");
+  EXPECT_EQ(item.scene.intruders[1].id, "intruder-2");
+}
+
+// What is drawn where nothing is stated is flyable for its type: speed, climb and bank.
+TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
+  const Catalogue catalogue = with_random(
+      "count = 300\nframe_count = 90\nbank_deg = \"type\"\naircraft = [\"738/*\", \"c172/*\", "
+      "\"Cub/*\", \"f16/*\", \"centrair-101/*\", \"DH4/*\"]\n");
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    const Item item = expansion.at(i);
+    const scene::Intruder& intruder = item.scene.intruders[0];
+    const aircraft::FlightLimits& limits = *aircraft::flight_limits(intruder.aircraft);
+    EXPECT_GE(*intruder.speed_mps, limits.usual_low_mps);
+    EXPECT_LE(*intruder.speed_mps, limits.usual_high_mps);
+    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, 3),
+              "")
+        << item.name;
+  }
+  const Plan plan = plan_of(catalogue, {}, {});
+  EXPECT_EQ(plan.not_flyable, 0);
+  EXPECT_EQ(plan.aircraft.size(), 6u);
+}
+
+TEST(Drawing, ThePlanNamesPathsThatAreNotFlyable) {
+  const Catalogue catalogue =
+      with_random("count = 20\naircraft = [\"c172/*\"]\nspeed_mps = [131, 131]\n");
+  const Plan plan = plan_of(catalogue, {}, {});
+  EXPECT_EQ(plan.not_flyable, 20);
+  ASSERT_EQ(plan.not_flyable_words.size(), Plan::kMostNamed);
+  EXPECT_THAT(plan.not_flyable_words[0],
+              testing::MatchesRegex("r000000: c172/.*light piston.*131.0 m/s.*92 m/s"));
+}
+
+// A level turn of bank b at speed v has the radius v^2 / (g tan b), and its bank is b throughout.
+TEST(Drawing, ABankedPathIsACoordinatedTurn) {
+  const Catalogue catalogue = with_random(
+      "count = 20\nframe_count = 90\naircraft = [\"c172/*\"]\nspeed_mps = [55, 55]\n"
+      "climb_deg = [0, 0]\nbank_deg = [30, 30]\nrange_m = [400, 500]\n");
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const auto path = sequence::path_of(Expansion(catalogue).at(i).scene.intruders[0]);
+    const double radius_m = 55.0 * 55 / (9.80665 * std::tan(radians(30)));
+    const auto begin = path.at(0);
+    const auto end = path.at(3);
+    ASSERT_TRUE(begin && end);
+    // Over an angle of 55 x 3 / radius the chord is 2 radius sin(angle / 2).
+    const double chord = (end->position_in_world - begin->position_in_world).norm();
+    EXPECT_NEAR(chord, 2 * radius_m * std::sin(55 * 3 / radius_m / 2), 1e-3);
+    EXPECT_NEAR(end->position_in_world.z(), begin->position_in_world.z(), 1e-9);
+    for (double t = 0; t <= 3; t += 0.25) {
+      EXPECT_NEAR(yaw_pitch_roll(path.at(t)->world_from_body).roll_deg, 30, 0.05) << t;
+      EXPECT_NEAR(path.at(t)->velocity_in_world_mps.norm(), 55, 1e-6);
+    }
+  }
+}
+
+// At an equinox the sun is up for half of the day; at noon it stands 90 - latitude degrees high in
+// the south, and rises due east. At the summer solstice it stands 23.45 degrees higher.
+TEST(Drawing, TheSunStandsWhereAstronomyHasIt) {
+  const SunPosition noon = sun_position(12, 45, 81);
+  EXPECT_NEAR(noon.elevation_deg, 45, 0.5);
+  EXPECT_NEAR(noon.azimuth_deg, 180, 1e-6);
+  const SunPosition six = sun_position(6, 45, 81);
+  EXPECT_NEAR(six.elevation_deg, 0, 0.5);
+  EXPECT_NEAR(six.azimuth_deg, 90, 0.5);
+  EXPECT_NEAR(sun_position(12, 45, 172).elevation_deg, 68.45, 0.1);
+  EXPECT_NEAR(sun_position(12, -45, 172).azimuth_deg, 0, 1e-6);
+  EXPECT_GT(sun_position(15, 45, 81).azimuth_deg, 180);
+  const auto light = daylight_hours(0, 81);
+  ASSERT_TRUE(light);
+  EXPECT_NEAR(light->high - light->low, 12 - 2 * kLowestSunDeg / 15, 0.05);
+  EXPECT_FALSE(daylight_hours(85, 355));
+}
+
+TEST(Drawing, TheTimeOfDaySuitsTheTypeAndIsLight) {
+  const Catalogue catalogue = with_random(
+      "aircraft = [\"centrair-101/*\", \"738/*\"]\ntime_of_day_h = \"type\"\nlatitude_deg = 50\n"
+      "day_of_year = 172\n");
+  const double lowest_of_a_glider = sun_position(18, 50, 172).elevation_deg;
+  for (std::int64_t i = 0; i < 500; ++i) {
+    const DrawnSequence drawn = draw(rule_of(catalogue), 1, i);
+    EXPECT_GE(*drawn.sun_elevation_deg, kLowestSunDeg - 1e-9);
+    if (drawn.encounters[0].aircraft.starts_with("centrair")) {
+      EXPECT_GE(*drawn.sun_elevation_deg, lowest_of_a_glider - 1e-9);
+    }
+  }
+}
+
+TEST(Drawing, KeysThatMakeNoSenseAreOneLineAtTheirPlace) {
+  const std::string aircraft = "aircraft = [\"c172/*\"]\n";
+  const auto error = [&](const std::string& keys) { return random_error(aircraft + keys); };
+  EXPECT_THAT(error("size_px = [8, 30]\nrange_m = [80, 90]\n"), HasSubstr("exclude each other"));
+  EXPECT_THAT(error("size_px = [0, 30]\n"),
+              HasSubstr("size_px[0] is 0; expected a number above 0"));
+  EXPECT_THAT(error("size_px = [30, 8]\n"), HasSubstr("size_px falls"));
+  EXPECT_THAT(error("negatives = 1.2\n"), HasSubstr("negatives is 1.2; expected a share"));
+  EXPECT_THAT(error("intruders = 0\n"), HasSubstr("intruders is 0"));
+  EXPECT_THAT(error("intruders = [1.5, 2]\n"), HasSubstr("whole number"));
+  EXPECT_THAT(error("start = \"anywhere\"\n"), HasSubstr("first or random"));
+  EXPECT_THAT(error("bank_deg = [0, 90]\n"), HasSubstr("bank_deg[1] is 90"));
+  EXPECT_THAT(error("speed_mps = \"fast\"\n"), HasSubstr("speed_mps"));
+  EXPECT_THAT(error("latitude_deg = 3\n"), HasSubstr("latitude_deg is for time_of_day_h"));
+  EXPECT_THAT(error("time_of_day_h = [0, 2]\n"), HasSubstr("is dark"));
+  EXPECT_THAT(error("time_of_day_h = [8, 9]\nsun_azimuth_deg = [0, 9]\n"), HasSubstr("exclude"));
+}
+
+// A rule that states every range and one type draws what it always drew: these are the numbers of
+// the first sequence before sizes, banks and negatives were.
+TEST(Drawing, WhatHasNoNewKeysIsDrawnAsBefore) {
+  const Catalogue catalogue = with_random(
+      "count = 3\nframe_count = 90\naircraft = [\"c172/news\"]\nrange_m = [300, 500]\nazimuth_deg "
+      "= "
+      "[-10, 10]\nelevation_deg = [2, 8]\nspeed_mps = [50, 60]\nclimb_deg = [-5, 5]\n");
+  const Item item = Expansion(catalogue).at(2);
+  EXPECT_EQ(item.scene.intruders[0].id, "intruder");
+  EXPECT_EQ(item.scene.intruders[0].waypoints_ned_m.size(), 2u);
+  EXPECT_EQ(item.scene.intruders[0].start_s, 0);
+}
+
+class DrawnSet : public testing::Test {
+ protected:
+  DrawnSet()
+      : root_(fs::temp_directory_path() / ("airtruth_drawn_" + std::to_string(::getpid()))) {}
+  ~DrawnSet() override { fs::remove_all(root_); }
+
+  static std::string text(const std::string& background, const std::string& random) {
+    return "[[background]]\nname = \"sky\"\nflight = { seed = 3, frame_count = 16, width = 320, "
+           "height = 240 }\nlens = { vertical_fov_deg = 60 }\ncamera = { position_ned_m = [0, 0, "
+           "-300], velocity_ned_mps = [25, 0, 0] }\n" +
+           background + "[output]\nvideo = \"mkv\"\n[[random]]\n" + random;
+  }
+  annotation::Truth truth(const std::string& name) const {
+    return annotation::read_truth(root_ / "sequences" / name / "truth.jsonl");
+  }
+
+  fs::path root_;
+};
+
+// The exact box of the rendered truth, in the frame of the meeting moment, has the size that was
+// drawn; without a camera's motion to the last hundredth of a pixel.
+TEST_F(DrawnSet, TheExactBoxHasTheSizeThatWasDrawn) {
+  const Catalogue catalogue = parse_catalogue(
+      text("motion = { model = \"none\" }\n",
+           "count = 5\nframe_count = 10\naircraft = [\"738/738-Ryanair\", \"c172/*\", \"Cub/*\"]\n"
+           "size_px = [6, 90]\nazimuth_deg = [-10, 10]\nelevation_deg = [-6, 6]\n"
+           "bank_deg = \"type\"\n"),
+      "c.toml");
+  const BuildSummary summary = build(catalogue, root_, {});
+  ASSERT_EQ(summary.made, 5) << (summary.failures.empty() ? "" : summary.failures[0].reason);
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < 5; ++i) {
+    const Item item = expansion.at(i);
+    const Encounter& encounter = item.drawn.encounters[0];
+    const auto frame = static_cast<std::size_t>(encounter.meeting_share * 10);
+    const annotation::Intruder seen = truth(item.name).frames.at(frame).intruders.at(0);
+    ASSERT_TRUE(seen.exact_box_px);
+    EXPECT_NEAR(
+        std::max(seen.exact_box_px->width, seen.exact_box_px->height), *encounter.size_px, 0.01)
+        << item.name;
+    EXPECT_NEAR(*seen.azimuth_deg, encounter.azimuth_deg, 5e-4);
+    EXPECT_LT(seen.position_ned_m->z(), -30 + 1e-6);
+  }
+}
+
+TEST_F(DrawnSet, ADirectionThatTheLensDoesNotSeeIsOneFailureAndItsReason) {
+  const Catalogue catalogue =
+      parse_catalogue(text("",
+                           "frame_count = 4\naircraft = [\"c172/news\"]\nsize_px = [6, "
+                           "9]\nazimuth_deg = [170, 175]\n"),
+                      "c.toml");
+  const BuildSummary summary = build(catalogue, root_, {});
+  ASSERT_EQ(summary.failures.size(), 1u);
+  EXPECT_THAT(summary.failures[0].reason, HasSubstr("c.toml:"));
+  EXPECT_THAT(summary.failures[0].reason, HasSubstr("at no range in the direction azimuth 17"));
+}
+
+// Clips begin at random where they fit, and a sequence without an intruder is made, verified and
+// recorded like any other.
+TEST_F(DrawnSet, NegativesAndRandomStartsAreWholeSequences) {
+  const Catalogue catalogue = parse_catalogue(
+      text("",
+           "count = 6\nframe_count = 6\naircraft = [\"c172/news\"]\nrange_m = [60, 90]\n"
+           "azimuth_deg = [-5, 5]\nelevation_deg = [-5, 5]\nnegatives = 0.5\nstart = \"random\"\n"
+           "intruders = [1, 2]\n"),
+      "c.toml");
+  const BuildSummary summary = build(catalogue, root_, {});
+  ASSERT_EQ(summary.made, 6) << (summary.failures.empty() ? "" : summary.failures[0].reason);
+  EXPECT_TRUE(summary.complete);
+  int negatives = 0;
+  std::set<std::string> starts;
+  for (std::int64_t i = 0; i < 6; ++i) {
+    const std::string name = Expansion(catalogue).at(i).name;
+    const annotation::Truth seen = truth(name);
+    ASSERT_EQ(seen.frames.size(), 6u);
+    negatives += seen.frames[0].intruders.empty() ? 1 : 0;
+    const std::string record = read_file(root_ / "sequences" / name / "sequence.json");
+    const auto at = record.find("first_frame = ") + 14;
+    const int start = std::stoi(record.substr(at));
+    EXPECT_GE(start, 0);
+    EXPECT_LE(start, 10);
+    starts.insert(std::to_string(start));
+    if (seen.frames[0].intruders.empty()) {
+      EXPECT_TRUE(fs::exists(root_ / "sequences" / name / (name + ".xml")));
+    }
+  }
+  EXPECT_EQ(negatives, 3);
+  EXPECT_GT(starts.size(), 2u);
+  VerifyOptions deep;
+  deep.deep_every = 2;
+  EXPECT_THAT(verify(root_, deep).faults, testing::IsEmpty());
+}
+
+// Two sequences over different parts of one clip have one camera, measured once.
+TEST_F(DrawnSet, ABackgroundIsCalibratedOnceForAllItsSequences) {
+  const Catalogue catalogue = parse_catalogue(
+      text("realism = { auto = true, fallback = true }\n",
+           "count = 3\nframe_count = 5\naircraft = [\"c172/news\"]\nrange_m = [60, 90]\nstart = "
+           "\"random\"\n"),
+      "c.toml");
+  EXPECT_GT(plan_of(catalogue, {}, {}).calibration_s, 0);
+  std::map<int, std::map<std::string, std::string>> bytes;
+  for (const int jobs : {1, 3}) {
+    const fs::path out = root_ / std::to_string(jobs);
+    int passes = 0;
+    BuildOptions options;
+    options.jobs = jobs;
+    options.progress = [&](const BuildProgress& p) {
+      passes += p.stage == "measuring the camera of sky" && p.done == 1 ? 1 : 0;
+    };
+    const BuildSummary summary = build(catalogue, out, options);
+    ASSERT_EQ(summary.made, 3) << (summary.failures.empty() ? "" : summary.failures[0].reason);
+    EXPECT_EQ(passes, 1);
+    std::size_t calibrations = 0;
+    for (const auto& entry : fs::directory_iterator(out / ".cache" / "calibration"))
+      calibrations += entry.path().extension() == ".json" ? 1 : 0;
+    EXPECT_EQ(calibrations, 1u);
+    std::set<std::string> cameras;
+    for (std::int64_t i = 0; i < 3; ++i) {
+      const std::string name = Expansion(catalogue).at(i).name;
+      const std::string record = read_file(out / "sequences" / name / "sequence.json");
+      const auto from = record.find("[shutter]");
+      cameras.insert(record.substr(from, record.find("[realism]") - from));
+      bytes[jobs][name] = sha256_of_file(out / "sequences" / name / "truth.jsonl") +
+                          sha256_of_file(out / "sequences" / name / (name + ".mkv"));
+    }
+    EXPECT_EQ(cameras.size(), 1u);
+    EXPECT_THAT(*cameras.begin(), HasSubstr("codec_step"));
+  }
+  EXPECT_EQ(bytes[1], bytes[3]);
+}
+
+}  // namespace
+}  // namespace airtruth::dataset

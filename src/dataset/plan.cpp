@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/plan.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "dataset/backgrounds.h"
+#include "dataset/labelled_set.h"
+#include "sequence/flyable.h"
+#include "sequence/sequence.h"
+#include "sequence/world.h"
+
+namespace airtruth::dataset {
+namespace {
+
+// What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
+constexpr double kCoreSecondsPerFrame = 0.034;
+constexpr double kCoreSecondsPerFlownFrame = 0.16;
+constexpr double kCoreSecondsPerCalibratedFrame = 0.037;
+constexpr double kBytesPerFrame = 15'000;
+constexpr double kBytesPerSequence = 580'000;  // preview.jpg
+constexpr double kUsualPixels = 1280.0 * 960.0;
+
+class Planner {
+ public:
+  explicit Planner(const Catalogue& catalogue) : catalogue_(catalogue) {
+    facts_.resize(catalogue.backgrounds.size());
+    is_used_.resize(catalogue.backgrounds.size(), false);
+  }
+
+  void add(const Item& item) {
+    const Facts& facts = facts_of(item.background);
+    const std::int64_t frames = frames_of(item, facts);
+    ++plan_.sequences;
+    plan_.frames += frames;
+    plan_.open_ended += frames == 0 ? 1 : 0;
+    plan_.core_s += static_cast<double>(frames) * facts.size * kCoreSecondsPerFrame;
+    plan_.bytes +=
+        static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
+    plan_.negatives += item.scene.intruders.empty() ? 1 : 0;
+    plan_.intruders += std::ssize(item.scene.intruders);
+    for (const scene::Intruder& intruder : item.scene.intruders)
+      ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
+    for (const Encounter& encounter : item.drawn.encounters) {
+      if (encounter.size_px) plan_.sizes_px.push_back(*encounter.size_px);
+      if (encounter.range_m) plan_.ranges_m.push_back(*encounter.range_m);
+    }
+    const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
+    fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
+  }
+
+  Plan result() {
+    std::sort(plan_.sizes_px.begin(), plan_.sizes_px.end());
+    std::sort(plan_.ranges_m.begin(), plan_.ranges_m.end());
+    return std::move(plan_);
+  }
+
+ private:
+  struct Facts {
+    BackgroundFiles files;
+    double size = 1;  // of a frame, in frames of 1280x960
+  };
+
+  // Of a background that is used; the first time, what it costs itself is counted.
+  const Facts& facts_of(std::size_t i) {
+    Facts& facts = facts_[i];
+    if (is_used_[i]) return facts;
+    is_used_[i] = true;
+    const Background& background = catalogue_.backgrounds[i];
+    const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+    if (flight != nullptr) {
+      facts.files.width = flight->width;
+      facts.files.height = flight->height;
+      facts.files.frames = flight->frame_count;
+      facts.files.frame_rate_hz = flight->frame_rate_hz;
+    } else {
+      facts.files.video = std::get<fs::path>(background.source);
+      add_facts(facts.files);
+    }
+    facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
+    const double whole = static_cast<double>(facts.files.frames) * facts.size;
+    if (flight != nullptr) plan_.core_s += whole * kCoreSecondsPerFlownFrame;
+    if (sequence::needs_calibration(scene_over(catalogue_, i))) {
+      plan_.calibration_s += whole * kCoreSecondsPerCalibratedFrame;
+      plan_.core_s += whole * kCoreSecondsPerCalibratedFrame;
+    }
+    return facts;
+  }
+
+  std::int64_t frames_of(const Item& item, const Facts& facts) const {
+    if (item.frame_count > 0) return item.frame_count;
+    const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
+    return std::max<std::int64_t>(0, facts.files.frames - first_frame);
+  }
+
+  // Paths that were drawn have their speed, climb and bank already, whatever their range becomes.
+  void fly(const Item& item, double clip_s) {
+    for (const scene::Intruder& intruder : item.scene.intruders) {
+      const std::string words =
+          sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, clip_s);
+      if (words.empty()) continue;
+      ++plan_.not_flyable;
+      if (plan_.not_flyable_words.size() < Plan::kMostNamed)
+        plan_.not_flyable_words.push_back(item.name + ": " + words);
+    }
+  }
+
+  const Catalogue& catalogue_;
+  std::vector<Facts> facts_;
+  std::vector<bool> is_used_;
+  Plan plan_;
+};
+
+}  // namespace
+
+Plan plan_of(const Catalogue& catalogue,
+             const std::function<void(const Item&)>& each,
+             const std::stop_token& stop) {
+  const Expansion expansion(catalogue);
+  Planner planner(catalogue);
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    const Item item = expansion.at(i);
+    planner.add(item);
+    if (each) each(item);
+  }
+  return planner.result();
+}
+
+}  // namespace airtruth::dataset
