@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Catalogues and data sets through the program, as its users run it: python3 dataset_test.py AIRTRUTH"""
 
+import json
 import os
 import re
 import subprocess
@@ -160,6 +161,116 @@ class Slurm(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
             self.assertFalse(os.path.exists(path(name)))
+
+
+class Sets(unittest.TestCase):
+    """Sequences with several intruders and with none, through everything that reads a data set."""
+
+    FORMATS = ("coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.catalogue = write("mixed.toml", SKY + """[output]
+video = "mkv"
+[[random]]
+count = 4
+frame_count = 6
+aircraft = ["738/738-Ryanair", "c172/news"]
+size_px = [20, 60]
+azimuth_deg = [-5, 5]
+elevation_deg = [-5, 5]
+speed_mps = "type"
+bank_deg = "type"
+intruders = [1, 2]
+negatives = 0.5
+start = "random"
+time_of_day_h = [9, 15]
+""")
+        made = run("dataset", "build", cls.catalogue, "--out", path("mixed"))
+        assert made.returncode == 0 and "4 sequences made" in made.stdout and "complete" in made.stdout, made.stdout + made.stderr
+        cls.kinds = {}
+        for name in sorted(os.listdir(path("mixed", "sequences"))):
+            with open(path("mixed", "sequences", name, "truth.jsonl")) as file:
+                cls.kinds[name] = len(json.loads(file.readline())["intruders"])
+
+    def test_half_of_them_are_negatives(self):
+        self.assertEqual(sum(1 for kind in self.kinds.values() if kind == 0), 2, self.kinds)
+
+    def test_the_plan_says_what_is_drawn(self):
+        said = run("dataset", "plan", self.catalogue)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        self.assertEqual(said.stdout.count("no intruder"), 2)
+        self.assertIn(f"intruders: {sum(self.kinds.values())} in 2 sequences; 2 sequences without one", said.stdout)
+        self.assertRegex(said.stdout, r"sizes: [0-9]+ to [0-9]+ px, half of them below [0-9]+ px")
+        self.assertRegex(said.stdout, r"types: .*(738|c172) [12]")
+        self.assertEqual(said.stderr, "")
+
+    def test_the_plan_warns_of_what_is_not_flyable(self):
+        fast = write("fast.toml", SKY + "[[random]]\ncount = 9\naircraft = [\"c172/*\"]\nspeed_mps = [131, 131]\n")
+        said = run("dataset", "plan", fast)
+        self.assertEqual(said.returncode, 0)
+        self.assertRegex(said.stderr, r"r000000: c172/\S+ \(light piston\) cannot fly its path: at [0-9.]+ s it flies 131\.0 m/s, the fastest of its class 92 m/s")
+        self.assertIn("9 of 9 intruders", said.stderr)
+
+    def test_verify_report_and_status_take_negatives(self):
+        for command in (("verify", path("mixed"), "--deep", "--every", "2"), ("status", path("mixed")),
+                        ("report", path("mixed"), "--out", path("mixed.html"))):
+            done = run("dataset", *command)
+            self.assertEqual(done.returncode, 0, f"{command}: {done.stdout}{done.stderr}")
+
+    def test_every_format_takes_negatives(self):
+        for kind in self.FORMATS:
+            done = run("dataset", "export", path("mixed"), "--format", kind, "--out", path("as", kind), "--split", "none")
+            self.assertEqual(done.returncode, 0, f"{kind}: {done.stdout}{done.stderr}")
+
+    def test_a_set_of_negatives_alone_is_exported(self):
+        alone = write("none.toml", SKY + RANDOM.replace("count = 4", "count = 1") + "negatives = 1\n")
+        self.assertEqual(run("dataset", "build", alone, "--out", path("none")).returncode, 0)
+        for kind in self.FORMATS:
+            done = run("dataset", "export", path("none"), "--format", kind, "--out", path("of none", kind))
+            self.assertIn(done.returncode, (0, 2), f"{kind}: {done.stdout}{done.stderr}")
+            if done.returncode:
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for command in (("dataset", "verify", path("none")), ("dataset", "report", path("none"), "--out", path("none.html"))):
+            done = run(*command)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_trackers_and_pictures_take_negatives(self):
+        negative = [name for name, kind in self.kinds.items() if kind == 0][0]
+        folder = path("mixed", "sequences", negative)
+        done = run("overlay", folder, "--out", path("overlay.mkv"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        tracked = run("track", path("mixed"), "--tracker", "opencv-kcf", "--out", path("tracks"))
+        self.assertEqual(tracked.returncode, 0, tracked.stdout + tracked.stderr)
+        scored = run("evaluate", path("mixed"), path("tracks"), "--out", path("scores"))
+        self.assertEqual(scored.returncode, 0, scored.stdout + scored.stderr)
+
+    def test_render_takes_a_scene_without_an_intruder(self):
+        self.assertEqual(run("synth", "-o", path("bare.mkv"), "--width", "160", "--height", "120", "--frames", "5").returncode, 0)
+        for method in ("matte", "chroma-key"):
+            scene = write(f"{method}.toml", f'[background]\nvideo = "bare.mkv"\n[lens]\nvertical_fov_deg = 75\n[output]\nvideo = "mkv"\n'
+                          f'[composite]\nmethod = "{method}"\n')
+            done = run("render", scene, "--out", path("bare"), "--gpu", "none")
+            if method == "chroma-key" and "EGL" in done.stderr:
+                continue
+            self.assertEqual(done.returncode, 0, done.stderr)
+            made = path("bare", method)
+            for name in (f"{method}.mkv", f"{method}.xml", "truth.jsonl", "sequence.json", "preview.jpg"):
+                self.assertTrue(os.path.getsize(os.path.join(made, name)) > 0, name)
+            # What is not covered leaves as it came.
+            frames = [subprocess.run(["ffmpeg", "-v", "error", "-i", video, "-f", "md5", "-"], capture_output=True, text=True).stdout
+                      for video in (path("bare.mkv"), os.path.join(made, f"{method}.mkv"))]
+            if all(frames):
+                self.assertEqual(frames[0], frames[1])
+
+    def test_render_warns_of_a_path_that_the_type_cannot_fly(self):
+        run("synth", "-o", path("short.mkv"), "--width", "160", "--height", "120", "--frames", "12")
+        scene = write("fast scene.toml", 'name = "fast"\n[background]\nvideo = "short.mkv"\n[lens]\nvertical_fov_deg = 75\n'
+                      '[[intruder]]\naircraft = "c172/news"\nwaypoints_ned_m = [[200, -40, -150], [200, 400, -150]]\nspeed_mps = 131\n')
+        done = run("render", scene, "--out", path("fast"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"fast scene\.toml:6:1: intruder 'intruder-1': c172/news \(light piston\) cannot fly its path: at [0-9.]+ s it flies "
+                         r"131\.0 m/s, the fastest of its class 92 m/s")
 
 
 if __name__ == "__main__":

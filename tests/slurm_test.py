@@ -42,7 +42,7 @@ SlurmctldPidFile={root}/slurmctld.pid
 SlurmdPidFile={root}/slurmd.pid
 SlurmctldLogFile={root}/slurmctld.log
 SlurmdLogFile={root}/slurmd.log
-NodeName=localhost CPUs={cpus} State=UNKNOWN
+NodeName=localhost CPUs={cpus} RealMemory=500 State=UNKNOWN
 PartitionName=p Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """
 
@@ -114,7 +114,7 @@ class Cluster:
         """What Slurm thought, for whom it fails."""
         print(output("squeue", "-r", "-t", "all", "-o", "%i %T %r %S %M", check=False))
         print(output("sinfo", "-N", "-o", "%N %T %E %c", check=False))
-        for name in ("slurmctld.log", "slurmd.log", "set/slurm/work-0.log", "set/slurm/verify.log"):
+        for name in ("slurmctld.log", "slurmd.log", *(os.path.join(d, n) for d, _, names in os.walk(self.root) for n in names if n in ("work-0.log", "verify.log"))):
             try:
                 with open(os.path.join(self.root, name), errors="replace") as file:
                     print(name, "ends:", *file.read().splitlines()[-25:], sep="\n  ")
@@ -156,7 +156,7 @@ def annotations(folder):
 
 def workers(out):
     """Process numbers of the tasks at work in a folder."""
-    return [int(pid) for pid in output("pgrep", "-f", f"dataset work .*{out} ", check=False).split()]
+    return [int(pid) for pid in output("pgrep", "-f", f"dataset work .*{re.escape(out)} ", check=False).split()]
 
 
 def main():
@@ -167,8 +167,10 @@ def main():
         sys.exit(77)
     os.environ["PATH"] += ":/usr/sbin"
     with tempfile.TemporaryDirectory(prefix="airtruth_slurm_") as root, Cluster(root):
-        out = os.path.join(root, "set")
-        said = output(airtruth, "dataset", "submit", catalogue, "--out", out, "--slurm", "--array-size", "3")
+        # Quotes, patterns and commands in the name of the folder are a name.
+        out = os.path.join(root, "it's a \"set\" %a #1 $(touch EVIL) `touch EVIL`")
+        said = output(airtruth, "dataset", "submit", catalogue, "--out", out, "--slurm", "--array-size", "3",
+                      "--sbatch", "--time=30:00", "--sbatch", "--mem=100M")
         work, verify = re.search(r"as (\d+), verified by (\d+)", said).groups()
         # One task is killed at work, then put back.
         victim = wait_for("the first task's start", lambda: workers(out), 120)[0]
@@ -177,6 +179,12 @@ def main():
             os.kill(victim, signal.SIGKILL)
         except ProcessLookupError:
             raise Failed("the task was over before it could be killed")
+        limits = output("scontrol", "-o", "show", "job", work)
+        if "TimeLimit=00:30:00" not in limits or "MinMemoryNode=100M" not in limits:
+            raise Failed(f"the array has other limits: {limits}")
+        logs = sorted(name for name in os.listdir(os.path.join(out, "slurm")) if name.endswith(".log"))
+        if not logs or logs[0] != "work-0.log":
+            raise Failed(f"logs are named {logs}")
         failed = wait_for("the kill", lambda: [t for t, s in states(work).items() if s in ("FAILED", "NODE_FAIL")], 60)
         # Slurm refuses to start a task in the second in which it was killed.
         time.sleep(2)

@@ -221,17 +221,26 @@ TEST(Drawing, KeysThatMakeNoSenseAreOneLineAtTheirPlace) {
   EXPECT_THAT(error("time_of_day_h = [8, 9]\nsun_azimuth_deg = [0, 9]\n"), HasSubstr("exclude"));
 }
 
-// A rule that states every range and one type draws what it always drew: these are the numbers of
-// the first sequence before sizes, banks and negatives were.
+// A rule that states its ranges and one type draws what it drew before there were sizes, banks and
+// negatives: the numbers are those that the program wrote into sequence.json then.
 TEST(Drawing, WhatHasNoNewKeysIsDrawnAsBefore) {
-  const Catalogue catalogue = with_random(
-      "count = 3\nframe_count = 90\naircraft = [\"c172/news\"]\nrange_m = [300, 500]\nazimuth_deg "
-      "= "
-      "[-10, 10]\nelevation_deg = [2, 8]\nspeed_mps = [50, 60]\nclimb_deg = [-5, 5]\n");
-  const Item item = Expansion(catalogue).at(2);
-  EXPECT_EQ(item.scene.intruders[0].id, "intruder");
-  EXPECT_EQ(item.scene.intruders[0].waypoints_ned_m.size(), 2u);
-  EXPECT_EQ(item.scene.intruders[0].start_s, 0);
+  const Catalogue catalogue = parse_catalogue(
+      "[[background]]\nname = \"sky\"\nflight = { seed = 3, frame_count = 6, width = 160, height = "
+      "120 }\nlens = { vertical_fov_deg = 75 }\ncamera = { position_ned_m = [0, 0, -150], "
+      "velocity_ned_mps = [25, 0, 0] }\n[[random]]\ncount = 3\nframe_count = 6\naircraft = "
+      "[\"c172/*\"]\nrange_m = [100, 200]\nspeed_mps = [40, 60]\nclimb_deg = [-3, 3]\n"
+      "sun_azimuth_deg = [0, 360]\n",
+      "c.toml");
+  const Item item = Expansion(catalogue).at(1);
+  const scene::Intruder& intruder = item.scene.intruders[0];
+  EXPECT_EQ(intruder.id, "intruder");
+  EXPECT_EQ(intruder.aircraft, "c172/ph-gys");
+  ASSERT_EQ(intruder.waypoints_ned_m.size(), 2u);
+  const Vector3 first(167.18549031737757, -51.29709173656602, -161.91030249687864);
+  const Vector3 last(107.54466705727401, -38.99562924996266, -160.19214303256965);
+  EXPECT_LT((intruder.waypoints_ned_m[0] - first).norm(), 1e-9);
+  EXPECT_LT((intruder.waypoints_ned_m[1] - last).norm(), 1e-9);
+  EXPECT_EQ(intruder.start_s, 0);
 }
 
 class DrawnSet : public testing::Test {
