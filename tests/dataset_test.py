@@ -242,7 +242,7 @@ time_of_day_h = [9, 15]
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         tracked = run("track", path("mixed"), "--tracker", "opencv-kcf", "--out", path("tracks"))
         self.assertEqual(tracked.returncode, 0, tracked.stdout + tracked.stderr)
-        scored = run("evaluate", path("mixed"), path("tracks"), "--out", path("scores"))
+        scored = run("evaluate", path("mixed"), path("tracks", "opencv-kcf"), "--out", path("scores"))
         self.assertEqual(scored.returncode, 0, scored.stdout + scored.stderr)
 
     def test_render_takes_a_scene_without_an_intruder(self):
