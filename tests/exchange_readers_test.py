@@ -629,6 +629,29 @@ class Readers(unittest.TestCase):
         self.assertIn("NaN", (source / "ImageSets/groundtruth.json").read_text())
         self.assertEqual(self.import_again("aot", source, pictures), [[], [(1.5, 2, 3, 4)], []])
 
+    def test_names(self):
+        """Patterns of numbered pictures, shells, XML and JSON have their own idea of these characters."""
+        for name, forms in (("a%d $(b)", ("yolo", "otb", "vot")), ("<b>&\"'", ("voc", "cvat", "mot"))):
+            self.where = f"clip {name!r}"
+            csv_file = self.root / f"{name}.csv"
+            csv_file.write_text((self.root / "boxes.csv").read_text())
+            imported = self.root / f"set of {name}"
+            airtruth("dataset", "import", csv_file, "--format", "csv", "--video", self.media, "--out", imported)
+            for form in forms:
+                out = self.root / f"{form} of {name}"
+                airtruth("dataset", "export", imported, "--format", form, "--out", out)
+                back = airtruth("dataset", "import", out, "--format", form, "--out", self.root / f"{form} back {name}")
+                self.assertRegex(back.stdout, ", [34] boxes")
+        no_utf8 = os.fsencode(self.root) + b"/b\xffx"
+        pathlib.Path(os.fsdecode(no_utf8 + b".csv")).write_text((self.root / "boxes.csv").read_text())
+        airtruth("dataset", "import", os.fsdecode(no_utf8 + b".csv"), "--format", "csv", "--out", self.root / "b")
+        self.assertEqual([path.name for path in (self.root / "b/sequences").iterdir()], ["b-x"])
+        refused = subprocess.run([AIRTRUTH, "dataset", "export", self.root / "b", "--format", "coco", "--images", "none",
+                                  "--out", no_utf8], capture_output=True, timeout=60)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn(b"is no UTF-8 name", refused.stderr)
+        self.assertFalse(os.path.exists(no_utf8))
+
 
 if __name__ == "__main__":
     AIRTRUTH = os.path.abspath(sys.argv.pop(1))

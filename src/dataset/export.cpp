@@ -26,12 +26,19 @@ Images images_of(const ExportOptions& options) {
   if (!options.images) return wanted == exchange::Pictures::kPngAlone ? Images::kPng : Images::kJpg;
   if (wanted == exchange::Pictures::kPngAlone && *options.images == Images::kJpg)
     throw Error(std::string("images is jpg, and the readers of ") + exchange::name(options.format) +
-                " open TIMEFLIGHT.png alone; expected png or none");
+                " open names that end in .png alone; expected png or none");
   if (wanted == exchange::Pictures::kJpgExpected && *options.images == Images::kPng)
     warn(options.warn,
          std::string("the got10k toolkit reads *.jpg alone of ") + exchange::name(options.format) +
              " sequences, and the pictures are png");
   return *options.images;
+}
+
+// XML, JSON and YAML hold the names of folders, as UTF-8.
+void require_utf8(const fs::path& path) {
+  if (utf8_fault(path.string()) != std::string::npos)
+    throw Error("is no UTF-8 name, which the files of other formats cannot hold; rename it",
+                {path.string()});
 }
 
 // What decides every byte of an export.
@@ -257,6 +264,8 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     throw Error(std::string("numbered classes are asked for, and ") +
                 exchange::name(options.format) + " holds its classes anyway; expected format mot");
   const LabelledSet labelled(set);
+  require_utf8(fs::absolute(out));
+  for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;

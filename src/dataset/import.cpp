@@ -79,10 +79,18 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
 // Names that are good for a folder, each once.
 std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   std::string name = wanted;
-  for (char& c : name)
-    if (c == '/' || static_cast<unsigned char>(c) < 0x20) c = '-';
+  // Labels, records and other formats' files are UTF-8.
+  const bool is_utf8 = utf8_fault(name) == std::string::npos;
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '/' || byte < 0x20 || (byte >= 0x80 && !is_utf8)) c = '-';
+  }
   if (name.empty() || name == "." || name == "..") name = "clip";
-  if (name.size() > 200) name.resize(200);
+  if (name.size() > 200) {
+    std::size_t end = 200;
+    while (is_utf8 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
+    name.resize(end);
+  }
   std::string unique = name;
   for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "-" + std::to_string(i);
   return unique;
@@ -103,6 +111,9 @@ ImportSummary import_set(const fs::path& source,
     if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
     if (video != options.videos.end()) clip.media = video->second;
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    if (utf8_fault(clip.media.string()) != std::string::npos)
+      throw Error("is no UTF-8 name, which labels.jsonl cannot hold; rename it",
+                  {clip.media.string()});
     match_pictures(clip, options.warn);
     ask_video(clip, options.warn);
     clip.name = free_name(clip.name, taken);
@@ -116,7 +127,10 @@ ImportSummary import_set(const fs::path& source,
     if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
     const Json record = record_of(clip, options);
     write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
-    write_file(folder / "sequence.json", record.dump(2) + "\n", Flush::kLater);
+    // Categories are as the labels have them, and may be no UTF-8.
+    write_file(folder / "sequence.json",
+               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+               Flush::kLater);
     ++summary.clips;
     summary.frames += std::ssize(clip.frames);
     summary.labels += record.at("labels").get<std::int64_t>();

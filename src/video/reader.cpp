@@ -91,7 +91,6 @@ void Reader::State::open_input() {
     pictures = std::move(images->files);
     format = av_find_input_format("image2");
     url = pictures.front().string();
-    av_dict_set(&settings, "pattern_type", "none", 0);
   } else if (!std::filesystem::exists(path, ignored)) {
     fail("does not exist; expected a video");
   } else if (std::filesystem::is_directory(path, ignored)) {
@@ -100,6 +99,8 @@ void Reader::State::open_input() {
     fail("is empty; expected a video");
   }
   AVFormatContext* raw = nullptr;
+  // A % in the name of a picture or a folder is a character; videos pass over the setting.
+  av_dict_set(&settings, "pattern_type", "none", 0);
   const int opened = avformat_open_input(&raw, url.c_str(), format, &settings);
   av_dict_free(&settings);
   if (opened < 0) fail("cannot be read as a video: " + reason(opened));
