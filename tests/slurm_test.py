@@ -57,7 +57,10 @@ class Failed(Exception):
 
 
 def output(*command, check=True):
-    return subprocess.run(command, capture_output=True, text=True, check=check).stdout
+    done = subprocess.run(command, capture_output=True, text=True)
+    if check and done.returncode != 0:
+        raise Failed(f"{command} ends with {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout
 
 
 def wait_for(what, condition, seconds):

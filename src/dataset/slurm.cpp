@@ -64,7 +64,7 @@ std::string work_script(const Catalogue& catalogue,
                         const SlurmOptions& options,
                         std::int64_t tasks) {
   std::string text = head("airtruth",
-                          sbatch_path((out / "slurm").string()) + "/work-%a.log",
+                          sbatch_log((out / "slurm").string(), "work-%a.log"),
                           options_of(catalogue, options));
   text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
   text += fmt::format(
@@ -83,7 +83,7 @@ std::string verify_script(const Catalogue& catalogue,
                           const fs::path& out,
                           const SlurmOptions& options) {
   return head("airtruth-verify",
-              sbatch_path((out / "slurm").string()) + "/verify.log",
+              sbatch_log((out / "slurm").string(), "verify.log"),
               options_of(catalogue, options)) +
          fmt::format("exec {} dataset verify {} --finish\n",
                      quoted(options.program.string()),

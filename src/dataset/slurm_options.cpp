@@ -148,21 +148,20 @@ std::vector<std::string> slurm_in(const scene::TableReader& root) {
   return result;
 }
 
-std::string sbatch_path(const std::string& path) {
-  if (std::any_of(path.begin(), path.end(), is_control))
+std::string sbatch_log(const std::string& folder, std::string_view pattern) {
+  if (std::any_of(folder.begin(), folder.end(), is_control))
     throw Error("has a control character in its name, which no line of a job script can hold",
-                {shown_text(path)});
-  if (path.find('\\') != std::string::npos)
+                {shown_text(folder)});
+  if (folder.find('\\') != std::string::npos)
     throw Error("has a backslash in its name, which Slurm does not take in the name of a log",
-                {path});
-  std::string result;
-  for (const char c : path) {
-    // Quotes, white space and # are read by sbatch unless a backslash stands before them.
-    if (std::string_view(" '\"#").find(c) != std::string_view::npos) result += '\\';
+                {folder});
+  std::string result = "\"";
+  for (const char c : folder) {
+    if (c == '"') result += '\\';
     result += c;
     if (c == '%') result += '%';
   }
-  return result;
+  return result + "/" + std::string(pattern) + "\"";
 }
 
 }  // namespace airtruth::dataset

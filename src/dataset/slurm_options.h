@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -23,9 +24,10 @@ std::string sbatch_option(const std::string& given, const Where& where = {});
 // table. Throws Error at the key.
 std::vector<std::string> slurm_in(const scene::TableReader& root);
 
-// A path as the value of "#SBATCH --output=": sbatch reads quotes, backslashes and # in such lines,
-// and replaces patterns that begin with %. Throws Error for a path that holds a control character,
-// or a backslash, which ends the replacement of patterns.
-std::string sbatch_path(const std::string& path);
+// The value of "#SBATCH --output=": a file in `folder` whose name may hold Slurm's patterns ("%a").
+// It stands in double quotes, in which sbatch takes all but a quote as it is; a % of the folder is
+// doubled. Throws Error for a folder that holds a control character, or a backslash, which ends the
+// replacement of patterns.
+std::string sbatch_log(const std::string& folder, std::string_view pattern);
 
 }  // namespace airtruth::dataset
