@@ -1,15 +1,130 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs airtruth into an empty folder and builds the example against it, as a user of the library would.
+# Installs airtruth into an empty folder and uses it as a stranger would: builds the example against the library, asks every
+# command for help, renders every manual page, completes words. Then the same of the Debian package, unpacked.
 set -euo pipefail
 build=$1
 source=$2
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
+
+fail() { echo "package_test: $*" >&2; exit 1; }
+
+build_example() { # build_example PREFIX
+  cmake -S "$source/examples/cpp" -B "$place/build" -G Ninja -DCMAKE_PREFIX_PATH="$1" >"$place/configure.log" ||
+    { cat "$place/configure.log"; exit 1; }
+  cmake --build "$place/build" >"$place/build.log" || { cat "$place/build.log"; exit 1; }
+  "$place/build/range" | grep -q ' m  .* px for 11 m' || fail "the example does not run"
+}
+
+commands_below() { # commands_below PROGRAM [GROUP]: the names that its help lists
+  "$@" --help | sed -n '/^Subcommands:$/,$s/^  \([a-z][a-z-]*\)  .*/\1/p'
+}
+
+check_help_and_pages() { # check_help_and_pages PREFIX
+  local program=$1/bin/airtruth pages=$1/share/man/man1 count=0 command below page complaint
+  "$program" --version | grep -q '^airtruth ' || fail "--version"
+  local -a paths=("")
+  for command in $(commands_below "$program"); do
+    paths+=("$command")
+    for below in $(commands_below "$program" "$command"); do paths+=("$command $below"); done
+  done
+  [ ${#paths[@]} -gt 20 ] || fail "--help lists ${#paths[@]} commands"
+  for command in "${paths[@]}"; do
+    # shellcheck disable=SC2086 # a path is words
+    "$program" $command --help >"$place/help" 2>"$place/complaint" || fail "$command --help fails"
+    if [ ! -s "$place/help" ] || [ -s "$place/complaint" ]; then fail "$command --help: $(cat "$place/complaint")"; fi
+    page=$pages/airtruth${command:+-${command// /-}}.1.gz
+    [ -f "$page" ] || fail "there is no $page"
+    count=$((count + 1))
+    # Every option of the help is on the page.
+    grep -oE '^  (-[a-zA-Z],)?--[a-z0-9-]+' "$place/help" | grep -oE -- '--[a-z0-9-]+' | sort -u >"$place/options"
+    zcat "$page" | sed 's/\\-/-/g' | grep -oE -- '--[a-z0-9-]+' | sort -u >"$place/on_page"
+    complaint=$(comm -23 "$place/options" "$place/on_page")
+    [ -z "$complaint" ] || fail "$page lacks $complaint"
+    if command -v man >/dev/null; then
+      complaint=$(MANWIDTH=80 LC_ALL=C.UTF-8 man --warnings -l "$page" 2>&1 >"$place/shown")
+      [ -z "$complaint" ] || fail "$page: $complaint"
+      grep -q 'SYNOPSIS' "$place/shown" || fail "$page shows nothing"
+    fi
+    if command -v mandoc >/dev/null; then
+      complaint=$(zcat "$page" | mandoc -T lint -W error || true)
+      [ -z "$complaint" ] || fail "$page: $complaint"
+    fi
+  done
+  [ "$(find "$pages" -name 'airtruth*' | wc -l)" = "$count" ] || fail "there are pages of no command"
+}
+
+# completed PREFIX WORD...: what the last word can become
+completed() {
+  bash -c 'set -eu
+    . "$1/share/bash-completion/completions/airtruth"
+    shift
+    COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=()
+    _airtruth
+    printf "%s\n" "${COMPREPLY[@]}"' bash "$@"
+}
+
+expect_completion() { # expect_completion WANTED PREFIX WORD...
+  local wanted=$1 got
+  shift
+  got=$(completed "$@" | sort | paste -sd' ')
+  [ "$got" = "$wanted" ] || fail "completing '${*:2}': '$got'; expected '$wanted'"
+}
+
+check_completion() { # check_completion PREFIX
+  expect_completion "render" "$1" airtruth ren
+  expect_completion "build" "$1" airtruth dataset bu
+  expect_completion "build" "$1" airtruth --quiet dataset bu
+  expect_completion "estimate" "$1" airtruth lens e
+  expect_completion "--zoom" "$1" airtruth inspect --z
+  expect_completion "--array-size" "$1" airtruth dataset submit --arr
+  expect_completion "homography rotation" "$1" airtruth motion clip.mp4 --model ''
+  expect_completion "--json-log" "$1" airtruth evaluate --js
+  touch "$place/scene one.toml"
+  expect_completion "$place/scene one.toml" "$1" airtruth render "$place/sce"
+  # All that the help lists, no more.
+  expect_completion "$(commands_below "$1/bin/airtruth" | sort | paste -sd' ')" "$1" airtruth ''
+}
+
+check_files() { # check_files PREFIX
+  local file
+  for file in doc/airtruth/copyright doc/airtruth/changelog.gz doc/airtruth/changelog.Debian.gz doc/airtruth/README.md \
+    doc/airtruth/CITATION.cff doc/airtruth/docs/formats/scene.md airtruth/catalogues/quickstart.toml airtruth/examples/render.toml \
+    airtruth/clients/airtruth_trax.py airtruth/data/real-aircraft/README.md bash-completion/completions/airtruth; do
+    [ -s "$1/share/$file" ] || fail "share/$file is not installed"
+  done
+  for file in "$source"/docs/formats/*.schema.json; do
+    cmp -s "$file" "$1/share/airtruth/schemas/$(basename "$file")" || fail "$(basename "$file") is not installed"
+  done
+  zcat "$1/share/doc/airtruth/changelog.Debian.gz" | head -1 | grep -q "^airtruth ($version-1) " || fail "the changelog's version"
+}
+
+version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
-cmake -S "$source/examples/cpp" -B "$place/build" -G Ninja -DCMAKE_PREFIX_PATH="$place/usr" >"$place/configure.log" ||
-  { cat "$place/configure.log"; exit 1; }
-cmake --build "$place/build" >"$place/build.log" || { cat "$place/build.log"; exit 1; }
-"$place/build/range" | grep -q ' m  .* px for 11 m'
-LD_LIBRARY_PATH="$place/usr/lib" "$place/usr/bin/airtruth" --version | grep -q '^airtruth '
-echo "installed, found by find_package, built, run"
+build_example "$place/usr"
+check_help_and_pages "$place/usr"
+check_completion "$place/usr"
+check_files "$place/usr"
+
+# The same program writes the same pages.
+"$place/usr/bin/airtruth" describe "$place/again"
+gzip -9n "$place/again/man1"/*
+diff -r "$place/again/man1" "$place/usr/share/man/man1" >/dev/null || fail "the pages differ from run to run"
+
+# gzip packs faster than the default, xz.
+(cd "$build" && cpack -G DEB -B "$place/deb" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip) >"$place/cpack.log" 2>&1 || { cat "$place/cpack.log"; exit 1; }
+package=$(find "$place/deb" -maxdepth 1 -name '*.deb')
+dpkg-deb -x "$package" "$place/root"
+check_files "$place/root/usr"
+check_completion "$place/root/usr"
+"$place/root/usr/bin/airtruth" --help >/dev/null || fail "the packaged program does not run"
+(cd "$place/usr" && find . \( -type f -o -type l \) | sort) >"$place/installed"
+(cd "$place/root/usr" && find . \( -type f -o -type l \) | sort) >"$place/packaged"
+diff "$place/installed" "$place/packaged" || fail "the package holds other files than an installation"
+looked="not looked at by lintian, which is not installed"
+if command -v lintian >/dev/null; then
+  lintian --allow-root --fail-on error,warning "$package" 2>"$place/lintian.log" || fail "lintian has errors"
+  looked="lintian finds neither error nor warning"
+fi
+echo "installed, found by find_package, built, run; $(wc -l <"$place/packaged") files packaged; $looked"

@@ -36,5 +36,6 @@ void add_evaluate(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_judge(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
+void add_describe(CLI::App& app, Context& context);
 
 }  // namespace airtruth::cli

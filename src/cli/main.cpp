@@ -110,6 +110,7 @@ int main(int argc, char** argv) {
   cli::add_compare(app, context);
   cli::add_judge(app, context);
   cli::add_evision(app, context);
+  cli::add_describe(app, context);
   const int code = run(app, argc, argv, options, console);
   return code != 0 ? code : context.exit_code;
 }
