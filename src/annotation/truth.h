@@ -35,15 +35,25 @@ struct Intruder {
   std::optional<Vector3> velocity_ned_mps;
   std::optional<YawPitchRoll> attitude_yaw_pitch_roll_deg;
   // x right, y down, z forward; in the measured camera where motion is a rotation, else in the
-  // nominal one.
+  // nominal one (a homography belongs to the picture: frame_from_reference then moves its pixel).
   std::optional<Vector3> position_in_cam_m;
   std::optional<double> range_m;
   std::optional<double> range_rate_mps;  // negative: closing
-  std::optional<double> azimuth_deg;     // from the boresight, right positive
-  std::optional<double> elevation_deg;   // from the boresight, up positive
+  // Of the reference point, in the camera as it really looked in this frame: the ray of the pixel
+  // where the point is drawn (bearing.h). Right and up are positive. Both or neither.
+  std::optional<double> azimuth_deg;
+  std::optional<double> elevation_deg;
+  // The same from the boresight of the nominal, unshaken camera: no pixel lies there.
+  std::optional<double> nominal_azimuth_deg;
+  std::optional<double> nominal_elevation_deg;
   // From projected geometry, not clipped by the frame; empty behind the camera or beyond the lens's
   // field.
   std::optional<Box> exact_box_px;
+  // Bounds of the whole pixels that the intruder covers with at least composite::kCoveredAlpha:
+  // exposure and point spread count, what hides it is taken away, and what sharpening, noise and
+  // the codec do to the samples does not count. Only where the state is kVisible; empty where no
+  // pixel reaches that alpha.
+  std::optional<PixelBox> covered_box_px;
   // From the pixels that changed; present exactly when the state is kVisible.
   std::optional<PixelBox> visible_box_px;
   std::int64_t visible_area_px = 0;   // pixels that changed
@@ -53,6 +63,12 @@ struct Intruder {
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
 };
+
+// Where to point at an intruder: its covered box, or the visible one where it covers no pixel far
+// enough to have one; empty where it is not visible.
+inline std::optional<PixelBox> box_to_show(const Intruder& intruder) {
+  return intruder.covered_box_px ? intruder.covered_box_px : intruder.visible_box_px;
+}
 
 struct Frame {
   std::int64_t frame = 0;

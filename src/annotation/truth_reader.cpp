@@ -154,10 +154,13 @@ Intruder intruder_from(const Object& object) {
   intruder.range_rate_mps = object.maybe_number("range_rate_mps");
   intruder.azimuth_deg = object.maybe_number("azimuth_deg");
   intruder.elevation_deg = object.maybe_number("elevation_deg");
+  intruder.nominal_azimuth_deg = object.maybe_number("nominal_azimuth_deg");
+  intruder.nominal_elevation_deg = object.maybe_number("nominal_elevation_deg");
   if (object.has("exact_box_px")) {
     const auto box = object.tuple<4>("exact_box_px");
     intruder.exact_box_px = Box{box[0], box[1], box[2], box[3]};
   }
+  intruder.covered_box_px = object.pixel_box("covered_box_px");
   intruder.visible_box_px = object.pixel_box("visible_box_px");
   intruder.visible_area_px = object.whole("visible_area_px");
   intruder.alpha_sum_px = object.number("alpha_sum_px");
@@ -184,6 +187,17 @@ Shake shake_from(const Object& motion) {
   return shake;
 }
 
+// Older files have one bearing, and where motion is a homography it is the nominal camera's. So
+// that no reader takes it for the other, it is put where it belongs.
+void place_old_bearing(const Shake& shake, Intruder& intruder) {
+  if (!intruder.azimuth_deg || intruder.nominal_azimuth_deg || shake.rotation) return;
+  intruder.nominal_azimuth_deg = intruder.azimuth_deg;
+  intruder.nominal_elevation_deg = intruder.elevation_deg;
+  if (shake.frame_from_reference == Homography::Identity()) return;
+  intruder.azimuth_deg.reset();
+  intruder.elevation_deg.reset();
+}
+
 Frame frame_from(const Object& object) {
   Frame frame;
   frame.frame = object.whole("frame");
@@ -197,6 +211,7 @@ Frame frame_from(const Object& object) {
   frame.shake = shake_from(motion);
   for (const Object& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
+  for (Intruder& intruder : frame.intruders) place_old_bearing(frame.shake, intruder);
   return frame;
 }
 

@@ -27,7 +27,8 @@ bool all_finite(const Intruder& i) {
   return finite(i.position_ned_m) && finite(i.velocity_ned_mps) &&
          finite(i.attitude_yaw_pitch_roll_deg) && finite(i.position_in_cam_m) &&
          finite(i.range_m) && finite(i.range_rate_mps) && finite(i.azimuth_deg) &&
-         finite(i.elevation_deg) && finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
+         finite(i.elevation_deg) && finite(i.nominal_azimuth_deg) &&
+         finite(i.nominal_elevation_deg) && finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
          (!i.centroid_px || i.centroid_px->allFinite()) && finite(i.hidden_by_own_aircraft) &&
          finite(i.hidden_by_intruder) && finite(i.cut_by_frame);
 }
@@ -43,10 +44,18 @@ std::optional<std::string> fault(const Intruder& i) {
                       i.position_in_cam_m && i.range_m;
   const bool any_place = i.position_ned_m || i.velocity_ned_mps || i.attitude_yaw_pitch_roll_deg ||
                          i.position_in_cam_m || i.range_m || i.range_rate_mps || i.azimuth_deg ||
-                         i.elevation_deg || i.exact_box_px;
+                         i.elevation_deg || i.nominal_azimuth_deg || i.nominal_elevation_deg ||
+                         i.exact_box_px;
   if (i.state == State::kEnded && any_place) return "is ended and has a place";
   if (i.state != State::kEnded && !placed)
     return fmt::format("is {} and lacks its place", name(i.state));
+  if (i.azimuth_deg.has_value() != i.elevation_deg.has_value() ||
+      i.nominal_azimuth_deg.has_value() != i.nominal_elevation_deg.has_value())
+    return "has half a bearing";
+  if (i.covered_box_px && i.state != State::kVisible)
+    return fmt::format("is {} and has a covered_box_px", name(i.state));
+  if (i.covered_box_px && (i.covered_box_px->width <= 0 || i.covered_box_px->height <= 0))
+    return "has an empty covered_box_px";
   if (i.visible_box_px && (i.visible_box_px->width <= 0 || i.visible_box_px->height <= 0))
     return "has an empty visible_box_px";
   if (i.exact_box_px && (i.exact_box_px->width < 0 || i.exact_box_px->height < 0))

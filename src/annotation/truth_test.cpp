@@ -34,6 +34,9 @@ Intruder visible_intruder() {
   intruder.azimuth_deg = -52.1;
   intruder.elevation_deg = 9.9;
   intruder.exact_box_px = Box{10.25, 339.5, 30.125, 9};
+  intruder.nominal_azimuth_deg = -53;
+  intruder.nominal_elevation_deg = 10.1;
+  intruder.covered_box_px = PixelBox{10, 340, 30, 9};
   intruder.visible_box_px = PixelBox{10, 339, 31, 10};
   intruder.visible_area_px = 120;
   intruder.alpha_sum_px = 77.5;
@@ -102,6 +105,14 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
   refused([](Frame& f) { f.intruders[0].range_m.reset(); });
   refused([](Frame& f) { f.intruders[0].exact_box_px->x = std::nan(""); });
   refused([](Frame& f) { f.intruders[1].range_m = 3; });
+  refused([](Frame& f) { f.intruders[1].nominal_azimuth_deg = 3; });
+  refused([](Frame& f) { f.intruders[0].elevation_deg.reset(); });
+  refused([](Frame& f) { f.intruders[0].nominal_elevation_deg.reset(); });
+  refused([](Frame& f) { f.intruders[0].covered_box_px->width = 0; });
+  refused([](Frame& f) {
+    f.intruders[0].state = State::kHidden;
+    f.intruders[0].visible_box_px.reset();
+  });
   refused([](Frame& f) { f.intruders[0].cut_by_frame = 1.01; });
   refused([](Frame& f) { f.intruders[0].alpha_sum_px = -1; });
 }
@@ -144,6 +155,33 @@ TEST(Truth, FaultsHaveTheirFileAndLine) {
             "truth.jsonl:7: frame_from_reference is not what it should be; expected 3 numbers");
   EXPECT_EQ(with([](Json& j) { j["intruders"][0]["visible_box_px"][2] = 4'000'000'000; }),
             "truth.jsonl:7: visible_box_px is not what it should be; expected a number of pixels");
+}
+
+// One bearing in an older file: the nominal camera's where motion is a homography, the real one's
+// where it is a rotation, and both where nothing moved.
+TEST(Truth, TheOneBearingOfAnOlderFileIsReadAsWhatItWas) {
+  const auto read = [](const std::function<void(Json&)>& change) {
+    Json json = Json::parse(jsonl_line(frame_of_two(), kLens));
+    json["intruders"][0].erase("nominal_azimuth_deg");
+    json["intruders"][0].erase("nominal_elevation_deg");
+    json["intruders"][0].erase("covered_box_px");
+    change(json);
+    return parse_jsonl_line(json.dump(), "truth.jsonl", 1).intruders[0];
+  };
+  const Intruder planar = read([](Json&) {});
+  EXPECT_FALSE(planar.azimuth_deg || planar.elevation_deg || planar.covered_box_px);
+  EXPECT_EQ(planar.nominal_azimuth_deg, -52.1);
+  EXPECT_EQ(planar.nominal_elevation_deg, 9.9);
+  const Json identity = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Intruder turned = read([&](Json& j) {
+    j["motion"]["frame_from_reference"] = identity;
+    j["motion"]["rotation"] = {1, 0, 0, 0};
+  });
+  EXPECT_EQ(turned.azimuth_deg, -52.1);
+  EXPECT_FALSE(turned.nominal_azimuth_deg);
+  const Intruder still = read([&](Json& j) { j["motion"]["frame_from_reference"] = identity; });
+  EXPECT_EQ(still.azimuth_deg, -52.1);
+  EXPECT_EQ(still.nominal_azimuth_deg, -52.1);
 }
 
 TEST(Truth, ALineCutAnywhereIsAnError) {

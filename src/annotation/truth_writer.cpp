@@ -42,7 +42,10 @@ OrderedJson json(const Intruder& intruder) {
   add(object, "range_rate_mps", intruder.range_rate_mps);
   add(object, "azimuth_deg", intruder.azimuth_deg);
   add(object, "elevation_deg", intruder.elevation_deg);
+  add(object, "nominal_azimuth_deg", intruder.nominal_azimuth_deg);
+  add(object, "nominal_elevation_deg", intruder.nominal_elevation_deg);
   add(object, "exact_box_px", intruder.exact_box_px);
+  add(object, "covered_box_px", intruder.covered_box_px);
   add(object, "visible_box_px", intruder.visible_box_px);
   object["visible_area_px"] = intruder.visible_area_px;
   object["alpha_sum_px"] = intruder.alpha_sum_px;

@@ -19,6 +19,7 @@ struct Export {
   std::string format;
   std::string images;
   std::string split = "by-background";
+  std::string boxes = "covered";
   std::vector<double> shares = {0.8, 0.1, 0.1};
   dataset::ExportOptions options;
 };
@@ -36,6 +37,7 @@ void run_export(Export arguments, Context& context) {
   options.format = exchange::format_from_name(arguments.format);
   if (!arguments.images.empty()) options.images = images_from_name(arguments.images);
   options.split = dataset::split_from_name(arguments.split);
+  options.boxes = dataset::boxes_from_name(arguments.boxes);
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
   if (!(sum > 0)) throw Error("--shares are all 0; expected a share for one part at least");
@@ -134,6 +136,11 @@ void add_dataset_exchange(CLI::App& group, Context& context) {
   export_command->add_option("--images",
                              out->images,
                              "jpg (default; for aot, whose readers open no jpg: png), png or none");
+  export_command->add_option(
+      "--boxes",
+      out->boxes,
+      "covered (default): the pixels that the aircraft covers, to train on; exact: its projected "
+      "shape; visible: the pixels that changed, codec's ripple included");
   export_command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
       ->check(CLI::PositiveNumber);
   export_command->add_option("--split",

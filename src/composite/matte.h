@@ -23,6 +23,7 @@ namespace airtruth::composite {
 // What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
 // sample, or the chroma sample of its block, now differs from the input.
 struct Visible {
+  std::optional<PixelBox> covered;  // bounds of the pixels that it covers (cover.h); empty: none
   std::optional<PixelBox>
       box;                  // bounds of the changed pixels that this intruder covers; empty: none
   std::int64_t pixels = 0;  // how many

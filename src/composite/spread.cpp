@@ -95,6 +95,8 @@ image::Layer spread(
   result.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
   result.area_alone_px = layer.area_alone_px;
+  result.area_seen_px = layer.area_seen_px;
+  result.area_free_px = layer.area_free_px;
   const std::vector<float> kernel = gaussian(sigma_px);
   const auto through = [&](const auto& get) {
     std::vector<float> plane = placed(layer, result, get);

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -56,9 +57,28 @@ Json options_json(const fs::path& set, const ExportOptions& options) {
       {"split", split},
       {"shares", options.shares},
       {"seed", options.seed},
+      {"boxes", name(options.boxes)},
       {"one_class", options.one_class}};
   if (options.mot_classes) json["mot_classes"] = true;
   return json;
+}
+
+std::string boxes_text(Boxes boxes) {
+  switch (boxes) {
+    case Boxes::kCovered:
+      return "Boxes are the covered ones (`covered_box_px` of truth.jsonl): bounds of the pixels "
+             "that the aircraft covers with an alpha of 0.08 or more. An aircraft that covers no "
+             "pixel "
+             "so far has no box.\n";
+    case Boxes::kExact:
+      return "Boxes are the exact ones (`exact_box_px` of truth.jsonl), cut by the frame: bounds "
+             "of the projected shape, in fractions of a pixel.\n";
+    case Boxes::kVisible:
+      break;
+  }
+  return "Boxes are the visible ones (`visible_box_px` of truth.jsonl): bounds of the pixels that "
+         "changed, with what blur, sharpening, noise and the codec's quantiser add around the "
+         "aircraft.\n";
 }
 
 // The folder of an export while it is being made.
@@ -118,7 +138,7 @@ class Export {
     survey();
     if (*options_.images != Images::kNone) write_images();
     write_labels();
-    write_file(place_.root() / "LOSS.md", exchange::loss(options_.format));
+    write_file(place_.root() / "LOSS.md", exchange::loss(options_.format) + about_boxes());
     place_.finish({{"sequences", summary_.sequences},
                    {"frames", summary_.frames},
                    {"frames_of_part", summary_.frames_of_part}});
@@ -150,8 +170,8 @@ class Export {
     writer_ = exchange::make_writer(options_.format, place_.root(), write_);
   }
 
-  exchange::Clip clip_of(const std::string& name) const {
-    exchange::Clip clip = set_.clip(name);
+  exchange::Clip clip_of(const std::string& name, bool with_masks = false) const {
+    exchange::Clip clip = set_.clip(name, options_.boxes, with_masks);
     std::erase_if(clip.frames, [&](const exchange::LabelledFrame& frame) {
       return frame.frame % options_.every != 0;
     });
@@ -227,8 +247,9 @@ class Export {
   void write_labels() {
     for (const std::string& name : set_.names()) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      const exchange::Clip clip = clip_of(name);
+      const exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
       const std::string& part = parts_.at(name);
+      count_boxes(clip, set_.is_imported(name));
       ++summary_.sequences;
       summary_.frames += std::ssize(clip.frames);
       summary_.frames_of_part[part] += std::ssize(clip.frames);
@@ -245,6 +266,33 @@ class Export {
     writer_->finish();
   }
 
+  void count_boxes(const exchange::Clip& clip, bool is_imported) {
+    (is_imported ? imported_ : rendered_) += 1;
+    for (const exchange::LabelledFrame& frame : clip.frames)
+      for (const exchange::Label& label : frame.labels) {
+        ++boxes_;
+        summary_.masks += label.mask ? 1 : 0;
+      }
+  }
+
+  // What the boxes of this export are, and what the masks are.
+  std::string about_boxes() const {
+    std::string text = "\n";
+    if (rendered_ > 0) text += boxes_text(options_.boxes);
+    if (imported_ > 0) text += "Boxes of imported clips are as they were imported.\n";
+    if (options_.format != exchange::Format::kCoco) return text;
+    text +=
+        summary_.masks > 0
+            ? fmt::format(
+                  "\n`segmentation` of {} of {} boxes holds the run lengths of the pixels with an "
+                  "alpha of 0.08 or more, and `area` their number; any other is its box.\n",
+                  summary_.masks,
+                  boxes_)
+            : "\n`segmentation` is the box as a polygon, no outline: the set has no masks "
+              "([output] masks = true makes them).\n";
+    return text;
+  }
+
   const LabelledSet& set_;
   const Place& place_;
   const ExportOptions& options_;
@@ -252,6 +300,7 @@ class Export {
   std::unique_ptr<exchange::Writer> writer_;
   std::map<std::string, std::string> parts_;
   std::mutex mutex_;
+  std::int64_t rendered_ = 0, imported_ = 0, boxes_ = 0;
   ExportSummary summary_;
 };
 
@@ -266,6 +315,8 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   const LabelledSet labelled(set);
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
+  if (options.boxes == Boxes::kCovered)
+    for (const std::string& name : labelled.names()) labelled.expect_covered_boxes(name);
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/log.h"
+#include "dataset/labelled_set.h"
 #include "dataset/split.h"
 #include "exchange/exchange.h"
 
@@ -24,6 +25,7 @@ struct ExportOptions {
   Split split = Split::kByBackground;
   std::array<double, 3> shares{0.8, 0.1, 0.1};
   std::uint64_t seed = 1;
+  Boxes boxes = Boxes::kCovered;
   bool one_class = false;    // "aircraft", in place of the aircraft's types
   bool mot_classes = false;  // MOT: classes numbered from 1, in place of 1 for every aircraft
   int jobs = 0;              // sequences at a time; 0: one per core
@@ -36,6 +38,7 @@ struct ExportSummary {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
   std::int64_t images = 0;  // written by this run
+  std::int64_t masks = 0;   // labels that hold the object's pixels
   std::map<std::string, std::int64_t> frames_of_part;
   bool was_there = false;  // an earlier run had finished it
 };

@@ -33,7 +33,7 @@ class Made : public testing::Test {
   static void SetUpTestSuite() {
     root_ = fs::temp_directory_path() / ("airtruth_export_" + std::to_string(::getpid()));
     fs::create_directories(root_);
-    write_file(root_ / "c.toml", kCatalogue);
+    write_file(root_ / "c.toml", std::string(kCatalogue) + "masks = true\n");
     const BuildSummary summary = build(read_catalogue(root_ / "c.toml"), set(), {});
     ASSERT_EQ(summary.made, 4);
   }
@@ -215,6 +215,102 @@ TEST_F(Made, EveryNthFrameAndOneClass) {
       testing::StartsWith("0 " + std::to_string((box.x + box.width / 2) / 160).substr(0, 5)));
 }
 
+TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
+  const LabelledSet set_of_boxes(set());
+  const std::string name = "sky-across-b737";
+  const auto truth = sequence::open_finished(set_of_boxes.folder(name)).truth.frames;
+  const auto covered = set_of_boxes.clip(name).frames;
+  const auto exact = set_of_boxes.clip(name, Boxes::kExact).frames;
+  const auto visible = set_of_boxes.clip(name, Boxes::kVisible).frames;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const annotation::Intruder& one = truth[k].intruders[0];
+    ASSERT_TRUE(one.covered_box_px && one.visible_box_px && one.exact_box_px);
+    const PixelBox& c = *one.covered_box_px;
+    const PixelBox& v = *one.visible_box_px;
+    EXPECT_EQ(covered[k].labels.at(0).box_px,
+              (Box{double(c.x), double(c.y), double(c.width), double(c.height)}));
+    EXPECT_EQ(visible[k].labels.at(0).box_px,
+              (Box{double(v.x), double(v.y), double(v.width), double(v.height)}));
+    const Box& e = exact[k].labels.at(0).box_px;
+    EXPECT_GE(e.x, 0);
+    EXPECT_LE(e.right(), 160);
+    if (one.cut_by_frame == 0) {
+      EXPECT_EQ(e, *one.exact_box_px);
+    }
+  }
+  ExportOptions options;
+  options.format = exchange::Format::kCvat;
+  options.images = Images::kNone;
+  for (const auto& [boxes, key] : {std::pair(Boxes::kCovered, "`covered_box_px`"),
+                                   std::pair(Boxes::kExact, "`exact_box_px`"),
+                                   std::pair(Boxes::kVisible, "`visible_box_px`")}) {
+    options.boxes = boxes;
+    const fs::path out = fresh();
+    export_set(set(), out, options);
+    EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr(key));
+  }
+  EXPECT_EQ(boxes_from_name("exact"), Boxes::kExact);
+  EXPECT_THROW(boxes_from_name("tight"), Error);
+}
+
+TEST_F(Made, CocoHoldsThePixelsOfSetsThatHaveMasks) {
+  ExportOptions options;
+  options.images = Images::kNone;
+  options.split = Split::kNone;
+  const fs::path out = fresh();
+  EXPECT_EQ(export_set(set(), out, options).masks, 32);
+  EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr("`segmentation` of 32 of 32 boxes"));
+  const auto coco = nlohmann::json::parse(read_file(out / "annotations/instances_all.json"));
+  for (const nlohmann::json& one : coco.at("annotations")) {
+    EXPECT_EQ(one.at("segmentation").at("size"), nlohmann::json::parse("[120, 160]"));
+    EXPECT_TRUE(one.at("segmentation").at("counts").is_string());
+    const auto box = one.at("bbox").get<std::array<double, 4>>();
+    EXPECT_GT(one.at("area"), 0.1 * box[2] * box[3]);
+    EXPECT_LE(one.at("area"), box[2] * box[3]);
+  }
+}
+
+TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
+  EXPECT_THAT(verify(set(), {}).faults, ElementsAre());
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["covered_box_px"][2] = intruder["covered_box_px"][2].get<int>() - 1;
+  });
+  EXPECT_THAT(verify(copy, {}).faults,
+              ElementsAre(HasSubstr("its mask is not of its covered box")));
+}
+
+// A set that was made before truth had covered boxes.
+TEST_F(Made, AnOlderSetIsRefusedWithOneLineOrTakenByItsVisibleBoxes) {
+  const fs::path old = fresh();
+  fs::copy(set(), old, fs::copy_options::recursive);
+  for (const auto& folder : fs::directory_iterator(old / "sequences")) {
+    auto record = nlohmann::ordered_json::parse(read_file(folder.path() / "sequence.json"));
+    record.erase("covered_alpha");
+    write_file(folder.path() / "sequence.json", record.dump());
+  }
+  ExportOptions options;
+  options.images = Images::kNone;
+  std::string said = "nothing";
+  const fs::path refused = fresh();
+  try {
+    export_set(old, refused, options);
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  EXPECT_THAT(said, HasSubstr("was made before truth had covered boxes"));
+  EXPECT_THAT(said, HasSubstr("--boxes visible"));
+  EXPECT_EQ(said.find('\n'), std::string::npos);
+  EXPECT_FALSE(fs::exists(refused));
+  options.boxes = Boxes::kVisible;
+  EXPECT_EQ(export_set(old, fresh(), options).frames, 32);
+  std::vector<std::string> warnings;
+  const Warn warn = [&](const std::string& w) { warnings.push_back(w); };
+  EXPECT_EQ(LabelledSet(old).usual_boxes(warn), Boxes::kVisible);
+  EXPECT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(LabelledSet(set()).usual_boxes(warn), Boxes::kCovered);
+  EXPECT_EQ(warnings.size(), 1u);
+}
+
 TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   const fs::path out = fresh();
   ImportOptions options;
@@ -250,10 +346,13 @@ TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["state"] = "outside";
     intruder.erase("visible_box_px");
+    intruder.erase("covered_box_px");
   });
   const VerifyResult result = verify(copy, {});
   EXPECT_EQ(result.in_view_without_box, 1);
-  EXPECT_THAT(result.faults, ElementsAre(HasSubstr("in view by its position, and without a box")));
+  EXPECT_THAT(result.faults,
+              ElementsAre(HasSubstr("in view by its position, and without a box"),
+                          HasSubstr("a mask, and not visible")));
 }
 
 }  // namespace

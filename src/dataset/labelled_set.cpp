@@ -9,9 +9,12 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "composite/cover.h"
 #include "dataset/expand.h"
 #include "dataset/folder.h"
+#include "exchange/pixel_mask.h"
 #include "sequence/finished.h"
+#include "sequence/masks.h"
 #include "video/reader.h"
 
 namespace airtruth::dataset {
@@ -28,14 +31,29 @@ bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m
   return elevation > -dip;
 }
 
+std::optional<Box> box_of(const annotation::Intruder& intruder, Boxes boxes, const Box& frame) {
+  if (intruder.state != annotation::State::kVisible) return std::nullopt;
+  if (boxes != Boxes::kExact) {
+    const auto& box = boxes == Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
+    return box ? std::optional(
+                     Box{double(box->x), double(box->y), double(box->width), double(box->height)})
+               : std::nullopt;
+  }
+  if (!intruder.exact_box_px) return std::nullopt;
+  const Box& e = *intruder.exact_box_px;
+  const double x = std::max(e.x, 0.0), y = std::max(e.y, 0.0);
+  const Box cut{x, y, std::min(e.right(), frame.width) - x, std::min(e.bottom(), frame.height) - y};
+  return cut.width > 0 && cut.height > 0 ? std::optional(cut) : std::nullopt;
+}
+
 exchange::Label label_of(const annotation::Intruder& intruder,
                          const annotation::Frame& frame,
-                         std::int64_t track) {
-  const PixelBox& box = *intruder.visible_box_px;
+                         std::int64_t track,
+                         const Box& box) {
   exchange::Label label;
   label.track = track;
   label.category = category_of(intruder.aircraft);
-  label.box_px = {double(box.x), double(box.y), double(box.width), double(box.height)};
+  label.box_px = box;
   const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_intruder;
   label.visible = std::clamp(1 - hidden - intruder.cut_by_frame, 0.0, 1.0);
   label.occluded = hidden > 0;
@@ -46,19 +64,37 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   return label;
 }
 
-exchange::Clip clip_of(const sequence::Finished& finished) {
+// The pixels of kCoveredAlpha or more, which covered_box_px bounds.
+std::optional<exchange::PixelMask> pixels_of_mask(const sequence::Finished& finished,
+                                                  const std::string& id,
+                                                  std::int64_t frame) {
+  const auto mask = sequence::read_alpha_mask(finished.folder, finished.truth.lens, id, frame);
+  const auto box = mask ? composite::covered_box(*mask) : std::nullopt;
+  if (!box) return std::nullopt;
+  const auto width = static_cast<std::size_t>(mask->patch.width);
+  return exchange::pixel_mask_of(mask->patch.width, mask->patch.height, *box, [&](int x, int y) {
+    return mask->alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
+           composite::kCoveredAlpha;
+  });
+}
+
+exchange::Clip clip_of(const sequence::Finished& finished, Boxes boxes, bool with_masks) {
   exchange::Clip clip;
   clip.name = finished.name;
   clip.media = finished.video;
   clip.width = finished.truth.lens.width;
   clip.height = finished.truth.lens.height;
   clip.frame_rate_hz = video::Reader(finished.video, {.threads = 1}).info().frame_rate.value();
+  const Box whole{0, 0, double(clip.width), double(clip.height)};
   for (const annotation::Frame& truth : finished.truth.frames) {
     exchange::LabelledFrame frame{truth.frame, truth.time_s, {}};
-    for (std::size_t i = 0; i < truth.intruders.size(); ++i)
-      if (truth.intruders[i].visible_box_px)
-        frame.labels.push_back(
-            label_of(truth.intruders[i], truth, static_cast<std::int64_t>(i) + 1));
+    for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+      const annotation::Intruder& intruder = truth.intruders[i];
+      const auto box = box_of(intruder, boxes, whole);
+      if (!box) continue;
+      frame.labels.push_back(label_of(intruder, truth, static_cast<std::int64_t>(i) + 1, *box));
+      if (with_masks) frame.labels.back().mask = pixels_of_mask(finished, intruder.id, truth.frame);
+    }
     clip.frames.push_back(std::move(frame));
   }
   return clip;
@@ -79,6 +115,16 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
 }
 
 }  // namespace
+
+const char* name(Boxes boxes) {
+  return boxes == Boxes::kCovered ? "covered" : boxes == Boxes::kExact ? "exact" : "visible";
+}
+
+Boxes boxes_from_name(const std::string& name) {
+  for (const Boxes boxes : {Boxes::kCovered, Boxes::kExact, Boxes::kVisible})
+    if (name == dataset::name(boxes)) return boxes;
+  throw Error("--boxes is '" + name + "'; expected covered, exact or visible");
+}
 
 std::string category_of(const std::string& aircraft) {
   const fs::path path(aircraft);
@@ -115,9 +161,42 @@ bool LabelledSet::is_imported(const std::string& name) const {
   return fs::exists(folder(name) / kLabels);
 }
 
-exchange::Clip LabelledSet::clip(const std::string& name) const {
+exchange::Clip LabelledSet::clip(const std::string& name, Boxes boxes, bool with_masks) const {
   if (is_imported(name)) return exchange::read_labels(folder(name) / kLabels);
-  return clip_of(sequence::open_finished(folder(name)));
+  if (boxes == Boxes::kCovered) expect_covered_boxes(name);
+  const sequence::Finished finished = sequence::open_finished(folder(name));
+  return clip_of(finished, boxes, with_masks && finished.scene && finished.scene->output.masks);
+}
+
+bool LabelledSet::has_covered_boxes(const std::string& name) const {
+  if (is_imported(name)) return true;
+  const auto record =
+      nlohmann::json::parse(read_file(folder(name) / "sequence.json"), nullptr, false);
+  return record.is_object() && record.contains("covered_alpha");
+}
+
+void LabelledSet::expect_covered_boxes(const std::string& name) const {
+  if (!has_covered_boxes(name))
+    throw Error(
+        "was made before truth had covered boxes (covered_box_px); expected --boxes visible or "
+        "--boxes exact, or a sequence that is rendered again",
+        {folder(name).string()});
+}
+
+Boxes LabelledSet::usual_boxes(const Warn& warn) const {
+  for (const std::string& name : names_) {
+    if (has_covered_boxes(name)) continue;
+    airtruth::warn(warn,
+                   folder(name).string() +
+                       ": was made before truth had covered boxes (covered_box_px); the visible "
+                       "boxes are taken");
+    return Boxes::kVisible;
+  }
+  return Boxes::kCovered;
+}
+
+bool LabelledSet::has_masks(const std::string& name) const {
+  return fs::is_directory(folder(name) / "masks");
 }
 
 ClipFacts LabelledSet::facts(const std::string& name) const {

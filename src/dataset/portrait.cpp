@@ -41,9 +41,9 @@ Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intru
   point.azimuth_deg = intruder.azimuth_deg;
   point.elevation_deg = intruder.elevation_deg;
   if (intruder.position_ned_m) point.position_ned_m = numbers(*intruder.position_ned_m);
-  if (intruder.visible_box_px) {
-    point.width_px = intruder.visible_box_px->width;
-    point.height_px = intruder.visible_box_px->height;
+  if (const auto box = annotation::box_to_show(intruder)) {
+    point.width_px = box->width;
+    point.height_px = box->height;
   }
   point.state = annotation::name(intruder.state);
   return point;
@@ -67,6 +67,7 @@ void count(const sequence::Finished& finished, Portrait& portrait) {
   for (const annotation::Frame& frame : finished.truth.frames)
     for (const annotation::Intruder& intruder : frame.intruders) {
       ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
+      portrait.covered_boxes += intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && lacks_box(frame, intruder, *lens) ? 1 : 0;
     }
 }
@@ -103,7 +104,8 @@ void add_pictures(const sequence::Finished& finished,
     const annotation::Intruder* intruder = first_visible(frames[i]);
     if (intruder == nullptr) continue;
     seen.push_back(i);
-    const int size = std::max(intruder->visible_box_px->width, intruder->visible_box_px->height);
+    const PixelBox box = *annotation::box_to_show(*intruder);
+    const int size = std::max(box.width, box.height);
     if (intruder->cut_by_frame > 0 && largest_px >= 0) continue;
     if (size > largest_px) {
       largest_px = size;
@@ -121,7 +123,7 @@ void add_pictures(const sequence::Finished& finished,
     const auto frame = reader.next();
     if (!frame) throw Error("holds fewer frames than its truth", {finished.video.string()});
     if (!in_loop[i] && i != largest) continue;
-    const PixelBox& box = *first_visible(frames[i])->visible_box_px;
+    const PixelBox box = *annotation::box_to_show(*first_visible(frames[i]));
     if (i == largest)
       portrait.preview_jpeg = video::jpeg_of(
           report::small_copy(report::overlay(frame->picture, frames[i], ids), kPreviewWidth),
@@ -161,6 +163,7 @@ Portrait portrait_of(const LabelledSet& set, const std::string& name, const std:
     portrait.sun_azimuth_deg = scene.light.sun_azimuth_deg;
     portrait.sun_elevation_deg = scene.light.sun_elevation_deg;
     portrait.motion_model = scene.motion.model;
+    portrait.scene = scene;
   }
   count(finished, portrait);
   add_series(finished, portrait);

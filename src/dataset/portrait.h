@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dataset/labelled_set.h"
+#include "scene/scene.h"
 
 namespace airtruth::dataset {
 
@@ -21,7 +22,7 @@ struct Portrait {
     double time_s = 0;
     std::optional<double> range_m, azimuth_deg, elevation_deg;
     std::optional<std::array<double, 3>> position_ned_m;
-    std::optional<double> width_px, height_px;  // of its visible box
+    std::optional<double> width_px, height_px;  // of its covered (else visible) box
     const char* state = "";
   };
   struct Intruder {
@@ -45,9 +46,11 @@ struct Portrait {
   std::optional<double> horizontal_fov_deg;
   std::optional<double> sun_azimuth_deg, sun_elevation_deg;
   std::string motion_model;
+  std::optional<scene::Scene> scene;  // the effective one; empty: imported
   std::vector<Intruder> intruders;
   std::vector<Camera> camera;
   std::array<std::int64_t, 5> frames_by_state{};  // visible, hidden, outside, behind, ended
+  std::int64_t covered_boxes = 0;                 // of the visible ones
   std::int64_t without_box = 0;                   // in view by geometry (dataset/in_view.h)
   std::vector<double> contrasts;                  // of sampled frames
   std::string preview_jpeg;                       // bytes; empty where nothing is ever seen

@@ -10,8 +10,7 @@
 #include "base/base64.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "base/version.h"
-#include "dataset/folder.h"
+#include "dataset/card.h"
 #include "dataset/in_parallel.h"
 #include "dataset/page.h"
 #include "dataset/page_assets.h"
@@ -162,55 +161,6 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
           {"files", files}};
 }
 
-// The data card: what the set is, how it was made, and what it does not say.
-Json card_of(const fs::path& set, const Totals& totals, const std::vector<Portrait>& portraits) {
-  Json card = {{"made by", std::string("airtruth ") + kVersion}};
-  const Folder folder{set};
-  if (fs::exists(folder.catalogue())) {
-    const Catalogue catalogue = read_catalogue(folder.catalogue());
-    card["name"] = catalogue.name;
-    card["seed"] = catalogue.seed;
-    card["rendering"] = fmt::format("quality {}, {}, {}",
-                                    catalogue.render.quality,
-                                    catalogue.composite.method,
-                                    catalogue.output.video);
-    card["complete"] = fs::exists(folder.record()) ? "yes" : "no: sequences are missing";
-    for (const Background& background : catalogue.backgrounds) {
-      const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
-      card["background " + background.name] =
-          flight != nullptr
-              ? fmt::format(
-                    "virtual flight, seed {}, {} frames, {}x{}; made by airtruth, free of "
-                    "others' rights",
-                    flight->seed,
-                    flight->frame_count,
-                    flight->width,
-                    flight->height)
-              : std::get<fs::path>(background.source).filename().string() +
-                    ": a video; its licence is its owner's to state";
-    }
-  }
-  card["frames"] = totals.frames;
-  const bool rendered = std::any_of(
-      portraits.begin(), portraits.end(), [](const Portrait& p) { return !p.camera.empty(); });
-  if (rendered) {
-    card["aircraft"] =
-        "models of FlightGear's AI traffic (Debian package flightgear-data-ai, GPL-2+), unless a "
-        "sequence names a file; pictures of them in this set derive from those models";
-    card["labels"] =
-        "exact: boxes bound the pixels that the compositing changed; geometry is the scene's own. "
-        "In view by geometry and without a box: " +
-        std::to_string(totals.without_box) + " of " + std::to_string(totals.frames) + " frames";
-    card["known limits"] =
-        "no motion blur, rolling shutter, haze or sensor noise on the intruder; the camera's "
-        "motion "
-        "is a homography, exact for far scenes through a pinhole; virtual backgrounds are drawn, "
-        "not "
-        "filmed";
-  }
-  return card;
-}
-
 }  // namespace
 
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
@@ -231,7 +181,8 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
     totals.add(portrait);
     sequences.push_back(json_of(portrait, out));
   }
-  const Json card = card_of(set, totals, portraits);
+  Json card = Json::object();
+  for (const auto& [key, text] : card_of(set, portraits)) card[key] = text;
   const fs::path named = fs::absolute(set).lexically_normal();
   const std::string title = card.contains("name")  ? card.at("name").get<std::string>()
                             : named.has_filename() ? named.filename().string()

@@ -7,9 +7,11 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "composite/cover.h"
 #include "dataset/expand.h"
 #include "dataset/in_view.h"
 #include "sequence/finished.h"
+#include "sequence/masks.h"
 #include "sequence/recompose.h"
 #include "video/reader.h"
 
@@ -89,6 +91,7 @@ class Check {
       for (const annotation::Intruder& intruder : frame.intruders) {
         box(frame, intruder, width, height);
         view(frame, intruder, lens);
+        if (finished.scene && finished.scene->output.masks) mask(finished, frame, intruder);
       }
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
@@ -117,11 +120,29 @@ class Check {
     const bool visible = intruder.state == annotation::State::kVisible;
     if (visible != intruder.visible_box_px.has_value())
       return fault(where + (visible ? "visible without a box" : "a box, and not visible"));
-    if (!visible) return;
-    const PixelBox& v = *intruder.visible_box_px;
-    if (v.x < 0 || v.y < 0 || v.width < 1 || v.height < 1 || v.right() > width ||
-        v.bottom() > height)
-      fault(where + "its visible box reaches out of the frame");
+    for (const auto& [what, box] : {std::pair("visible", intruder.visible_box_px),
+                                    std::pair("covered", intruder.covered_box_px)})
+      if (box && !lies_in({0, 0, width, height}, *box))
+        fault(where + "its " + what + " box reaches out of the frame");
+  }
+
+  static bool lies_in(const PixelBox& frame, const PixelBox& box) {
+    return box.width > 0 && box.height > 0 && intersection(frame, box) == box;
+  }
+
+  // A mask for each intruder that is visible, and none more; its pixels are those of the covered
+  // box.
+  void mask(const sequence::Finished& finished,
+            const annotation::Frame& frame,
+            const annotation::Intruder& intruder) {
+    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const auto mask =
+        sequence::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
+    if (mask && intruder.state != annotation::State::kVisible)
+      return fault(where + "a mask, and not visible");
+    const auto bounds = mask ? composite::covered_box(*mask) : std::nullopt;
+    if (bounds != intruder.covered_box_px)
+      fault(where + (mask ? "its mask is not of its covered box" : "a covered box without a mask"));
   }
 
   const Folder& folder_;

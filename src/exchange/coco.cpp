@@ -33,7 +33,16 @@ struct Lists {
   Json videos = Json::array();
   std::int64_t next_image = 1;
   std::int64_t next_annotation = 1;
+  std::int64_t masks = 0;  // annotations that hold their object's pixels
 };
+
+// Run lengths of the object's pixels; without a mask the box as a polygon.
+Json segmentation_of(const Label& label) {
+  if (label.mask)
+    return {{"size", {label.mask->height, label.mask->width}}, {"counts", label.mask->counts}};
+  const Box& b = label.box_px;
+  return Json::array({{b.x, b.y, b.x, b.bottom(), b.right(), b.bottom(), b.right(), b.y}});
+}
 
 class CocoWriter : public IndexedWriter {
  public:
@@ -100,16 +109,16 @@ class CocoWriter : public IndexedWriter {
     for (const Label& label : frame.labels) {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
-      Json json = {
-          {"id", number},
-          {"image_id", id},
-          {"video_id", video},
-          {"category_id", category_id(label.category)},
-          {"track_id", label.track},
-          {"bbox", {b.x, b.y, b.width, b.height}},
-          {"area", b.area()},
-          {"iscrowd", 0},
-          {"segmentation", {{b.x, b.y, b.x, b.bottom(), b.right(), b.bottom(), b.right(), b.y}}}};
+      lists.masks += label.mask ? 1 : 0;
+      Json json = {{"id", number},
+                   {"image_id", id},
+                   {"video_id", video},
+                   {"category_id", category_id(label.category)},
+                   {"track_id", label.track},
+                   {"bbox", {b.x, b.y, b.width, b.height}},
+                   {"area", label.mask ? double(label.mask->area_px) : b.area()},
+                   {"segmentation", segmentation_of(label)},
+                   {"iscrowd", 0}};
       if (label.visible) json["visibility"] = *label.visible;
       if (label.occluded) json["occluded"] = *label.occluded;
       if (label.truncated) json["truncated"] = *label.truncated;
@@ -127,8 +136,9 @@ class CocoWriter : public IndexedWriter {
     const fs::path file = folder() / ("instances_" + part + ".json");
     {
       std::ofstream out(part_path(file), std::ios::binary);
-      out << "{\"info\":{\"description\":\"made by airtruth; segmentations are the boxes as "
-             "polygons\"},"
+      out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
+          << segmentations(lists)
+          << "\"},"
              "\n\"licenses\":[],\n\"categories\":"
           << categories.dump() << ",\n\"videos\":" << lists.videos.dump() << ",\n\"images\":[";
       append(out, list(part, "images"));
@@ -140,6 +150,14 @@ class CocoWriter : public IndexedWriter {
     fs::rename(part_path(file), file);
     fs::remove(list(part, "images"));
     fs::remove(list(part, "annotations"));
+  }
+
+  static const char* segmentations(const Lists& lists) {
+    return lists.masks == 0 ? "the boxes as polygons"
+           : lists.masks + 1 == lists.next_annotation
+               ? "run lengths of the objects' pixels"
+               : "run lengths of the objects' pixels where they "
+                 "are known, else the boxes as polygons";
   }
 
   static void append(std::ofstream& out, const fs::path& file) {

@@ -20,8 +20,8 @@ struct About {
 };
 
 constexpr const char* kPictures =
-    "positions, velocities, attitudes, the camera's motion and lens, light, the exact (floating) "
-    "box, frames in which the aircraft is hidden or outside: see truth.jsonl";
+    "positions, velocities, attitudes, the camera's motion and lens, light, the boxes of the "
+    "other two kinds, frames in which the aircraft is hidden or outside: see truth.jsonl";
 
 constexpr std::array<About, 11> kAll = {{
     {Format::kCoco,
@@ -184,9 +184,7 @@ std::string loss(Format format) {
   text += std::string("Kept: ") + a.kept + ".\n\nLost: ";
   if (*a.lost != 0) text += std::string(a.lost) + "; ";
   text += kPictures;
-  text +=
-      ".\n\nBoxes bound the whole pixels that show the aircraft (`visible_box_px` of "
-      "truth.jsonl). Frames are counted anew where only every n-th was taken.\n";
+  text += ".\n\nFrames are counted anew where only every n-th was taken.\n";
   return text;
 }
 

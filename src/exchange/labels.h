@@ -15,6 +15,15 @@ namespace airtruth::exchange {
 
 namespace fs = std::filesystem;
 
+// The pixels of an object in a picture: COCO's compressed run lengths (pixel_mask.h).
+struct PixelMask {
+  int width = 0;  // of the picture
+  int height = 0;
+  std::string counts;
+  std::int64_t area_px = 0;
+  bool operator==(const PixelMask&) const = default;
+};
+
 // One object in one frame.
 struct Label {
   std::int64_t track = 1;  // the same object through a clip; from 1
@@ -25,6 +34,7 @@ struct Label {
   std::optional<bool> truncated;  // the frame's edge cuts a part off
   std::optional<double> range_m;
   std::optional<bool> above_horizon;
+  std::optional<PixelMask> mask;  // not kept in labels.jsonl
   bool operator==(const Label&) const = default;
 };
 

@@ -302,7 +302,7 @@ Assessment assess(const fs::path& set,
   Assessment assessment;
   assessment.set = name_of(set);
   assessment.until_loss = options.until_loss;
-  assessment.truths = truths_of(dataset::LabelledSet(set));
+  assessment.truths = truths_of(dataset::LabelledSet(set), options.warn);
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
   // Results first: what is wrong with them is said before minutes of video are read.
   std::map<std::string, std::vector<Results>> found;

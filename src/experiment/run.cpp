@@ -137,12 +137,13 @@ class Running {
       if (dataset::matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open_folder();
+    const dataset::Boxes boxes = set.usual_boxes(options_.warn);
     dataset::in_parallel(
         names.size(),
         options_.jobs,
         [&](std::size_t i) {
           for (const exchange::Clip& clip :
-               exchange::arranged(exchange::Format::kOtb, set.clip(names[i])))
+               exchange::arranged(exchange::Format::kOtb, set.clip(names[i], boxes)))
             follow(clip);
         },
         options_.progress,

@@ -72,12 +72,13 @@ evaluation::VotTruth TruthClip::vot() const {
   return result;
 }
 
-std::vector<TruthClip> truths_of(const dataset::LabelledSet& set) {
+std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn) {
+  const dataset::Boxes boxes = set.usual_boxes(warn);
   std::vector<TruthClip> truths;
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
     const std::string background = fs::path(set.facts(name).background).filename().string();
-    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name))) {
+    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
       truths.push_back(truth_from(std::move(clip)));
       truths.back().lens = lens;
       truths.back().background = background;

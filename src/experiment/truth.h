@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/log.h"
 #include "dataset/labelled_set.h"
 #include "evaluation/vot.h"
 #include "exchange/labels.h"
@@ -43,8 +44,8 @@ struct TruthClip {
   evaluation::VotTruth vot() const;
 };
 
-// Every object of every sequence, sorted by name.
-std::vector<TruthClip> truths_of(const dataset::LabelledSet& set);
+// Every object of every sequence, sorted by name, by its covered boxes (LabelledSet::usual_boxes).
+std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn);
 
 // Reads the clip's video once, for the contrast of each frame and `stills` pictures spread over it.
 // A clip without a video keeps neither.

@@ -32,6 +32,11 @@ struct Layer {
   // frame (pixels).
   std::vector<double> area_alone_in_frame_px;
   std::vector<double> area_alone_px;  // the same, with what the frame cuts off counted too
+  // What is left of area_alone_in_frame_px behind nearer intruders, and of that again behind the
+  // own aircraft's mask. All four areas are of the silhouette itself, before any point spread, so
+  // that their differences are what hides it, and nothing else.
+  std::vector<double> area_seen_px;
+  std::vector<double> area_free_px;
 
   bool empty() const { return patch.width == 0; }
   std::size_t index(int x, int y) const {

@@ -10,6 +10,8 @@
 
 #include "aircraft/catalogue.h"
 #include "annotation/exact_box.h"
+#include "composite/cover.h"
+#include "composite/spread.h"
 #include "render/renderer.h"
 
 // The renderer under blur and rolling shutter against the plainest answer there is: each pixel is
@@ -239,6 +241,49 @@ Scene scene_of(const Setting& setting,
   return scene;
 }
 
+// Brute force's alpha through a Gaussian, pixel by pixel in doubles: the share of each pixel's
+// light that lands on another is the product of two integrals of the normal distribution.
+double alpha_through(
+    const std::vector<double>& alpha, const PixelBox& patch, double sigma_px, int x, int y) {
+  const auto landed = [&](int from, int to) {
+    const double unit = sigma_px * std::sqrt(2.0);
+    return 0.5 * (std::erf((to - from + 0.5) / unit) - std::erf((to - from - 0.5) / unit));
+  };
+  double sum = 0;
+  std::size_t i = 0;
+  for (int v = patch.y; v < patch.bottom(); ++v)
+    for (int u = patch.x; u < patch.right(); ++u, ++i)
+      if (alpha[i] > 0 && std::abs(u - x) < 9 && std::abs(v - y) < 9)
+        sum += alpha[i] * landed(u, x) * landed(v, y);
+  return sum;
+}
+
+// The covered box of the layer behind a point spread, against that of brute force.
+void compare_covered(const image::Layer& layer,
+                     const std::vector<double>& oracle,
+                     const View& view,
+                     const std::string& where) {
+  constexpr double kSigmaPx = 0.8;
+  constexpr double kLimit = (composite::kCoveredAlpha - 0.5) / 255;
+  constexpr double kOff = 0.01;  // that near to the limit, either answer is right
+  const auto covered = composite::covered_box(
+      composite::spread(layer, kSigmaPx, 0, view.width, view.height), 0, nullptr);
+  std::optional<PixelBox> surely, perhaps;
+  const PixelBox& p = layer.patch;
+  const PixelBox frame{0, 0, view.width, view.height};
+  const PixelBox all = *intersection({p.x - 4, p.y - 4, p.width + 8, p.height + 8}, frame);
+  for (int y = all.y; y < all.bottom(); ++y)
+    for (int x = all.x; x < all.right(); ++x) {
+      const double alpha = alpha_through(oracle, p, kSigmaPx, x, y);
+      const PixelBox one{x, y, 1, 1};
+      if (alpha > kLimit + kOff) surely = surely ? bounds(*surely, one) : one;
+      if (alpha > kLimit - kOff) perhaps = perhaps ? bounds(*perhaps, one) : one;
+    }
+  ASSERT_TRUE(covered && surely && perhaps) << where;
+  EXPECT_EQ(bounds(*covered, *surely), *covered) << where;
+  EXPECT_EQ(bounds(*perhaps, *covered), *perhaps) << where;
+}
+
 // Every pixel of the patch: the box of what is seen and the centroid; the worst alpha is returned.
 double compare_all(const Setting& setting,
                    const aircraft::Mesh& mesh,
@@ -248,6 +293,7 @@ double compare_all(const Setting& setting,
   const Scene scene = scene_of(setting, mesh, model, size_px);
   const image::Layer layer = render(scene.view, {}, {scene.instance}, {scene.search});
   const Oracle oracle(mesh, scene.view, scene.instance);
+  std::vector<double> oracle_alpha;
   double worst = 0, sum = 0, oracle_sum = 0;
   Pixel centroid(0, 0), oracle_centroid(0, 0);
   std::optional<PixelBox> box, oracle_box, surely, perhaps;
@@ -255,6 +301,7 @@ double compare_all(const Setting& setting,
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
       const double alpha = layer.pixels[layer.index(x, y)].alpha;
       const double truth = oracle.alpha(x, y);
+      oracle_alpha.push_back(truth);
       worst = std::max(worst, std::abs(alpha - truth));
       sum += alpha, centroid += alpha * Pixel(x + 0.5, y + 0.5);
       oracle_sum += truth, oracle_centroid += truth * Pixel(x + 0.5, y + 0.5);
@@ -267,6 +314,7 @@ double compare_all(const Setting& setting,
       if (truth > 1.5 * kSeen) surely = surely ? bounds(*surely, one) : one;
       if (truth > 0.5 * kSeen) perhaps = perhaps ? bounds(*perhaps, one) : one;
     }
+  if (size_px < 100) compare_covered(layer, oracle_alpha, scene.view, where);
   const double off = (centroid / sum - oracle_centroid / oracle_sum).norm();
   std::printf("%s: alpha within %.4f, centroid within %.4f px\n", where.c_str(), worst, off);
   EXPECT_LT(off, 0.05) << where;

@@ -266,13 +266,17 @@ image::Layer layer_of(const Canvas& canvas, const std::vector<Actor>& actors) {
   layer.depth_m.assign(canvas.sums.size(), std::numeric_limits<float>::infinity());
   layer.coverage.resize(actors.size());
   layer.area_alone_in_frame_px.assign(actors.size(), 0.0);
+  layer.area_seen_px.assign(actors.size(), 0.0);
   for (std::size_t a = 0; a < actors.size(); ++a)
     if (actors[a].pixels) layer.coverage[a].assign(canvas.sums.size(), 0.0f);
   for (std::size_t i = 0; i < canvas.sums.size(); ++i) {
     write_pixel(canvas, i, layer);
     if (canvas.sums[i].count == 0) continue;
-    for (std::size_t a = 0; a < actors.size(); ++a)
-      layer.area_alone_in_frame_px[a] += canvas.alone[i * actors.size() + a] / canvas.sums[i].count;
+    for (std::size_t a = 0; a < actors.size(); ++a) {
+      const std::size_t of_actor = i * actors.size() + a;
+      layer.area_alone_in_frame_px[a] += canvas.alone[of_actor] / canvas.sums[i].count;
+      layer.area_seen_px[a] += canvas.coverage[of_actor] / canvas.sums[i].count;
+    }
   }
   return layer;
 }
@@ -310,7 +314,9 @@ image::Layer render(const View& view,
   } else {
     layer.coverage.resize(actors.size());
     layer.area_alone_in_frame_px.assign(actors.size(), 0.0);
+    layer.area_seen_px.assign(actors.size(), 0.0);
   }
+  layer.area_free_px = layer.area_seen_px;
   layer.area_alone_px = layer.area_alone_in_frame_px;
   for (std::size_t a = 0; a < actors.size(); ++a)
     if (search[a])

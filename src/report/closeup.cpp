@@ -50,13 +50,16 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
       const Box& e = *intruder.exact_box_px;
       outline(panel, {e.x - area.x, e.y - area.y, e.width, e.height}, zoom, kAmber);
     }
-    if (intruder.visible_box_px) {
-      const PixelBox& v = *intruder.visible_box_px;
-      outline(panel,
-              {double(v.x - area.x), double(v.y - area.y), double(v.width), double(v.height)},
-              zoom,
-              kGreen);
-    }
+    const auto draw = [&](const std::optional<PixelBox>& box, const cv::Scalar& colour) {
+      if (!box) return;
+      const Box moved{double(box->x - area.x),
+                      double(box->y - area.y),
+                      double(box->width),
+                      double(box->height)};
+      outline(panel, moved, zoom, colour);
+    };
+    draw(intruder.visible_box_px, kWhite);
+    draw(intruder.covered_box_px, kGreen);
   }
 }
 
@@ -78,8 +81,9 @@ void draw_heading(cv::Mat& canvas, std::int64_t frame, int zoom) {
     x += text_width(words, kCloseupTextPx) + 2 * kPanelGapPx;
   };
   add(fmt::format("frame {}, {}x", frame, zoom), kWhite);
-  add("visible box", kGreen);
+  add("covered box", kGreen);
   add("exact box", kAmber);
+  add("visible box", kWhite);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void draw_inset(cv::Mat& tile,
                 const annotation::Intruder& intruder,
                 const PixelBox& place,
                 const cv::Scalar& colour) {
-  const PixelBox area = around(*intruder.visible_box_px);
+  const PixelBox area = around(*annotation::box_to_show(intruder));
   image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
   image::Rgb8 large = resized(
       crop, place.width, place.height, place.width > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
@@ -111,7 +111,7 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
   std::vector<PixelBox> boxes;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     if (!truth.intruders[i].visible_box_px) continue;
-    const PixelBox& v = *truth.intruders[i].visible_box_px;
+    const PixelBox v = *annotation::box_to_show(truth.intruders[i]);
     outline(
         canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
     boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));

@@ -37,8 +37,8 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
         intruder_colour(known == ids.end() ? i : static_cast<std::size_t>(known - ids.begin()));
     const std::string words =
         intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
-    if (intruder.visible_box_px)
-      result.push_back({words, floating(*intruder.visible_box_px), colour, false});
+    if (const auto shown = annotation::box_to_show(intruder))
+      result.push_back({words, floating(*shown), colour, false});
     else if (intruder.state == annotation::State::kHidden && intruder.exact_box_px)
       result.push_back({words + " (hidden)", *intruder.exact_box_px, colour, true});
   }

@@ -36,10 +36,10 @@ class ContactSheet {
 };
 
 // Burns boxes, id and range into a copy of a picture (the look of the paper's Figure 12): the
-// visible box, one pixel outside the labelled pixels; where the intruder is in view but hidden, the
-// exact box, dashed. Each intruder has its own colour, by its place in `ids`, by that in the frame
-// where `ids` do not name it. No label overprints another or leaves the picture; one overprints a
-// box where no other place is left.
+// covered box (else the visible one), one pixel outside the labelled pixels; where the intruder is
+// in view but hidden, the exact box, dashed. Each intruder has its own colour, by its place in
+// `ids`, by that in the frame where `ids` do not name it. No label overprints another or leaves the
+// picture; one overprints a box where no other place is left.
 image::Rgb8 overlay(const image::Picture& picture,
                     const annotation::Frame& truth,
                     const std::vector<std::string>& ids = {});
@@ -53,8 +53,8 @@ struct Closeup {
 };
 
 // Background, alpha and result side by side, each pixel enlarged `zoom` times without smoothing,
-// exact box (amber) and visible box (green) drawn on the result. `area`: the pixels shown, which
-// may stick out of the frame.
+// exact box (amber), covered box (green) and visible box (white) drawn on the result. `area`: the
+// pixels shown, which may stick out of the frame.
 image::Rgb8 closeup(const Closeup& what,
                     const annotation::Frame& truth,
                     const PixelBox& area,

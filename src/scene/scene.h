@@ -126,6 +126,7 @@ struct Composite {
 struct Output {
   std::string video = "mp4";  // mp4 | mkv | avi | png
   int quality = 18;
+  bool masks = false;  // also each intruder's alpha, frame by frame
 };
 
 struct Scene {

@@ -187,7 +187,8 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "pitch_deg",
                                 "roll_deg",
                                 "quality",
-                                "method"}) {
+                                "method",
+                                "masks"}) {
     EXPECT_NE(manual.find(std::string("`") + key + "`"), std::string::npos) << key;
     EXPECT_NE(example.find(std::string(key) + " = "), std::string::npos) << key;
   }

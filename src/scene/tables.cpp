@@ -220,10 +220,11 @@ Light light_in(const TableReader& parent) {
 }
 
 Output output_in(const TableReader& parent) {
-  const TableReader table = parent.table("output", {"video", "quality"});
+  const TableReader table = parent.table("output", {"video", "quality", "masks"});
   Output output;
   output.video = table.choice("video", {"mp4", "mkv", "avi", "png"}).value_or(output.video);
   output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
+  output.masks = table.truth("masks").value_or(output.masks);
   return output;
 }
 

@@ -109,6 +109,7 @@ Finished open_finished(const fs::path& folder) {
   try {
     const auto record = nlohmann::json::parse(read_file(record_file));
     finished.name = record.at("name").get<std::string>();
+    finished.has_covered_boxes = record.contains("covered_alpha");
     finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
   } catch (const nlohmann::json::exception& error) {
     throw Error(std::string("is not a record of airtruth: ") + error.what(),

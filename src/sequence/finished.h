@@ -24,6 +24,8 @@ struct Finished {
   fs::path video;
   std::optional<scene::Scene> scene;  // empty: imported; then truth holds boxes and ranges alone
   annotation::Truth truth;
+  // Covered boxes were looked for when it was made. In what is older there are none to be had.
+  bool has_covered_boxes = false;
 };
 
 // Error where the folder is not whole: no sequence.json, or a file that it names is missing.

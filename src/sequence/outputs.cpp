@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/version.h"
+#include "composite/cover.h"
 #include "video/still.h"
 
 namespace airtruth::sequence {
@@ -30,7 +31,7 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
   frame.camera_ned_m = truth.camera_position_ned_m;
   frame.intruder_ned_m = *intruder.position_ned_m;
   frame.distance_m = *intruder.range_m;
-  if (intruder.visible_box_px) frame.rect_px = *intruder.visible_box_px;
+  if (intruder.covered_box_px) frame.rect_px = *intruder.covered_box_px;
   return frame;
 }
 
@@ -87,8 +88,14 @@ Outputs::Outputs(const fs::path& folder,
                 {(folder / "truth.jsonl").string()});
 }
 
-void Outputs::write(const video::Frame& frame, const annotation::Frame& truth) {
+void Outputs::write(const video::Frame& frame,
+                    const annotation::Frame& truth,
+                    const std::vector<MaskFile>& masks) {
   writer_.write(frame);
+  for (const MaskFile& mask : masks) {
+    fs::create_directories((folder_ / mask.name).parent_path());
+    write_file(folder_ / mask.name, mask.png, Flush::kLater);
+  }
   truth_ << annotation::jsonl_line(truth, lens_) << '\n';
   if (!truth_)
     throw Error(std::string("cannot write: ") + std::strerror(errno),
@@ -112,6 +119,7 @@ void Outputs::finish(const std::vector<Checksum>& inputs, const Summary& summary
                 {(folder_ / "truth.jsonl").string()});
   write_annotations();
   write_preview();
+  if (scene_.output.masks) flush_files(folder_);
   write_record(inputs, summary);
 }
 
@@ -131,6 +139,7 @@ void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& s
   record["version"] = kVersion;
   record["name"] = scene_.name;
   record["seed"] = scene_.seed;
+  record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene_);
   record["inputs"] = json_of(inputs);
   record["outputs"] = json_of(checksums_below(folder_));

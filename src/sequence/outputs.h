@@ -13,6 +13,7 @@
 #include "lens/lens.h"
 #include "report/pictures.h"
 #include "scene/scene.h"
+#include "sequence/masks.h"
 #include "sequence/sequence.h"
 #include "video/reader.h"
 #include "video/writer.h"
@@ -36,7 +37,9 @@ class Outputs {
           const video::StreamInfo& info,
           int threads);
 
-  void write(const video::Frame& frame, const annotation::Frame& truth);
+  void write(const video::Frame& frame,
+             const annotation::Frame& truth,
+             const std::vector<MaskFile>& masks);
   // Closes everything and writes the annotation, the preview and, last, sequence.json.
   void finish(const std::vector<Checksum>& inputs, const Summary& summary);
 

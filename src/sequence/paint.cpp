@@ -6,6 +6,7 @@
 #include "backdrop/backdrop.h"
 #include "base/error.h"
 #include "composite/chroma_key.h"
+#include "composite/cover.h"
 #include "composite/spread.h"
 #include "sequence/stopwatch.h"
 #include "video/still.h"
@@ -57,7 +58,7 @@ class Matte : public Painter {
                 const Ambient& ambient) const override {
     Painted painted;
     const Stopwatch rendering;
-    painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
+    painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
     painted.render_s = rendering.seconds();
     if (painted.layer.empty()) return painted;
     composite::MatteOptions options{.own_aircraft = mask_};
@@ -99,7 +100,7 @@ class ChromaKey : public Painter {
                 const Ambient& ambient) const override {
     Painted painted;
     const Stopwatch rendering;
-    painted.layer = render_layer(scene_, world_, moment, ambient, stop_);
+    painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
     painted.render_s = rendering.seconds();
     const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
     std::vector<backdrop::Instance> instances;
@@ -173,6 +174,7 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
         if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
     }
     if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
+    visible[i].covered = composite::covered_box(layer, i, mask_);
     for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
       for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
         const double coverage = layer.coverage[i][layer.index(x, y)];
@@ -190,6 +192,7 @@ image::Layer render_layer(const scene::Scene& scene,
                           const World& world,
                           const Moment& moment,
                           const Ambient& ambient,
+                          const image::Mask* own_aircraft,
                           const std::stop_token& stop) {
   const render::View view{&world.lens,
                           moment.sight.cam_from_world.inverse(),
@@ -213,12 +216,10 @@ image::Layer render_layer(const scene::Scene& scene,
     instances.push_back(instance);
   }
   if (!any) return {};
-  return through_air_and_lens(
-      render::render(
-          view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop}),
-      scene.camera_model,
-      ambient,
-      world.lens.size());
+  image::Layer layer = render::render(
+      view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
+  if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
+  return through_air_and_lens(std::move(layer), scene.camera_model, ambient, world.lens.size());
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

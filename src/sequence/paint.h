@@ -47,10 +47,12 @@ std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);
 
 // The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
+// `own_aircraft`, if there is one, takes its share of the layer's area_free_px alone.
 image::Layer render_layer(const scene::Scene& scene,
                           const World& world,
                           const Moment& moment,
                           const Ambient& ambient,
+                          const image::Mask* own_aircraft = nullptr,
                           const std::stop_token& stop = {});
 
 }  // namespace airtruth::sequence

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/recompose.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "sequence/masks.h"
 #include "sequence/paint.h"
 #include "sequence/world.h"
 #include "video/reader.h"
@@ -51,6 +54,41 @@ std::string picture_fault(const image::Picture& made,
   return "";
 }
 
+// What older sequences do not say is taken out of a truth that was computed again.
+void as_older_truth(annotation::Frame& truth) {
+  for (annotation::Intruder& intruder : truth.intruders) {
+    intruder.covered_box_px.reset();
+    if (!truth.shake.rotation && truth.shake.frame_from_reference != Homography::Identity()) {
+      intruder.azimuth_deg.reset();
+      intruder.elevation_deg.reset();
+    }
+    if (truth.shake.rotation) {
+      intruder.nominal_azimuth_deg.reset();
+      intruder.nominal_elevation_deg.reset();
+    }
+  }
+}
+
+// Masks whose bytes are not those of the frame drawn again, and masks that should not be there.
+std::vector<std::string> mask_faults(const Finished& sequence,
+                                     const annotation::Frame& truth,
+                                     const image::Layer& layer,
+                                     const image::Mask* own_aircraft) {
+  const lens::ImageSize size{sequence.truth.lens.width, sequence.truth.lens.height};
+  const std::vector<MaskFile> made = mask_files(truth, layer, own_aircraft, size);
+  std::vector<std::string> faults;
+  for (const annotation::Intruder& intruder : truth.intruders) {
+    const std::string name = mask_name(intruder.id, truth.frame);
+    const auto again =
+        std::find_if(made.begin(), made.end(), [&](const auto& m) { return m.name == name; });
+    const bool is_there = fs::exists(sequence.folder / name);
+    if (is_there != (again != made.end()) ||
+        (is_there && read_file(sequence.folder / name) != again->png))
+      faults.push_back("has another " + name + " when it is drawn again");
+  }
+  return faults;
+}
+
 }  // namespace
 
 Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop) {
@@ -86,8 +124,13 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
     if (truth.frame % every != 0) continue;
     annotation::Frame again = truth;
     again.time_s = before->time_s;
-    write_moment(world, moment, painter->paint(before->picture, moment, light), again);
+    const Painted painted = painter->paint(before->picture, moment, light);
+    write_moment(world, moment, painted, again);
+    if (!sequence.has_covered_boxes) as_older_truth(again);
     ++result.compared;
+    if (scene.output.masks)
+      for (const std::string& what : mask_faults(sequence, again, painted.layer, mask_ptr))
+        fault(truth, what);
     if (annotation::jsonl_line(again, sequence.truth.lens) !=
         annotation::jsonl_line(truth, sequence.truth.lens))
       fault(truth, "has another truth when it is computed again");

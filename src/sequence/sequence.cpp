@@ -15,6 +15,7 @@
 #include "base/files.h"
 #include "sequence/ambient.h"
 #include "sequence/flyable.h"
+#include "sequence/masks.h"
 #include "sequence/motion_source.h"
 #include "sequence/outputs.h"
 #include "sequence/paint.h"
@@ -48,6 +49,7 @@ struct Work {
   Ambient ambient;
   Moment moment;
   annotation::Frame truth;
+  std::vector<MaskFile> masks;
 };
 using WorkPtr = std::shared_ptr<Work>;
 
@@ -141,12 +143,13 @@ class Run {
     truth.damaged = work.frame.damaged;
     truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
     write_moment(world_, work.moment, painted, truth);
+    if (scene_.output.masks) work.masks = mask_files(truth, painted.layer, mask_ptr(), size_);
     clocks_.composite += painting.seconds() - painted.render_s;
   }
 
   void write(const Work& work) {
     const Timed timed(clocks_.write);
-    outputs_->write(work.frame, work.truth);
+    outputs_->write(work.frame, work.truth, work.masks);
     ++summary_.frames;
     last_time_s_ = work.frame.time_s;
     bool any = false;

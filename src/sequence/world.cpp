@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "annotation/bearing.h"
 #include "base/error.h"
 #include "lens/calibration_file.h"
 
@@ -149,6 +150,21 @@ annotation::State state_of(const Moment& moment,
   return State::kOutside;
 }
 
+void add_bearings(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state,
+                  const Vector3& offset_in_world) {
+  const annotation::Bearing nominal = annotation::bearing_of(
+      cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
+  truth.nominal_azimuth_deg = nominal.azimuth_deg;
+  truth.nominal_elevation_deg = nominal.elevation_deg;
+  const auto seen =
+      annotation::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
+  if (!seen) return;
+  truth.azimuth_deg = seen->azimuth_deg;
+  truth.elevation_deg = seen->elevation_deg;
+}
+
 void add_geometry(annotation::Intruder& truth,
                   const Moment& moment,
                   const trajectory::State& state) {
@@ -163,9 +179,7 @@ void add_geometry(annotation::Intruder& truth,
   if (range_m > 0) {
     const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
     truth.range_rate_mps = offset.dot(relative) / range_m;
-    truth.azimuth_deg = degrees(std::atan2(p_in_cam.x(), p_in_cam.z()));
-    truth.elevation_deg =
-        degrees(std::atan2(-p_in_cam.y(), std::hypot(p_in_cam.x(), p_in_cam.z())));
+    add_bearings(truth, moment, state, offset);
   }
 }
 
@@ -174,15 +188,15 @@ void add_pixels(annotation::Intruder& truth,
                 const image::Layer& layer,
                 const composite::Visible& visible) {
   truth.visible_box_px = visible.box;
+  if (visible.box) truth.covered_box_px = visible.covered;
   truth.visible_area_px = visible.pixels;
   truth.alpha_sum_px = visible.alpha_sum_px;
   truth.centroid_px = visible.centroid;
   if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
   const double alone = layer.area_alone_px[i];
   const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
-  truth.hidden_by_own_aircraft = fraction(visible.alpha_before_mask_px - visible.alpha_sum_px);
-  truth.hidden_by_intruder =
-      fraction(layer.area_alone_in_frame_px[i] - visible.alpha_before_mask_px);
+  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
+  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
   truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
   constexpr double kRounding = 1e-6;  // sums of float coverages
   for (double* share :

@@ -111,7 +111,7 @@ FramePtr jpeg_frame(const image::Picture& picture) {
 std::string encoded(const FramePtr& frame, int quality, const fs::path& path) {
   keep_libav_quiet();
   const auto format = static_cast<AVPixelFormat>(frame->format);
-  const bool jpeg = format != AV_PIX_FMT_RGB24;
+  const bool jpeg = format != AV_PIX_FMT_RGB24 && format != AV_PIX_FMT_GRAY8;
   const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
   const CodecPtr codec(avcodec_alloc_context3(encoder));
   codec->width = frame->width;
@@ -158,6 +158,33 @@ image::Rgb8 read_still(const fs::path& path) {
 
 std::string jpeg_of(const image::Rgb8& rgb, int quality) {
   return encoded(frame_of(rgb, AV_PIX_FMT_YUVJ444P), quality, {});
+}
+
+std::string png_of(const Grey& grey) {
+  const auto width = static_cast<std::size_t>(grey.width);
+  check(grey.samples.size() == width * static_cast<std::size_t>(grey.height),
+        "a grey picture has a sample for each pixel");
+  FramePtr frame(av_frame_alloc());
+  frame->format = AV_PIX_FMT_GRAY8;
+  frame->width = grey.width;
+  frame->height = grey.height;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  for (int y = 0; y < grey.height; ++y)
+    std::memcpy(frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
+                grey.samples.data() + static_cast<std::size_t>(y) * width,
+                width);
+  return encoded(frame, 0, {});
+}
+
+Grey read_grey(const fs::path& path) {
+  const auto frame = Reader(path, {.frame_count = 1, .threads = 1}).next();
+  if (!frame || frame->picture.plane_count != 1) throw Error("is no grey picture", {path.string()});
+  const image::Picture& picture = frame->picture;
+  Grey grey{picture.width, picture.height, {}};
+  for (int y = 0; y < grey.height; ++y)
+    grey.samples.insert(
+        grey.samples.end(), picture.planes[0].row(y), picture.planes[0].row(y) + grey.width);
+  return grey;
 }
 
 void write_still(const fs::path& path, const image::Rgb8& rgb, Flush flush) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/files.h"
 #include "image/layer.h"
@@ -26,6 +28,15 @@ void write_still(const std::filesystem::path& path,
 
 // The bytes of such a .jpg; quality from 1 (best) to 31.
 std::string jpeg_of(const image::Rgb8& rgb, int quality = 3);
+
+// Grey samples as a .png of 8 bits, and back. `samples`: height rows of width. Throws Error.
+struct Grey {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> samples;
+};
+std::string png_of(const Grey& grey);
+Grey read_grey(const std::filesystem::path& path);
 
 // An own-aircraft mask: darker than middle grey = own aircraft. Error if its size is not width x
 // height, or if it is black all over.
