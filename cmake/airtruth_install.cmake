@@ -21,9 +21,10 @@ add_library(airtruth::airtruth ALIAS airtruth_shared)
 
 include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)
+install(TARGETS airtruth-model-reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/airtruth)
 install(TARGETS airtruth_shared EXPORT airtruth LIBRARY)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/airtruth
-  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE PATTERN "table_reader.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "xml_file.h" EXCLUDE
+  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE PATTERN "model_reader" EXCLUDE PATTERN "picture_kinds.h" EXCLUDE PATTERN "table_reader.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "xml_file.h" EXCLUDE
   PATTERN "small_catalogue.h" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/examples)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/clients/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/clients

@@ -63,10 +63,11 @@ function(add_module_test target label module sources libraries)
   if(AIRTRUTH_PCH)
     target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
   endif()
+  add_dependencies(${target} airtruth-model-reader)  # which reads the model files of tests
   add_test(NAME ${target} COMMAND ${target})
   set_tests_properties(${target} PROPERTIES
     LABELS ${label} TIMEOUT 900
-    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1")
+    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1;AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader")
   if(label STREQUAL slow)
     set_tests_properties(${target} PROPERTIES COST 100)  # begun first, so that none is left alone at the end
   endif()

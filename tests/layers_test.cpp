@@ -68,4 +68,18 @@ TEST(Layers, IncludesGoStrictlyDownward) {
   EXPECT_GT(checked, 50);
 }
 
+// OpenSceneGraph chooses a plugin, which may run code, by a file's name: it draws, and reads nothing.
+TEST(Layers, NoSourceReadsFilesThroughOpenSceneGraph) {
+  int checked = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    std::ifstream file(entry.path());
+    std::ostringstream text;
+    text << file.rdbuf();
+    EXPECT_EQ(text.str().find("<osgDB"), std::string::npos) << entry.path();
+    ++checked;
+  }
+  EXPECT_GT(checked, 100);
+}
+
 }  // namespace

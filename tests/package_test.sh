@@ -100,9 +100,18 @@ check_files() { # check_files PREFIX
   zcat "$1/share/doc/airtruth/changelog.Debian.gz" | head -1 | grep -q "^airtruth ($version-1) " || fail "the changelog's version"
 }
 
+check_model_reader() { # check_model_reader PREFIX: a model file is read by the helper that stands beside the program
+  [ -x "$1/libexec/airtruth/airtruth-model-reader" ] || fail "airtruth-model-reader is not installed"
+  printf 'v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n' >"$place/a.obj"
+  env -u AIRTRUTH_MODEL_READER XDG_CACHE_HOME="$1/../cache" "$1/bin/airtruth" aircraft show "$place/a.obj" >"$place/shown" ||
+    fail "the installed program reads no model file"
+  grep -q '2 triangles' "$place/shown" || fail "the installed program reads a model file wrongly: $(cat "$place/shown")"
+}
+
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
 build_example "$place/usr"
+check_model_reader "$place/usr"
 check_help_and_pages "$place/usr"
 check_completion "$place/usr"
 check_files "$place/usr"
@@ -119,6 +128,7 @@ dpkg-deb -x "$package" "$place/root"
 check_files "$place/root/usr"
 check_completion "$place/root/usr"
 "$place/root/usr/bin/airtruth" --help >/dev/null || fail "the packaged program does not run"
+check_model_reader "$place/root/usr"
 (cd "$place/usr" && find . \( -type f -o -type l \) | sort) >"$place/installed"
 (cd "$place/root/usr" && find . \( -type f -o -type l \) | sort) >"$place/packaged"
 diff "$place/installed" "$place/packaged" || fail "the package holds other files than an installation"

@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "aircraft/model_files.h"
+#include "aircraft/reader.h"
 #include "aircraft/wrapper.h"
 #include "base/error.h"
 #include "base/files.h"
@@ -16,12 +18,12 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr const char* kDebianFolder = "/usr/share/games/flightgear/AI/Aircraft";
+constexpr std::size_t kMaxSketchBytes = std::size_t{8} << 20;
 
 std::vector<fs::path> folders() {
   const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
   std::vector<fs::path> result;
-  std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianFolder);
+  std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianAircraft);
   for (std::string folder; std::getline(list, folder, ':');)
     if (!folder.empty() && fs::is_directory(folder)) result.emplace_back(folder);
   if (result.empty())
@@ -45,19 +47,19 @@ struct Sketch {
 using Sketches = std::map<fs::path, Sketch>;
 
 // No answer for what is no wrapper: other XML lies in these folders too.
-std::optional<Sketch> sketch_of(const fs::path& file) {
+std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const fs::path& root) {
   const std::string name = file.filename().string();
   if (is_effect_path(name)) return std::nullopt;
   try {
-    const WrapperText text = parse_wrapper(read_file(file), file);
+    const WrapperText text = parse_wrapper(read_file(file, kMaxSketchBytes), file);
     Sketch sketch;
     sketch.file = file;
     const fs::path folder = file.parent_path();
     if (!text.include.empty()) sketch.includes = (folder / text.include).lexically_normal();
     for (const WrapperText::Nested& nested : text.nested) {
       if (is_effect_path(nested.path)) continue;
-      const fs::path found = find_named_file(nested.path, folder);
-      if (!found.empty()) sketch.nests.push_back(found.lexically_normal());
+      const fs::path found = find_named_file(files, nested.path, folder.lexically_relative(root));
+      if (!found.empty()) sketch.nests.push_back((root / found).lexically_normal());
     }
     sketch.path = text.path;
     sketch.animated = !text.animations.empty();
@@ -70,9 +72,11 @@ std::optional<Sketch> sketch_of(const fs::path& file) {
 // The wrappers of one aircraft's folder and of the folders right below it.
 Sketches sketches_in(const fs::path& folder) {
   Sketches sketches;
+  const fs::path root = data_root_of(folder.parent_path());
+  DiskFiles files(root, {});
   const auto add = [&](const fs::path& file, bool deep) {
     if (file.extension() != ".xml") return;
-    if (auto sketch = sketch_of(file)) {
+    if (auto sketch = sketch_of(file, files, root)) {
       sketch->deep = deep;
       sketches[file.lexically_normal()] = std::move(*sketch);
     }
@@ -133,7 +137,7 @@ void list_folder(const fs::path& root, std::vector<Entry>& entries) {
     if (!folder.is_directory()) continue;
     const Sketches sketches = sketches_in(folder.path());
     for (const Sketch* sketch : aircraft_among(sketches))
-      entries.push_back({name_of(sketch->file, root), sketch->file});
+      entries.push_back({name_of(sketch->file, root), sketch->file, root});
   }
 }
 
@@ -163,7 +167,7 @@ Entry find_aircraft(const std::string& name) {
     const fs::path file = folder / (name + ".xml");
     std::error_code ignored;
     const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
-    if (plain && fs::is_regular_file(file, ignored)) return {name, file};
+    if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
   }
   std::vector<std::string> names;
   for (const Entry& entry : list_aircraft()) names.push_back(entry.name);
@@ -171,8 +175,15 @@ Entry find_aircraft(const std::string& name) {
               joined(nearest_spellings(name, names, 3)) + " (`airtruth aircraft list` shows all)");
 }
 
+fs::path data_root_of(const fs::path& catalogue_folder) {
+  const fs::path whole = fs::absolute(catalogue_folder / "").lexically_normal().parent_path();
+  const fs::path above = whole.parent_path();
+  return whole.filename() == "Aircraft" && above.filename() == "AI" ? above.parent_path() : whole;
+}
+
 std::vector<std::string> liveries(const std::string& name) {
   std::vector<std::string> result;
+  if (is_model_file(name)) return result;
   for (const fs::path& root : folders()) {
     const fs::path own = (root / (name + ".xml")).lexically_normal();
     const auto slash = name.find('/');

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,23 @@ namespace fs = std::filesystem;
 struct Entry {
   std::string name;  // "738/738-Ryanair": the wrapper XML under AI/Aircraft, without its extension
   std::filesystem::path file;
+  std::filesystem::path catalogue_folder = {};  // the one of the folders searched that holds it
 };
 
-// Folders searched: $AIRTRUTH_AIRCRAFT_PATH (colon-separated), else
-// /usr/share/games/flightgear/AI/Aircraft. Sorted by name. Throws Error, saying which package to
-// install, where there is no such folder.
+// Where Debian's package flightgear-data-ai puts its aircraft.
+constexpr const char* kDebianAircraft = "/usr/share/games/flightgear/AI/Aircraft";
+
+// FlightGear's data root of a folder of aircraft: what holds its AI/Aircraft, or the folder itself.
+std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder);
+
+// Folders searched: $AIRTRUTH_AIRCRAFT_PATH (colon-separated), else kDebianAircraft. Sorted by
+// name. Throws Error, saying which package to install, where there is no such folder.
 std::vector<Entry> list_aircraft();
 
 // The entry of that name; Error with the nearest names otherwise.
 Entry find_aircraft(const std::string& name);
 
-// How a bare .ac, .obj, .3ds or .osgt file lies: which of its axes point along the body's, and its
+// How a model file without a wrapper lies: which of its axes point along the body's, and its
 // unit.
 struct ModelAxes {
   std::string forward =
@@ -41,6 +48,7 @@ struct LoadOptions {
   double airspeed_kt = 250;  // decides `select` conditions: gear is up above its speed
   double altitude_agl_ft = 3000;
   std::optional<ModelAxes> axes;  // for a bare model file; Error when given for a catalogue name
+  std::stop_token stop;           // ends the reading of a model file
 };
 
 struct Aircraft {
@@ -50,13 +58,19 @@ struct Aircraft {
   std::vector<std::filesystem::path> sources;  // every file read, for checksums
 };
 
-// `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .osgt, or a FlightGear .xml)
-// when it has one of those endings. Throws Error for what is unknown (nearest names), unreadable,
-// without triangles, or lacks a texture. Animations and properties that are not understood are
-// named once in a warning.
+// `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb
+// .fbx, or a FlightGear .xml) when it has one of those endings. All that it names lies in its own
+// folder or below. Debian's own aircraft are read here, all other files in a child process that can
+// do nothing but hand back triangles and pixels. Throws Error for what is unknown (nearest names),
+// unreadable, without triangles, or lacks a texture, and Interrupted where options.stop is
+// requested. Animations and properties that are not understood are named once in a warning.
 Aircraft load_aircraft(const std::string& name,
                        const LoadOptions& options = {},
                        const Warn& warn = {});
+
+// Has the name the ending of a model file, in upper or lower case: one that is read, or one that is
+// known and refused (.osgt .osgb .ive ...)?
+bool is_model_file(const std::string& name);
 
 // The other liveries of the same model folder: names that differ in the livery alone.
 std::vector<std::string> liveries(const std::string& name);

@@ -1,196 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cmath>
-#include <set>
+#include <filesystem>
 
-#include "aircraft/ac_text.h"
 #include "aircraft/catalogue.h"
-#include "aircraft/osg_adapter.h"
-#include "aircraft/scope.h"
-#include "aircraft/tidy.h"
-#include "aircraft/wrapper.h"
+#include "aircraft/child.h"
+#include "aircraft/model_cache.h"
+#include "aircraft/model_files.h"
+#include "aircraft/reader.h"
 #include "base/error.h"
 
 namespace airtruth::aircraft {
 namespace {
 
-// FlightGear: x back, y right, z up. Body: x forward, y right, z down.
-Eigen::Affine3d body_from_flightgear() {
-  return Eigen::Affine3d(Eigen::Matrix3d(Vector3(-1, 1, -1).asDiagonal()));
-}
-
-// AC3D files have y up; FlightGear stands them up by a quarter turn about x.
-Eigen::Affine3d flightgear_from_ac() {
-  Eigen::Matrix3d m;
-  m << 1, 0, 0,  //
-      0, 0, -1,  //
-      0, 1, 0;
-  return Eigen::Affine3d(m);
-}
-
-Vector3 axis_vector(const std::string& text, const char* what) {
-  const bool negative = !text.empty() && text[0] == '-';
-  const std::string letter =
-      !text.empty() && (text[0] == '-' || text[0] == '+') ? text.substr(1) : text;
-  if (letter != "x" && letter != "y" && letter != "z")
-    throw Error(std::string(what) + " is '" + text +
-                "'; expected x, y or z, or one of them with a minus");
-  return (negative ? -1.0 : 1.0) * Vector3::Unit(letter[0] - 'x');
-}
-
-Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
-  const Vector3 forward = axis_vector(axes.forward, "model_forward");
-  const Vector3 up = axis_vector(axes.up, "model_up");
-  if (std::abs(forward.dot(up)) > 0.5)
-    throw Error(
-        "model_forward and model_up are the same axis; expected two "
-        "different ones");
-  if (!std::isfinite(axes.scale) || axes.scale <= 0)
-    throw Error("model_scale is not positive; expected metres per unit");
-  Eigen::Matrix3d m;
-  m.row(0) = forward;
-  m.row(1) = forward.cross(up);  // right
-  m.row(2) = -up;
-  return Eigen::Affine3d(axes.scale * m);
-}
-
-// Lamps, their glow, shadows on the ground, smoke: drawn for the game, and no
-// part of an aircraft's body.
-bool is_effect(const std::string& object) {
-  static const std::array<const char*, 8> kWords = {
-      "halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"};
-  static const std::array<const char*, 3> kLamps = {"light", "beacon", "strobe"};
-  std::string name = object;
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
-  if (std::any_of(kWords.begin(), kWords.end(), has)) return true;
-  return object.ends_with("On") && std::any_of(kLamps.begin(), kLamps.end(), has);
-}
-
-bool has_effect(const std::vector<std::string>& names) {
-  return std::any_of(names.begin(), names.end(), is_effect);
-}
-
-// What the loader has no need to understand: lamps, and what shows in a cockpit
-// or by night alone.
-bool is_known(const std::string& type) {
-  static const std::set<std::string> kKnown = {
-      "",          "select",   "rotate", "spin",        "translate",  "scale",
-      "billboard", "flash",    "blend",  "dist-scale",  "range",      "material",
-      "timed",     "noshadow", "shader", "point",       "alpha-test", "trail",
-      "light",     "none",     "pick",   "shadow",      "slider",     "textranslate",
-      "texrotate", "touch",    "knob",   "interaction", "enable-hot", "null"};
-  return kKnown.contains(type);
-}
-
-class Loader {
- public:
-  Loader(const LoadOptions& options, Assembly& assembly)
-      : cruise_{options.airspeed_kt, options.altitude_agl_ft}, assembly_(assembly) {}
-
-  void add(const Wrapper& wrapper) { add(wrapper, Scope(body_from_flightgear(), cruise_), {}); }
-
-  const std::set<std::string>& unknown() const { return unknown_; }
-
- private:
-  void add(const Wrapper& wrapper, const Scope& outside, const std::vector<fs::path>& outer) {
-    for (const Condition& condition : wrapper.conditions)
-      if (!holds(condition, cruise_)) return;
-    note_unknown(wrapper);
-    const Scope scope = outside.inside(wrapper);
-    std::vector<fs::path> folders;
-    if (!wrapper.texture_folder.empty()) folders.push_back(wrapper.texture_folder);
-    folders.push_back(wrapper.file.parent_path());
-    if (!wrapper.model.empty()) folders.push_back(wrapper.model.parent_path());
-    folders.insert(folders.end(), outer.begin(), outer.end());
-    if (!wrapper.model.empty()) add_model(wrapper.model, scope, folders);
-    for (const Wrapper& nested : wrapper.nested) add(nested, scope, folders);
-  }
-
-  void add_model(const fs::path& file, const Scope& scope, const std::vector<fs::path>& folders) {
-    const bool is_ac = file.extension() == ".ac";
-    const Eigen::Affine3d model_from_file =
-        is_ac ? flightgear_from_ac() : Eigen::Affine3d::Identity();
-    append_model(assembly_, file, folders, [&](const std::vector<std::string>& names) {
-      const Animated animated = scope.animated(names);
-      PartChoice choice;
-      choice.hidden = animated.hidden || has_effect(names);
-      if (choice.hidden) return choice;
-      choice.body_from_file = animated.body_from_model * model_from_file;
-      choice.opacity = animated.opacity;
-      if (!animated.texture.empty()) choice.texture = find_texture(animated.texture, folders);
-      if (animated.spin) choice.part = part_of(*animated.spin);
-      return choice;
-    });
-  }
-
-  int part_of(const Spin& spin) {
-    auto& parts = assembly_.mesh.parts;
-    for (std::size_t i = 1; i < parts.size(); ++i)
-      if (parts[i].centre_in_body == spin.centre_in_body &&
-          parts[i].axis_in_body == spin.axis_in_body &&
-          parts[i].revolutions_per_s == spin.revolutions_per_s)
-        return static_cast<int>(i);
-    parts.push_back(
-        {spin.name, {}, true, spin.axis_in_body, spin.centre_in_body, spin.revolutions_per_s});
-    return static_cast<int>(parts.size() - 1);
-  }
-
-  void note_unknown(const Wrapper& wrapper) {
-    for (const Animation& animation : wrapper.animations) {
-      if (!is_known(animation.type)) unknown_.insert(animation.type);
-      if (!animation.axis_object.empty() && value_of(animation.value, cruise_) != 0)
-        unknown_.insert(animation.type + " about the object " + animation.axis_object);
-    }
-  }
-
-  Cruise cruise_;
-  Assembly& assembly_;
-  std::set<std::string> unknown_;
+// Where a model is read from: its files, and its own path below their folder.
+struct Source {
+  fs::path folder;
+  fs::path in_data_root;
+  fs::path file;
+  bool from_debian = false;
 };
 
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
+// Is `file` one of the files that Debian installs? Then `below` is its path below the data root.
+bool is_from_debian(const fs::path& file, fs::path& below) {
+  std::error_code missing;
+  const fs::path real = fs::canonical(file, missing);
+  if (missing) return false;
+  below = real.lexically_relative(data_root_of(kDebianAircraft));
+  return !below.empty() && *below.begin() != "..";
 }
 
-bool is_model_file(const std::string& name) {
-  const std::string extension = fs::path(name).extension().string();
-  return extension == ".ac" || extension == ".obj" || extension == ".3ds" || extension == ".osgt" ||
-         extension == ".xml";
+Source source_of(const fs::path& file, const fs::path& folder, const fs::path& in_data_root) {
+  Source source{folder, in_data_root, file.lexically_relative(folder), false};
+  if (folder.empty()) source.file = file;
+  if (fs::path below; is_from_debian(file, below))
+    source = {data_root_of(kDebianAircraft), {}, below, true};
+  return source;
 }
 
-void load_wrapped(const LoadOptions& options,
-                  const Warn& warn_to,
-                  const Aircraft& aircraft,
-                  Assembly& assembly) {
-  if (options.axes)
-    throw Error("model_forward, model_up and model_scale are for a model file; '" + aircraft.name +
-                "' has its own axes and metres");
-  std::set<std::string> missing;
-  const Wrapper wrapper = read_wrapper(aircraft.file, assembly.sources, missing);
-  Loader loader(options, assembly);
-  loader.add(wrapper);
-  if (!loader.unknown().empty())
-    warn(warn_to,
-         aircraft.name +
-             ": animations that are not known and are left out: " + joined(loader.unknown()));
-  if (!missing.empty())
-    warn(warn_to,
-         aircraft.name + ": parts that are not installed and are left out: " + joined(missing));
+Source source_of_path(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  Source source = source_of(file, folder, place_in_data_root(folder));
+  if (!source.from_debian) source.file = file.filename();
+  return source;
 }
 
-void load_bare(const LoadOptions& options, const fs::path& file, Assembly& assembly) {
-  const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(ModelAxes{}));
-  append_model(assembly, file, {file.parent_path()}, [&](const std::vector<std::string>& names) {
-    PartChoice choice;
-    choice.hidden = has_effect(names);
-    choice.body_from_file = body_from_file;
-    return choice;
-  });
+Source source_of_entry(const Entry& entry) {
+  const fs::path root = data_root_of(entry.catalogue_folder);
+  return source_of(fs::absolute(entry.file).lexically_normal(), root, {});
+}
+
+// The model, and every file that it was read from.
+RawModel read_source(const Source& source,
+                     const LoadOptions& options,
+                     std::vector<fs::path>& sources) {
+  if (source.from_debian) {
+    DiskFiles files(source.folder, source.in_data_root);
+    RawModel model = read_model(files, source.file, options);
+    sources = files.sources();
+    return model;
+  }
+  DiskFiles before(source.folder, source.in_data_root, true);
+  const ModelCache cache = model_cache(before, source.file, options);
+  if (auto kept = cached_model(cache, before)) {
+    sources = before.sources();
+    return std::move(*kept);
+  }
+  DiskFiles files(source.folder, source.in_data_root, true);
+  RawModel model = read_in_child(files, source.file, options);
+  keep_model(cache, files, model);
+  sources = files.sources();
+  return model;
 }
 
 }  // namespace
@@ -198,19 +77,21 @@ void load_bare(const LoadOptions& options, const fs::path& file, Assembly& assem
 Aircraft load_aircraft(const std::string& name, const LoadOptions& options, const Warn& warn_to) {
   Aircraft aircraft;
   aircraft.name = name;
-  Assembly assembly;
-  assembly.mesh.parts.push_back({.name = "airframe"});
-  aircraft.file = is_model_file(name) ? fs::path(name) : find_aircraft(name).file;
-  if (aircraft.file.extension() == ".xml") {
-    load_wrapped(options, warn_to, aircraft, assembly);
+  Source source;
+  if (is_model_file(name)) {
+    aircraft.file = name;
+    source = source_of_path(name);
   } else {
-    load_bare(options, aircraft.file, assembly);
+    const Entry entry = find_aircraft(name);
+    if (options.axes)
+      throw Error("model_forward, model_up and model_scale are for a model file; '" + name +
+                  "' has its own axes and metres");
+    aircraft.file = entry.file;
+    source = source_of_entry(entry);
   }
-  aircraft.mesh = std::move(assembly.mesh);
-  aircraft.sources = std::move(assembly.sources);
-  tidy(aircraft.mesh);
-  if (aircraft.mesh.triangle_count() == 0)
-    throw Error("holds no triangles; expected a 3D model", {aircraft.file.string()});
+  RawModel model = read_source(source, options, aircraft.sources);
+  for (const std::string& warning : model.warnings) warn(warn_to, name + ": " + warning);
+  aircraft.mesh = mesh_of(std::move(model));
   std::sort(aircraft.sources.begin(), aircraft.sources.end());
   aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
                          aircraft.sources.end());

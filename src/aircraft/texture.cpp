@@ -32,6 +32,11 @@ Texture::Level halved(const Texture::Level& level) {
   return half;
 }
 
+void add_mip_chain(Texture& texture) {
+  while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
+    texture.levels.push_back(halved(texture.levels.back()));
+}
+
 int wrapped(int i, int size, bool repeat) {
   return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
 }
@@ -60,8 +65,28 @@ Texture texture_from_srgb(
     texel[3] = alpha;
   }
   texture.levels.push_back({width, height, std::move(texels)});
-  while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
-    texture.levels.push_back(halved(texture.levels.back()));
+  add_mip_chain(texture);
+  return texture;
+}
+
+Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_v) {
+  Texture texture;
+  texture.repeat_u = repeat_u;
+  texture.repeat_v = repeat_v;
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < 256; ++i) linear[i] = linear_channel(static_cast<float>(i) / 255.0f);
+  std::vector<Texel> texels(picture.rgba.size() / 4);
+  const std::uint8_t* p = picture.rgba.data();
+  for (Texel& texel : texels) {
+    const float stated = static_cast<float>(p[3]) / 255.0f;
+    const bool translucent = stated < kOpaque;
+    texture.has_translucency = texture.has_translucency || translucent;
+    const float alpha = translucent ? stated : 1.0f;
+    texel = {alpha * linear[p[0]], alpha * linear[p[1]], alpha * linear[p[2]], alpha};
+    p += 4;
+  }
+  texture.levels.push_back({picture.width, picture.height, std::move(texels)});
+  add_mip_chain(texture);
   return texture;
 }
 

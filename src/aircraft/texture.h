@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "aircraft/mesh.h"
+#include "aircraft/picture.h"
 
 namespace airtruth::aircraft {
 
@@ -15,6 +16,9 @@ float linear_channel(float srgb);
 // with its mip chain.
 Texture texture_from_srgb(
     int width, int height, std::vector<std::array<float, 4>> texels, bool repeat_u, bool repeat_v);
+
+// The same from 8-bit pixels.
+Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_v);
 
 // Alpha of the full-size level, bilinear, at (u, v).
 float alpha_at(const Texture& texture, float u, float v);

@@ -13,39 +13,22 @@ namespace {
 
 constexpr std::size_t kMaxWrapperBytes = 8u << 20;
 constexpr int kMaxDepth = 12;
-constexpr std::size_t kMaxFiles = 2000;
-
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
-// The folder above `folder` that holds AI/Aircraft; empty: none does.
-fs::path data_root_of(const fs::path& folder) {
-  for (fs::path at = fs::absolute(folder).lexically_normal();; at = at.parent_path()) {
-    if (is_there(at / "AI" / "Aircraft")) return at;
-    if (at == at.parent_path()) return {};
-  }
-}
-
-WrapperText read_text(const fs::path& file, std::vector<fs::path>& sources, int depth) {
-  if (depth > kMaxDepth) throw Error("includes itself", {file.string()});
-  if (sources.size() > kMaxFiles) throw Error("takes in over 2000 files", {file.string()});
-  sources.push_back(file);
-  WrapperText own = parse_wrapper(read_file(file, kMaxWrapperBytes), file);
+WrapperText read_text(ModelFiles& files, const fs::path& file, int depth) {
+  if (depth > kMaxDepth) throw Error("includes itself", {files.shown(file).string()});
+  WrapperText own = parse_wrapper(files.read(file, kMaxWrapperBytes), files.shown(file));
   for (Animation& animation : own.animations) {
     if (animation.table_file.empty()) continue;
     const fs::path table = file.parent_path() / animation.table_file;
-    sources.push_back(table);
-    animation.value.table = parse_table(read_file(table, kMaxWrapperBytes), table);
+    animation.value.table = parse_table(files.read(table, kMaxWrapperBytes), files.shown(table));
   }
   if (own.include.empty()) return own;
-  WrapperText base = read_text(file.parent_path() / own.include, sources, depth + 1);
+  WrapperText base = read_text(files, file.parent_path() / own.include, depth + 1);
   if (!own.path.empty()) base.path = own.path;
   if (!own.texture_path.empty()) base.texture_path = own.texture_path;
   if (own.parent_from_model) base.parent_from_model = own.parent_from_model;
@@ -54,25 +37,22 @@ WrapperText read_text(const fs::path& file, std::vector<fs::path>& sources, int 
   return base;
 }
 
-Wrapper read_at(const fs::path& file,
-                std::vector<fs::path>& sources,
-                std::set<std::string>& missing,
-                int depth);
+Wrapper read_at(ModelFiles& files, const fs::path& file, std::set<std::string>& missing, int depth);
 
 void add_nested(const WrapperText::Nested& text,
                 Wrapper& wrapper,
-                std::vector<fs::path>& sources,
+                ModelFiles& files,
                 std::set<std::string>& missing,
                 int depth) {
   if (text.path.empty() || is_effect_path(text.path)) return;
-  const fs::path path = find_named_file(text.path, wrapper.file.parent_path());
+  const fs::path path = find_named_file(files, text.path, wrapper.file.parent_path());
   if (path.empty()) {
     missing.insert(text.path);
     return;
   }
   Wrapper nested;
   if (path.extension() == ".xml") {
-    nested = read_at(path, sources, missing, depth + 1);
+    nested = read_at(files, path, missing, depth + 1);
   } else {
     nested.file = path;
     nested.model = path;
@@ -83,26 +63,35 @@ void add_nested(const WrapperText::Nested& text,
   wrapper.nested.push_back(std::move(nested));
 }
 
-Wrapper read_at(const fs::path& file,
-                std::vector<fs::path>& sources,
+Wrapper read_at(ModelFiles& files,
+                const fs::path& file,
                 std::set<std::string>& missing,
                 int depth) {
-  if (depth > kMaxDepth) throw Error("nests itself", {file.string()});
-  const WrapperText text = read_text(file, sources, 0);
+  if (depth > kMaxDepth) throw Error("nests itself", {files.shown(file).string()});
+  const WrapperText text = read_text(files, file, 0);
   Wrapper wrapper;
   wrapper.file = file;
   if (!text.path.empty()) {
-    wrapper.model = find_named_file(text.path, file.parent_path());
+    wrapper.model = find_named_file(files, text.path, file.parent_path());
     if (wrapper.model.empty())
-      throw Error("names the model " + text.path + ", which does not exist", {file.string()});
+      throw Error("names the model " + text.path + ", which does not exist below the folder " +
+                      files.shown(".").lexically_normal().string(),
+                  {files.shown(file).string()});
   }
   if (!text.texture_path.empty())
-    wrapper.texture_folder = find_named_file(text.texture_path, file.parent_path());
+    wrapper.texture_folder = find_named_file(files, text.texture_path, file.parent_path());
   if (text.parent_from_model) wrapper.nested_from_model = *text.parent_from_model;
   wrapper.animations = text.animations;
   for (const WrapperText::Nested& nested : text.nested)
-    add_nested(nested, wrapper, sources, missing, depth);
+    add_nested(nested, wrapper, files, missing, depth);
   return wrapper;
+}
+
+// The part of a path below the data root that lies below the folder of `files`; empty: none.
+fs::path below_folder(const ModelFiles& files, const fs::path& in_data_root) {
+  if (files.in_data_root().empty()) return in_data_root;
+  const fs::path below = in_data_root.lexically_normal().lexically_relative(files.in_data_root());
+  return below.empty() || *below.begin() == ".." ? fs::path() : below;
 }
 
 }  // namespace
@@ -131,26 +120,24 @@ bool is_effect_path(const std::string& path) {
   });
 }
 
-fs::path find_named_file(const std::string& path, const fs::path& folder) {
+fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::path& folder) {
+  const auto is_there = [&](const fs::path& at) {
+    return files.kind(at) != ModelFiles::Kind::kNone;
+  };
   std::string clean = path;
   std::replace(clean.begin(), clean.end(), '\\', '/');
-  if (is_there(folder / clean)) return folder / clean;
+  if (is_there(folder / clean)) return (folder / clean).lexically_normal();
   while (!clean.empty() && clean.front() == '/') clean.erase(0, 1);  // of the data root
-  const fs::path root = data_root_of(folder);
-  if (root.empty() || clean.empty()) return {};
-  for (const fs::path& candidate : {root / clean, root / "AI" / clean})
-    if (is_there(candidate)) return candidate;
+  if (clean.empty()) return {};
+  for (const fs::path& candidate : {fs::path(clean), "AI" / fs::path(clean)}) {
+    const fs::path below = below_folder(files, candidate);
+    if (!below.empty() && is_there(below)) return below.lexically_normal();
+  }
   return {};
 }
 
-WrapperText read_with_includes(const fs::path& file, std::vector<fs::path>& sources) {
-  return read_text(file, sources, 0);
-}
-
-Wrapper read_wrapper(const fs::path& file,
-                     std::vector<fs::path>& sources,
-                     std::set<std::string>& missing) {
-  return read_at(file, sources, missing, 0);
+Wrapper read_wrapper(ModelFiles& files, const fs::path& file, std::set<std::string>& missing) {
+  return read_at(files, file, missing, 0);
 }
 
 }  // namespace airtruth::aircraft

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "aircraft/model_files.h"
 #include "aircraft/wrapper_text.h"
 
 // FlightGear's wrapper XML of a 3D model with what it includes and nests: where
@@ -13,7 +14,7 @@
 namespace airtruth::aircraft {
 
 struct Wrapper {
-  fs::path file;
+  fs::path file;            // this and the paths below: below the folder of the model's files
   std::string name;         // what the wrapper that nests this one calls it
   fs::path model;           // empty where the wrapper holds nested models alone
   fs::path texture_folder;  // searched before all else; empty: none
@@ -24,24 +25,18 @@ struct Wrapper {
   std::vector<Wrapper> nested;
 };
 
-// The file with its includes: what it says itself comes after, and over, what
-// they say. `sources`: every file read. Errors carry file and line: not XML, a
-// missing file, includes that go round.
-WrapperText read_with_includes(const fs::path& file, std::vector<fs::path>& sources);
-
-// Reads a wrapper and all that it nests. A nested model that is missing is left
-// out (FlightGear does so), and named in `missing`. Lamps, smoke, rain and
-// sounds are left out.
-Wrapper read_wrapper(const fs::path& file,
-                     std::vector<fs::path>& sources,
-                     std::set<std::string>& missing);
+// Reads a wrapper with what it includes and all that it nests; what a file says itself comes after,
+// and over, what it includes. Paths are below the folder of `files`. A nested model that is missing
+// is left out (FlightGear does so), and named in `missing`. Lamps, smoke, rain and sounds are left
+// out. Errors carry file and line: not XML, a missing file, includes that go round.
+Wrapper read_wrapper(ModelFiles& files, const fs::path& file, std::set<std::string>& missing);
 
 // A lamp, smoke, rain, a sound: by its path.
 bool is_effect_path(const std::string& path);
 
-// The file that "Models/a.ac" or "AI/Aircraft/x/b.xml" means in a wrapper in
-// `folder`: beside it, in the folder above it that holds AI/Aircraft, or in
-// that folder's AI. Empty path: nowhere.
-fs::path find_named_file(const std::string& path, const fs::path& folder);
+// The file that "Models/a.ac" or "AI/Aircraft/x/b.xml" means in a wrapper in `folder`: beside it,
+// below FlightGear's data root, or in that root's AI. Empty path: nowhere below the folder of
+// `files`.
+fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::path& folder);
 
 }  // namespace airtruth::aircraft

@@ -37,8 +37,9 @@ struct ShowArguments {
   double scale = 0;
 };
 
-aircraft::LoadOptions load_options(const ShowArguments& arguments) {
+aircraft::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
   aircraft::LoadOptions options;
+  options.stop = context.stop;
   if (arguments.forward.empty() && arguments.up.empty() && arguments.scale == 0) return options;
   aircraft::ModelAxes axes;
   if (!arguments.forward.empty()) axes.forward = arguments.forward;
@@ -51,7 +52,7 @@ aircraft::LoadOptions load_options(const ShowArguments& arguments) {
 void show(const ShowArguments& arguments, Context& context) {
   Console& console = context.console();
   const aircraft::Aircraft loaded =
-      aircraft::load_aircraft(arguments.name, load_options(arguments), console.warn());
+      aircraft::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
   const aircraft::Extents size = aircraft::extents(loaded.mesh);
   const auto liveries = aircraft::liveries(arguments.name);
   console.result(fmt::format(
@@ -84,9 +85,11 @@ void add_aircraft(CLI::App& app, Context& context) {
       "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
   auto arguments = std::make_shared<ShowArguments>();
   show_command
-      ->add_option("NAME",
-                   arguments->name,
-                   "A name of `aircraft list`, or a model file (.ac .obj .3ds .osgt)")
+      ->add_option(
+          "NAME",
+          arguments->name,
+          "A name of `aircraft list`, or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb "
+          ".fbx)")
       ->required();
   show_command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
   show_command->add_option(

@@ -241,8 +241,10 @@ class Comparing {
     const lens::ImageSize size{info.width, info.height};
     const lens::Lens lens = sequence::lens_of(given.lens, size);
     const scene::Intruder& intruder = given.intruders[0];
+    aircraft::LoadOptions load;
+    load.stop = options_.stop;
     const aircraft::Aircraft aircraft =
-        aircraft::load_aircraft(intruder.aircraft, {}, options_.warn);
+        aircraft::load_aircraft(intruder.aircraft, load, options_.warn);
     const YawPitchRoll attitude{intruder.yaw_deg.value_or(90),
                                 intruder.pitch_deg.value_or(0),
                                 intruder.roll_deg.value_or(0)};

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/parse_intruder.h"
 
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "aircraft/catalogue.h"
 #include "scene/tables.h"
 
 namespace airtruth::scene {
@@ -94,14 +92,7 @@ Intruder intruder_from(const TableReader& table) {
 
 }  // namespace
 
-bool names_model_file(const std::string& aircraft) {
-  std::string ending = fs::path(aircraft).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  constexpr std::array endings = {".ac", ".obj", ".3ds", ".osgt", ".xml"};
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
+bool names_model_file(const std::string& aircraft) { return aircraft::is_model_file(aircraft); }
 
 std::vector<Intruder> intruders_from(const TableReader& root) {
   std::vector<Intruder> result;

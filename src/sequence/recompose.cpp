@@ -101,7 +101,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   video::Reader background(scene.background.video, options);
   video::Reader stored(sequence.video);
   const lens::ImageSize size{background.info().width, background.info().height};
-  const World world = load_world(scene, size, {});
+  const World world = load_world(scene, size, {}, stop);
   const auto mask = read_mask(scene, size);
   const image::Mask* mask_ptr = mask ? &*mask : nullptr;
   const auto painter = make_painter(scene, world, mask_ptr, {});

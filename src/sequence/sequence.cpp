@@ -62,7 +62,7 @@ class Run {
         size_{reader_.info().width, reader_.info().height},
         mask_(read_mask(scene, size_)),
         scene_(resolved(scene, reader_.info(), mask_ptr(), options)),
-        world_(load_world(scene_, size_, options.warn)),
+        world_(load_world(scene_, size_, options.warn, options.stop)),
         video_sha256_(sha256_of_video(scene.background.video)),
         motion_(scene_,
                 world_.lens,

@@ -56,8 +56,11 @@ lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
 }
 
-aircraft::LoadOptions load_options(const scene::Intruder& intruder, const trajectory::Path& path) {
+aircraft::LoadOptions load_options(const scene::Intruder& intruder,
+                                   const trajectory::Path& path,
+                                   const std::stop_token& stop = {}) {
   aircraft::LoadOptions options;
+  options.stop = stop;
   if (const auto state = path.at(path.start_s())) {
     options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
     options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
@@ -77,8 +80,11 @@ struct Type {
   std::shared_ptr<const render::Model> model;
 };
 
-Type load_type(const scene::Intruder& intruder, const trajectory::Path& path, const Warn& warn) {
-  const auto loaded = aircraft_of(intruder, path, warn);
+Type load_type(const scene::Intruder& intruder,
+               const trajectory::Path& path,
+               const Warn& warn,
+               const std::stop_token& stop) {
+  const auto loaded = aircraft_of(intruder, path, warn, stop);
   return {loaded, std::make_shared<const render::Model>(loaded->mesh)};
 }
 
@@ -231,9 +237,10 @@ trajectory::Path path_of(const scene::Intruder& intruder) {
 
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
-                                                      const Warn& warn) {
+                                                      const Warn& warn,
+                                                      const std::stop_token& stop) {
   return std::make_shared<const aircraft::Aircraft>(
-      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path), warn));
+      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
 }
 
 trajectory::Path camera_path(const scene::Camera& camera) {
@@ -248,7 +255,10 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
   });
 }
 
-World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
+World load_world(const scene::Scene& scene,
+                 lens::ImageSize size,
+                 const Warn& warn,
+                 const std::stop_token& stop) {
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
@@ -258,7 +268,7 @@ World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& wa
     const trajectory::Path path = path_of(intruder);
     Type& type = types[type_key(intruder, path)];
     if (!type.aircraft)
-      type = at_place(intruder.where, [&] { return load_type(intruder, path, warn); });
+      type = at_place(intruder.where, [&] { return load_type(intruder, path, warn, stop); });
     annotation::Silhouette silhouette{&type.aircraft->mesh,
                                       aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,15 @@ trajectory::Path camera_path(const scene::Camera& camera);
 trajectory::Path path_of(const scene::Intruder& intruder);
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
-                                                      const Warn& warn);
+                                                      const Warn& warn,
+                                                      const std::stop_token& stop = {});
 
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
-// The scene's camera model is resolved (resolve.h).
-World load_world(const scene::Scene& scene, lens::ImageSize size, const Warn& warn);
+// The scene's camera model is resolved (resolve.h). Throws Interrupted on stop.
+World load_world(const scene::Scene& scene,
+                 lens::ImageSize size,
+                 const Warn& warn,
+                 const std::stop_token& stop = {});
 
 // Where everything is in one frame, from geometry alone.
 struct Moment {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// AC3D models, and the arrays that the model reader hands back: anything but an Error is a finding.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "aircraft/ac_file.h"
+#include "aircraft/ac_mesh.h"
+#include "aircraft/model_wire.h"
+#include "base/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace airtruth::aircraft;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const AcFile file = parse_ac(text, "a.ac");
+    for (std::size_t i = 0; i < file.objects.size(); ++i) {
+      (void)names_of(file, i);
+      (void)batches_of(file, file.objects[i]);
+    }
+  } catch (const airtruth::Error&) {
+  }
+  try {
+    check_model(model_from_bytes(text));
+  } catch (const airtruth::Error&) {
+  }
+  return 0;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+// Texture files as plain pixels. The reader is chosen by the file's first bytes, never by its name.
+// Nothing here opens a file or trusts a size that the bytes state.
+namespace airtruth::aircraft {
+
+// sRGB with straight alpha, four bytes a pixel (R, G, B, A), rows from the bottom up as OpenGL's.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+struct PictureLimits {
+  int side_px = 16384;                         // the largest texture of graphics cards
+  std::size_t pixels = std::size_t{64} << 20;  // 256 MiB decoded
+};
+
+// PNG (ISO/IEC 15948; gray, palette and 16 bits become 8-bit RGBA), JPEG (ITU-T T.81; gray and
+// YCbCr), SGI (Haeberli's image file format 0.97; verbatim and run-length, 8 and 16 bits) or
+// Truevision TGA 2.0 (types 1, 2, 3, 9, 10, 11). Throws Error without a place: bytes of no such
+// kind, faulty or cut short, or a picture beyond the limits.
+Picture read_picture(std::string_view bytes, const PictureLimits& limits = {});
+
+}  // namespace airtruth::aircraft
