@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,6 +14,7 @@
 #include "aircraft/wrapper.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/pattern.h"
 #include "base/suggest.h"
 
 namespace airtruth::aircraft {
@@ -147,6 +149,13 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+std::vector<std::string> names_that(const std::function<bool(const std::string&)>& wanted) {
+  std::vector<std::string> names;
+  for (const Entry& entry : list_aircraft())
+    if (wanted(entry.name)) names.push_back(entry.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<Entry> list_aircraft() {
@@ -169,10 +178,37 @@ Entry find_aircraft(const std::string& name) {
     const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
     if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
   }
-  std::vector<std::string> names;
-  for (const Entry& entry : list_aircraft()) names.push_back(entry.name);
   throw Error("unknown aircraft '" + name + "'; the nearest names are " +
-              joined(nearest_spellings(name, names, 3)) + " (`airtruth aircraft list` shows all)");
+              joined(nearest_aircraft(name, 3)) + " (`airtruth aircraft list` shows all)");
+}
+
+std::vector<std::string> aircraft_named_like(const std::string& word) {
+  return names_that([&](const std::string& name) {
+    return is_pattern(word) ? matches(word, name, LetterCase::kIgnored)
+                            : contains_ignoring_case(name, word);
+  });
+}
+
+std::vector<std::string> aircraft_fitting(const std::string& pattern) {
+  std::vector<std::string> exact;
+  std::vector<std::string> in_any_case;
+  for (const Entry& entry : list_aircraft()) {
+    if (matches(pattern, entry.name)) exact.push_back(entry.name);
+    if (matches(pattern, entry.name, LetterCase::kIgnored)) in_any_case.push_back(entry.name);
+  }
+  return exact.empty() ? in_any_case : exact;
+}
+
+std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t count) {
+  const std::vector<std::string> all = names_that([](const std::string&) { return true; });
+  std::vector<std::string> names;
+  if (!word.empty())
+    for (const std::string& name : all)
+      if (contains_ignoring_case(name, word)) names.push_back(name);
+  for (const std::string& name : nearest_spellings(word, all, count))
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  names.resize(std::min(names.size(), count));
+  return names;
 }
 
 fs::path data_root_of(const fs::path& catalogue_folder) {

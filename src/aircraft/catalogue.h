@@ -32,6 +32,19 @@ std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder
 // name. Throws Error, saying which package to install, where there is no such folder.
 std::vector<Entry> list_aircraft();
 
+// The names that a word means, sorted: those it fits as a pattern over the whole name where it
+// holds
+// * or ?, else those that contain it. Letter case does not matter. Empty where none does.
+std::vector<std::string> aircraft_named_like(const std::string& word);
+
+// The names that a pattern with * and ? fits as a whole, sorted. Letter case matters where it
+// decides: a pattern that fits no name as it is written fits whatever the case of its letters.
+std::vector<std::string> aircraft_fitting(const std::string& pattern);
+
+// Names for a message about a word that is no name, at most `count`: first those that contain the
+// word in whatever case, then those nearest in spelling.
+std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t count);
+
 // The entry of that name; Error with the nearest names otherwise.
 Entry find_aircraft(const std::string& name);
 

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/median.h"
+#include "base/pattern.h"
 #include "base/seed.h"
 #include "base/suggest.h"
 
@@ -44,6 +45,26 @@ TEST(NearestSpelling, FindsTheMeantWordOrNothing) {
 }
 
 // The first values of SplitMix64 from state 0, as its authors' reference program prints them.
+TEST(Pattern, StarsAndQuestionMarks) {
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("1*B737", "1LRB737"));
+  EXPECT_FALSE(matches("1*B737", "1LRC172"));
+  EXPECT_TRUE(matches("?LR*", "1LRB737"));
+  EXPECT_FALSE(matches("?", ""));
+  EXPECT_TRUE(matches("*a*b*c", "xxaxxbxxabc"));
+  EXPECT_FALSE(matches(std::string(40, '*').append("b"), std::string(10000, 'a')));
+}
+
+TEST(Pattern, LetterCaseIsIgnoredWhereAsked) {
+  EXPECT_FALSE(matches("C172*", "c172/news"));
+  EXPECT_TRUE(matches("C172*", "c172/news", LetterCase::kIgnored));
+  EXPECT_TRUE(matches("738/*ryanair", "738/738-Ryanair", LetterCase::kIgnored));
+  EXPECT_FALSE(matches("C172", "c172/news", LetterCase::kIgnored));
+  EXPECT_TRUE(contains_ignoring_case("c172/news", "C172"));
+  EXPECT_TRUE(contains_ignoring_case("c172/news", ""));
+  EXPECT_FALSE(contains_ignoring_case("c17", "C172"));
+}
+
 TEST(Random, IsSplitMix64) {
   Random random(0);
   EXPECT_EQ(random(), 0xe220a8397b1dcdafULL);

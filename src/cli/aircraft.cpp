@@ -6,6 +6,7 @@
 
 #include "aircraft/catalogue.h"
 #include "base/error.h"
+#include "base/pattern.h"
 #include "cli/commands.h"
 #include "sequence/portrait.h"
 #include "video/still.h"
@@ -14,18 +15,16 @@ namespace airtruth::cli {
 namespace {
 
 void list(const std::string& filter, Context& context) {
-  std::size_t shown = 0;
-  const auto entries = aircraft::list_aircraft();
-  for (const auto& entry : entries) {
-    if (!filter.empty() && entry.name.find(filter) == std::string::npos) continue;
-    fmt::print("{}\n", entry.name);
-    ++shown;
-  }
-  if (shown == 0)
+  const std::vector<std::string> names = aircraft::aircraft_named_like(filter);
+  for (const std::string& name : names) fmt::print("{}\n", name);
+  if (names.empty())
     throw Error(
-        fmt::format("no name among {} aircraft contains '{}'; `airtruth aircraft list` shows all",
-                    entries.size(),
-                    filter));
+        fmt::format("no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft "
+                    "list` shows all",
+                    aircraft::list_aircraft().size(),
+                    is_pattern(filter) ? "fits" : "contains",
+                    filter,
+                    fmt::join(aircraft::nearest_aircraft(filter, 3), ", ")));
   (void)context;
 }
 
@@ -35,6 +34,7 @@ struct ShowArguments {
   std::string forward;
   std::string up;
   double scale = 0;
+  bool overwrite = false;
 };
 
 aircraft::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
@@ -50,6 +50,7 @@ aircraft::LoadOptions load_options(const ShowArguments& arguments, const Context
 }
 
 void show(const ShowArguments& arguments, Context& context) {
+  video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
   const aircraft::Aircraft loaded =
       aircraft::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
@@ -79,7 +80,10 @@ void add_aircraft(CLI::App& app, Context& context) {
   auto* list_command =
       command->add_subcommand("list", "Print the name of every aircraft, a line each");
   auto filter = std::make_shared<std::string>();
-  list_command->add_option("FILTER", *filter, "Show only names that contain this");
+  list_command->add_option("FILTER",
+                           *filter,
+                           "Show only names that contain this, or that it fits with * and ?; "
+                           "letter case does not matter");
   list_command->callback([filter, &context] { list(*filter, context); });
   auto* show_command = command->add_subcommand(
       "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
@@ -92,6 +96,7 @@ void add_aircraft(CLI::App& app, Context& context) {
           ".fbx)")
       ->required();
   show_command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
+  show_command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");
   show_command->add_option(
       "--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
   show_command->add_option("--up", arguments->up, "Model file: its axis that is up");

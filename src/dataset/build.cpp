@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file_lock.h"
+#include "base/pattern.h"
 #include "dataset/backgrounds.h"
 #include "dataset/check.h"
 #include "dataset/folder.h"

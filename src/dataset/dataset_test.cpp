@@ -98,16 +98,6 @@ TEST(Catalogue, DrawnIntrudersComeIntoTheRangesThatWereAskedFor) {
   }
 }
 
-TEST(Pattern, StarsAndQuestionMarks) {
-  EXPECT_TRUE(matches("*", ""));
-  EXPECT_TRUE(matches("1*B737", "1LRB737"));
-  EXPECT_FALSE(matches("1*B737", "1LRC172"));
-  EXPECT_TRUE(matches("?LR*", "1LRB737"));
-  EXPECT_FALSE(matches("?", ""));
-  EXPECT_TRUE(matches("*a*b*c", "xxaxxbxxabc"));
-  EXPECT_FALSE(matches(std::string(40, '*').append("b"), std::string(10000, 'a')));
-}
-
 class Build : public testing::Test {
  protected:
   Build() : root_(fs::temp_directory_path() / ("airtruth_dataset_" + std::to_string(::getpid()))) {

@@ -44,25 +44,33 @@ std::optional<Range> range_or_type(const TableReader& table,
 }
 
 // The aircraft that fit the patterns, by the folder of their name, which is their type.
+std::string no_aircraft_fits(const std::string& pattern) {
+  const std::string text = "no aircraft fits '" + pattern + "'";
+  const std::string wider = "*" + pattern + "*";
+  const std::vector<std::string> names = aircraft::aircraft_fitting(wider);
+  if (!names.empty())
+    return text + "; '" + wider + "' fits " + std::to_string(names.size()) + ", the first '" +
+           names.front() + "'";
+  std::string nearest;
+  for (const std::string& name : aircraft::nearest_aircraft(pattern, 1))
+    nearest = "; the nearest name is '" + name + "'";
+  return text + nearest + "; see `airtruth aircraft list`";
+}
+
 std::vector<AircraftType> types_from(const TableReader& table) {
   const auto patterns = table.texts("aircraft");
   if (!patterns)
     throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
                 table.where());
   std::map<std::string, AircraftType> types;
-  const auto entries = aircraft::list_aircraft();
   for (std::size_t i = 0; i < patterns->size(); ++i) {
-    bool is_used = false;
-    for (const auto& entry : entries) {
-      if (!matches((*patterns)[i], entry.name)) continue;
-      is_used = true;
-      const std::string type = entry.name.substr(0, entry.name.find('/'));
+    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
+    for (const std::string& name : names) {
+      const std::string type = name.substr(0, name.find('/'));
       types[type].name = type;
-      types[type].liveries.push_back(entry.name);
+      types[type].liveries.push_back(name);
     }
-    if (!is_used)
-      throw Error("no aircraft fits '" + (*patterns)[i] + "'; see `airtruth aircraft list`",
-                  table.where("aircraft", i));
+    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
   }
   std::vector<AircraftType> result;
   for (auto& [name, type] : types) {

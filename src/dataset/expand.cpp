@@ -183,26 +183,4 @@ void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files)
     meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height});
 }
 
-bool matches(std::string_view pattern, std::string_view name) {
-  std::size_t p = 0;
-  std::size_t n = 0;
-  std::size_t star = std::string_view::npos;  // the last *, and where in the name it was met
-  std::size_t met = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] != '*' && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p, ++n;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      met = n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++met;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
 }  // namespace airtruth::dataset

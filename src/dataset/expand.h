@@ -59,7 +59,4 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 // in the lens's field), and where a random start meets a video that does not state its length.
 void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files);
 
-// Does a name fit a pattern with * and ?
-bool matches(std::string_view pattern, std::string_view name);
-
 }  // namespace airtruth::dataset

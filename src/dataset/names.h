@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/pattern.h"
 #include "base/suggest.h"
 #include "dataset/expand.h"
 #include "scene/table_reader.h"

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/pattern.h"
 #include "base/version.h"
 #include "dataset/expand.h"
 #include "dataset/in_parallel.h"
@@ -131,10 +132,32 @@ class Running {
     }
   }
 
+  // Results of one folder are of one tracker and one seed: Error where it holds others. Is the
+  // folder there?
+  bool check_folder() const {
+    const fs::path file = summary_.folder / "tracker.json";
+    if (!fs::exists(file)) return false;
+    const Json mine = own_record();
+    try {
+      const Json there = Json::parse(read_file(file));
+      for (const auto& [key, value] : mine.items())
+        if (there.at(key) != value)
+          throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out "
+                                  "or remove the folder",
+                                  key,
+                                  there.at(key).dump(),
+                                  value.dump()),
+                      {summary_.folder.string()});
+    } catch (const Json::exception&) {
+      throw Error("is not a record that airtruth wrote", {file.string()});
+    }
+    return true;
+  }
+
   RunSummary over(const dataset::LabelledSet& set) {
     std::vector<std::string> names;
     for (const std::string& name : set.names())
-      if (dataset::matches(options_.only, name)) names.push_back(name);
+      if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open_folder();
     const dataset::Boxes boxes = set.usual_boxes(options_.warn);
@@ -196,26 +219,12 @@ class Running {
       throw Error("holds a run from another box; give another --out or remove it", {file.string()});
   }
 
-  // Results of one folder are of one tracker and one seed.
+  Json own_record() const { return {{"tracker", options_.tracker}, {"seed", options_.seed}}; }
+
   void open_folder() const {
-    const Json mine = {{"tracker", options_.tracker}, {"seed", options_.seed}};
+    if (check_folder()) return;
+    const Json mine = own_record();
     const fs::path file = summary_.folder / "tracker.json";
-    if (fs::exists(file)) {
-      try {
-        const Json there = Json::parse(read_file(file));
-        for (const auto& [key, value] : mine.items())
-          if (there.at(key) != value)
-            throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out "
-                                    "or remove the folder",
-                                    key,
-                                    there.at(key).dump(),
-                                    value.dump()),
-                        {summary_.folder.string()});
-      } catch (const Json::exception&) {
-        throw Error("is not a record that airtruth wrote", {file.string()});
-      }
-      return;
-    }
     std::error_code failed;
     fs::create_directories(summary_.folder, failed);
     if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
@@ -367,6 +376,10 @@ class Running {
 };
 
 }  // namespace
+
+void check_run(const fs::path& out, const RunOptions& options) {
+  Running(out, options).check_folder();
+}
 
 RunSummary run(const fs::path& set, const fs::path& out, const RunOptions& options) {
   const dataset::LabelledSet labelled(set);
