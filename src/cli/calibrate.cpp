@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "calibration/calibration.h"
 #include "calibration/own_aircraft.h"
 #include "cli/commands.h"
@@ -30,8 +31,8 @@ struct CalibrateArguments {
 };
 
 void calibrate(const CalibrateArguments& arguments, Context& context) {
-  refuse_existing(arguments.out, arguments.overwrite);
-  refuse_existing(arguments.plot, arguments.overwrite);
+  check_output_file(arguments.out, arguments.overwrite);
+  video::check_still_output(arguments.plot, arguments.overwrite);
   Console& console = context.console();
   const video::StreamInfo info = video::Reader(arguments.video, {.threads = 1}).info();
   std::optional<image::Mask> mask;
@@ -53,6 +54,8 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   write_file(arguments.out, calibration::toml_from(found));
   if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
   for (const auto& [key, why] : found.missing) console.warning(key + " cannot be had: " + why);
+  if (const auto note = found.notes.find("air.extinction_per_km"); note != found.notes.end())
+    console.warning(note->first + " is " + note->second);
   console.result(fmt::format(
       "{}: {} values from {} frames", arguments.out, found.values.size(), found.frames));
 }
@@ -64,7 +67,7 @@ struct MaskArguments {
 };
 
 void find_mask(const MaskArguments& arguments, Context& context) {
-  refuse_existing(arguments.out, arguments.overwrite);
+  video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
   calibration::MaskOptions options;
   options.stop = context.stop;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "experiment/assess.h"
 #include "experiment/figures.h"
@@ -131,6 +132,8 @@ void run_evaluate(Evaluate arguments, Context& context) {
     options.eao_range = {arguments.eao_range[0], arguments.eao_range[1]};
   }
   if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
+  if (!arguments.against.empty()) experiment::check_evaluation(arguments.against);
+  check_output_folder(arguments.out);
   options.with_film = !arguments.no_page;
   options.warn = console.warn();
   options.stop = context.stop;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "sequence/evision_table.h"
 
@@ -15,6 +16,7 @@ struct EvisionArguments {
   std::string frames;
   bool level = false;
   bool still = false;
+  bool overwrite = false;
   sequence::EvisionOptions options;
 };
 
@@ -56,6 +58,7 @@ std::string csv_line(const sequence::EvisionFramePair& pair) {
 }
 
 void evision(EvisionArguments arguments, Context& context) {
+  check_output_file(arguments.frames, arguments.overwrite);
   Console& console = context.console();
   arguments.options.bank = !arguments.level;
   arguments.options.recover_motion = !arguments.still;
@@ -116,6 +119,7 @@ void add_evision(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option(
       "--frames", arguments->frames, "Also write every frame's two boxes here (.csv)");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the file of --frames");
   command->add_flag("--still",
                     arguments->still,
                     "Without the camera's motion, which moves and turns the published boxes");

@@ -41,7 +41,7 @@ struct InspectArguments {
 };
 
 void inspect(const InspectArguments& arguments, Context& context) {
-  refuse_existing(arguments.out, arguments.overwrite);
+  video::check_still_output(arguments.out, arguments.overwrite);
   const sequence::Finished finished = sequence::open_finished(arguments.folder);
   video::write_still(
       arguments.out,

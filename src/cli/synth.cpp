@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "lens/calibration_file.h"
 #include "sequence/mask_picture.h"
@@ -28,8 +29,9 @@ struct SynthArguments {
 };
 
 void synth(SynthArguments arguments, Context& context) {
-  for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
-    refuse_existing(file, arguments.overwrite);
+  for (const std::string& file : {arguments.out, arguments.truth})
+    check_output_file(file, arguments.overwrite);
+  video::check_still_output(arguments.mask, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
   if (arguments.duration_s > 0)
     options.frame_count =
@@ -40,9 +42,8 @@ void synth(SynthArguments arguments, Context& context) {
     options.lens = lens::read_calibration(arguments.lens_file, {options.width, options.height});
   Console& console = context.console();
   const fs::path out = arguments.out;
-  const std::string extension = out.extension().string();
   sequence::VirtualFlightOptions how;
-  how.format = video::format_from_name(extension.empty() ? extension : extension.substr(1));
+  how.format = video::format_of_file(out);
   how.quality = arguments.quality;
   how.stop = context.stop;
   how.progress = [&console](std::int64_t done, std::int64_t total) {

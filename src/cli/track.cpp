@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "experiment/run.h"
 #include "tracking/tracker.h"
@@ -80,9 +81,13 @@ void run_track(Track arguments, Context& context) {
   const bool is_video = !arguments.init.empty();
   refuse_mixed(arguments, is_video);
   const Box init = is_video ? box_of(arguments.init) : Box{};
-  // A wrong name after a right one is said before the right one has run for hours.
-  for (const std::string& tracker : arguments.trackers)
-    if (!tracking::is_trax(tracker)) tracking::make_tracker(tracker, {});
+  check_output_folder(arguments.out);
+  // What is wrong with a second tracker is known before the first has run for hours. Programs that
+  // speak TraX are started in their turn alone.
+  for (const std::string& tracker : arguments.trackers) {
+    options.tracker = tracker;
+    if (!tracking::is_trax(tracker)) experiment::check_run(arguments.out, options);
+  }
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
     options.progress = [&](std::int64_t done, std::int64_t total) {

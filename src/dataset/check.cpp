@@ -2,12 +2,15 @@
 #include "dataset/check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
 #include "aircraft/catalogue.h"
 #include "base/error.h"
 #include "dataset/expand.h"
+#include "sequence/scene_check.h"
+#include "video/reader.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -31,6 +34,36 @@ void check_video(const fs::path& video, const std::string& background, const Whe
     throw Error(
         "the video of background '" + background + "', " + video.string() + ", does not exist",
         where);
+}
+
+video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
+  video::StreamInfo info;
+  info.width = flight.width;
+  info.height = flight.height;
+  info.frame_rate = {static_cast<int>(std::lround(1000 * flight.frame_rate_hz)), 1000};
+  return info;
+}
+
+// Mask, lens, camera file and path of a background. How much of the clip is used is each
+// sequence's, and the camera's path must be as long as that alone.
+void check_background(const Catalogue& catalogue,
+                      const Background& background,
+                      const std::map<std::string, fs::path>& videos) {
+  scene::Scene scene = scene_over(catalogue, background);
+  const auto given = videos.find(background.name);
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  video::StreamInfo info;
+  if (given == videos.end() && flight != nullptr) {
+    info = stream_of(*flight);
+  } else {
+    const bool own = given == videos.end();
+    const fs::path video = own ? std::get<fs::path>(background.source) : given->second;
+    check_video(video, background.name, own ? background.where : Where{});
+    info = video::Reader(video, {.threads = 1}).info();
+    if (own) scene.background.mask = background.mask;
+  }
+  info.frame_count_estimate = 0;  // unknown
+  sequence::check_scene(scene, info);
 }
 
 // One rule's names differ by construction; those of two may meet. Hashes, since a million names
@@ -57,12 +90,8 @@ void check_names(const Catalogue& catalogue) {
 
 void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos) {
   for (const Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
-  for (const Background& background : catalogue.backgrounds) {
-    const auto* video = std::get_if<fs::path>(&background.source);
-    if (video != nullptr && !videos.contains(background.name))
-      check_video(*video, background.name, background.where);
-  }
-  for (const auto& [name, video] : videos) check_video(video, name, {});
+  for (const Background& background : catalogue.backgrounds)
+    check_background(catalogue, background, videos);
   check_names(catalogue);
 }
 

@@ -183,6 +183,8 @@ class Export {
   }
 
   void write_images() {
+    for (const std::string& name : set_.names())
+      if (!place_.has_images_of(name)) check_has_video(name, clip_of(name));
     in_parallel(
         set_.names().size(),
         options_.jobs,
@@ -191,11 +193,15 @@ class Export {
         options_.stop);
   }
 
+  static void check_has_video(const std::string& name, const exchange::Clip& clip) {
+    if (clip.media.empty())
+      throw Error(name + " has no video to take pictures from; expected --images none");
+  }
+
   void write_images_of(const std::string& name) {
     if (place_.has_images_of(name)) return;
     const exchange::Clip clip = clip_of(name);
-    if (clip.media.empty())
-      throw Error(name + " has no video to take pictures from; expected --images none");
+    check_has_video(name, clip);
     const std::string& part = parts_.at(name);
     const std::map<std::int64_t, std::vector<fs::path>> wanted = places_of(clip, part);
     video::Reader reader(clip.media, {.threads = 1});

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "base/version.h"
 #include "video/numbered_images.h"
 #include "video/reader.h"
@@ -103,6 +104,7 @@ ImportSummary import_set(const fs::path& source,
                          const ImportOptions& options) {
   if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
     throw Error("exists and is not empty; expected a new folder", {out.string()});
+  check_output_folder(out);
   std::vector<exchange::Clip> clips =
       exchange::read_clips(options.format, source, options.read, options.warn);
   std::set<std::string> taken;

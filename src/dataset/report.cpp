@@ -10,6 +10,7 @@
 #include "base/base64.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "dataset/card.h"
 #include "dataset/in_parallel.h"
 #include "dataset/page.h"
@@ -164,7 +165,7 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
 }  // namespace
 
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
-  refuse_existing(out, options.overwrite);
+  check_output_file(out, options.overwrite);
   const LabelledSet labelled(set);
   std::vector<Portrait> portraits(labelled.names().size());
   in_parallel(

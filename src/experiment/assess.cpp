@@ -329,14 +329,17 @@ Assessment assess(const fs::path& set,
   return assessment;
 }
 
+void check_evaluation(const fs::path& file) { agreement({}, file); }
+
 Agreement agreement(const Assessment& assessment, const fs::path& other) {
   Agreement result;
   std::vector<double> mine;
   std::vector<double> theirs;
   try {
     const nlohmann::json json = nlohmann::json::parse(read_file(other));
+    const nlohmann::json& trackers = json.at("trackers");
     for (const ScoredTracker& tracker : assessment.trackers)
-      for (const auto& that : json.at("trackers"))
+      for (const auto& that : trackers)
         if (tracker.overall && that.at("name") == tracker.name && that.contains("overall")) {
           result.trackers.push_back(tracker.name);
           mine.push_back(tracker.overall->auc);

@@ -109,4 +109,7 @@ struct Agreement {
 };
 Agreement agreement(const Assessment& assessment, const fs::path& other);
 
+// Error where the file is no evaluation.json: to know it before an evaluation, not after.
+void check_evaluation(const fs::path& file);
+
 }  // namespace airtruth::experiment

@@ -52,6 +52,10 @@ struct RunSummary {
 // where it cannot be started at all, or where `out` holds results of other settings.
 RunSummary run(const fs::path& set, const fs::path& out, const RunOptions& options);
 
+// Error for what run() would refuse before the first frame: no such tracker, or results of other
+// settings in `out`. A TraX tracker without a name is started to ask it for its own.
+void check_run(const fs::path& out, const RunOptions& options);
+
 // The same, one pass, over a video without truth, from a box in `first_frame` to its end:
 // out/TRACKER/VIDEO.txt.
 RunSummary run_on_video(const fs::path& video,

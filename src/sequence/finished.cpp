@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "exchange/labels.h"
 #include "image/colour.h"
 #include "report/pictures.h"
@@ -18,13 +19,6 @@
 
 namespace airtruth::sequence {
 namespace {
-
-video::Format format_of(const fs::path& out) {
-  const std::string extension = out.extension().string();
-  if (extension.empty())
-    throw Error("has no extension; expected .mp4, .mkv or .avi", {out.string()});
-  return video::format_from_name(extension.substr(1));
-}
 
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
   video::ReaderOptions options;
@@ -132,9 +126,9 @@ std::vector<std::string> intruder_ids(const annotation::Truth& truth) {
 }
 
 void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options) {
-  refuse_existing(out, options.overwrite);
+  check_output_file(out, options.overwrite);
   video::WriterOptions writer_options;
-  writer_options.format = format_of(out);
+  writer_options.format = video::format_of_file(out);
   if (sequence.scene) writer_options.quality = sequence.scene->output.quality;
   video::Reader reader(sequence.video);
   video::StreamInfo info = reader.info();

@@ -111,7 +111,10 @@ void Outputs::write(const video::Frame& frame,
   sheet_.add(frame.picture, truth);
 }
 
-void Outputs::finish(const std::vector<Checksum>& inputs, const Summary& summary) {
+void Outputs::finish(const scene::Scene& scene,
+                     const std::vector<Checksum>& inputs,
+                     const Summary& summary) {
+  scene_ = scene;
   writer_.finish();
   truth_.close();
   if (!truth_)

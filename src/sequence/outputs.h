@@ -41,7 +41,11 @@ class Outputs {
              const annotation::Frame& truth,
              const std::vector<MaskFile>& masks);
   // Closes everything and writes the annotation, the preview and, last, sequence.json.
-  void finish(const std::vector<Checksum>& inputs, const Summary& summary);
+  // `scene` is the one that was drawn: its camera model may have been measured since the outputs
+  // were opened.
+  void finish(const scene::Scene& scene,
+              const std::vector<Checksum>& inputs,
+              const Summary& summary);
 
  private:
   void write_annotations() const;

@@ -83,11 +83,7 @@ class ChromaKey : public Painter {
             const image::Mask* mask,
             const Options& options)
       : scene_(scene), world_(world), mask_(mask), stop_(options.stop) {
-    if (!std::holds_alternative<lens::Pinhole>(world.lens.model()))
-      throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the "
-                              "pinhole alone; the lens is ") +
-                      world.lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
-                  scene.lens.where);
+    check_method(scene, world.lens);
     backdrop::Options gl;
     gl.gpu = options.gpu;
     gl.software = options.software_gl;
@@ -220,6 +216,15 @@ image::Layer render_layer(const scene::Scene& scene,
       view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
   if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
   return through_air_and_lens(std::move(layer), scene.camera_model, ambient, world.lens.size());
+}
+
+void check_method(const scene::Scene& scene, const lens::Lens& lens) {
+  if (scene.composite.method != "chroma-key") return;
+  if (!std::holds_alternative<lens::Pinhole>(lens.model()))
+    throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole "
+                            "alone; the lens is ") +
+                    lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
+                scene.lens.where);
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

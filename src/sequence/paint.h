@@ -37,7 +37,10 @@ void write_moment(const World& world,
                   const Painted& painted,
                   annotation::Frame& truth);
 
-// Error where the method cannot draw through the scene's lens.
+// Error where the scene's method cannot draw through the lens.
+void check_method(const scene::Scene& scene, const lens::Lens& lens);
+
+// Error where check_method() refuses, and where chroma-key finds no OpenGL.
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
                                       const World& world,
                                       const image::Mask* mask,

@@ -133,52 +133,72 @@ void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
   model.angle_deg.reset();
 }
 
+// Takes from the clip what the scene wants to be measured and the clip can tell.
+void take_measured(scene::Scene& scene,
+                   const StatedScene& stated,
+                   const calibration::Calibration& found,
+                   const Warn& to_warn) {
+  const scene::CameraModel from_clip = calibration::model_of(found);
+  scene::for_each_camera_key(
+      [&](const char* key, auto& value, const auto& seen) {
+        const auto& wanted = stated.to_measure;
+        if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
+        value = seen;
+        if (value) return;
+        const std::string what =
+            fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
+        if (!stated.realism.fallback)
+          throw Error(
+              what + "; state it, or set fallback = true in [realism] to leave it out",
+              stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
+        warn(to_warn, what + "; it is left out");
+      },
+      scene.camera_model,
+      from_clip);
+  if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
+  if (stated.sun_is_known || !found.values.contains("light.sun_azimuth_deg")) return;
+  scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
+  scene.light.sun_elevation_deg = found.values.at("light.sun_elevation_deg")[0].value;
+}
+
+// The keys that are wanted and that neither the scene nor its camera file states.
+std::vector<std::string> left_to_measure(const scene::Scene& filled) {
+  std::vector<std::string> keys;
+  scene::for_each_camera_key(
+      [&](const char* key, const auto& value) {
+        if (!value && is_wanted(filled, key)) keys.emplace_back(key);
+      },
+      filled.camera_model);
+  return keys;
+}
+
 }  // namespace
 
-scene::Scene resolved(const scene::Scene& scene,
-                      const video::StreamInfo& info,
+StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
+  StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
+  refuse_with_chroma_key(scene);
+  take_angle(result.scene, info);
+  scene::CameraFile file;
+  if (scene.realism.file) file = file_of(scene, {info.width, info.height});
+  fill_from_file(result.scene, file);
+  result.to_measure = left_to_measure(result.scene);
+  if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
+    result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
+    result.scene.light.sun_elevation_deg = *file.sun_elevation_deg;
+    result.sun_is_known = true;
+  }
+  result.scene.camera_model.automatic.clear();
+  result.scene.realism = {};
+  return result;
+}
+
+scene::Scene resolved(const StatedScene& stated,
+                      const lens::ImageSize& size,
                       const image::Mask* mask,
                       const Options& options) {
-  scene::Scene result = scene;
-  scene::CameraModel& model = result.camera_model;
-  refuse_with_chroma_key(scene);
-  take_angle(result, info);
-  const lens::ImageSize size{info.width, info.height};
-  scene::CameraFile file;
-  if (scene.realism.file) file = file_of(scene, size);
-  const bool measure = fill_from_file(result, file);
-  std::optional<double> azimuth = file.sun_azimuth_deg;
-  std::optional<double> elevation = file.sun_elevation_deg;
-  if (measure) {
-    const calibration::Calibration found = measured_on(result, size, mask, options);
-    const scene::CameraModel from_clip = calibration::model_of(found);
-    scene::for_each_camera_key(
-        [&](const char* key, auto& stated, const auto& seen) {
-          if (stated || !is_wanted(scene, key)) return;
-          stated = seen;
-          if (stated) return;
-          const std::string what =
-              fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
-          if (!scene.realism.fallback)
-            throw Error(
-                what + "; state it, or set fallback = true in [realism] to leave it out",
-                scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
-          warn(options.warn, what + "; it is left out");
-        },
-        model,
-        from_clip);
-    if (!model.readout) model.readout = from_clip.readout;
-    if (!azimuth && found.values.contains("light.sun_azimuth_deg")) {
-      azimuth = sun_azimuth_deg(scene, found);
-      elevation = found.values.at("light.sun_elevation_deg")[0].value;
-    }
-  }
-  if (!scene.light.sun_is_stated && azimuth && elevation) {
-    result.light.sun_azimuth_deg = *azimuth;
-    result.light.sun_elevation_deg = *elevation;
-  }
-  model.automatic.clear();
-  result.realism = {};
+  scene::Scene result = stated.scene;
+  if (stated.to_measure.empty()) return result;
+  take_measured(result, stated, measured_on(result, size, mask, options), options.warn);
   return result;
 }
 

@@ -58,38 +58,32 @@ class Run {
   Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
       : options_(options),
         camera_file_(scene.realism.file),
+        staged_(folder, options.overwrite),
         reader_(open(scene, options)),
         size_{reader_.info().width, reader_.info().height},
         mask_(read_mask(scene, size_)),
-        scene_(resolved(scene, reader_.info(), mask_ptr(), options)),
+        stated_(stated(scene, reader_.info())),
+        scene_(stated_.scene),
         world_(load_world(scene_, size_, options.warn, options.stop)),
-        video_sha256_(sha256_of_video(scene.background.video)),
-        motion_(scene_,
-                world_.lens,
-                !world_.shutter.is_instant(),
-                video_sha256_,
-                mask_ptr(),
-                cache_of(options)),
-        ambient_(scene_.light, tone_of(scene_.camera_model), mask_ptr()),
-        painter_(make_painter(scene_, world_, mask_ptr(), options)),
-        staged_(folder, options.overwrite) {
-    scene_.motion.model = motion_model(scene_, world_.lens);
-    outputs_.emplace(staged_.path(), scene_, world_.lens, stream_info(), options_.threads);
-    if (motion_.needs_pass()) {
-      motion_.measure(reader_, options_.stop, {});
-      reader_ = open(scene_, options_);
-    }
+        painter_(make_painter(scene_, world_, mask_ptr(), options)) {
+    scene_.motion.model = stated_.scene.motion.model = motion_model(scene_, world_.lens);
+    const video::StreamInfo info = stream_info();
+    check_camera_path(world_.camera, info);
+    outputs_.emplace(staged_.path(), scene_, world_.lens, info, options_.threads);
     seen_.assign(world_.actors.size(), false);
+    // All that can be wrong with the inputs is known here; what follows takes long.
+    measure_camera();
+    measure_motion();
   }
 
   Summary run() {
     const Stopwatch running;
     run_pipeline();
     if (options_.stop.stop_requested()) throw Interrupted();
-    motion_.store();
+    motion_->store();
     say_what_was_odd();
-    summary_.motion_from_cache = motion_.from_cache();
-    outputs_->finish(inputs(), summary_);
+    summary_.motion_from_cache = motion_->from_cache();
+    outputs_->finish(scene_, inputs(), summary_);
     outputs_.reset();
     staged_.commit();
     summary_.seconds = running.seconds();
@@ -100,6 +94,27 @@ class Run {
 
  private:
   const image::Mask* mask_ptr() const { return mask_ ? &*mask_ : nullptr; }
+
+  // Exposure, noise and what else [realism] leaves to the clip.
+  void measure_camera() {
+    scene_ = resolved(stated_, size_, mask_ptr(), options_);
+    world_.shutter = shutter_of(scene_.camera_model);
+    ambient_.emplace(scene_.light, tone_of(scene_.camera_model), mask_ptr());
+  }
+
+  // The camera's motion where all of it must be known before the first frame.
+  void measure_motion() {
+    video_sha256_ = sha256_of_video(scene_.background.video);
+    motion_.emplace(scene_,
+                    world_.lens,
+                    !world_.shutter.is_instant(),
+                    video_sha256_,
+                    mask_ptr(),
+                    cache_of(options_));
+    if (!motion_->needs_pass()) return;
+    motion_->measure(reader_, options_.stop, {});
+    reader_ = open(scene_, options_);
+  }
 
   // The stream, with the number of frames that this run will make of it.
   video::StreamInfo stream_info() const {
@@ -126,11 +141,11 @@ class Run {
 
   void move(Work& work) {
     const Timed timed(clocks_.move);
-    const MotionSource::Measured measured = motion_.next(work.frame);
+    const MotionSource::Measured measured = motion_->next(work.frame);
     work.motion = measured.motion;
     work.truth.shake = measured.shake;
     work.moment = moment_at(world_, work.frame.index, work.frame.time_s, measured.shake);
-    work.ambient = ambient_.next(work.frame.picture, search_bounds(work.moment));
+    work.ambient = ambient_->next(work.frame.picture, search_bounds(work.moment));
   }
 
   void paint(Work& work) {
@@ -160,8 +175,8 @@ class Run {
     }
     summary_.frames_visible += any ? 1 : 0;
     const motion::State state = work.motion.state;
-    summary_.frames_bridged +=
-        state == motion::State::kBridged || state == motion::State::kCut ? 1 : 0;
+    summary_.frames_bridged += motion::is_known(state) ? 0 : 1;
+    turned_away_ += state == motion::State::kTurnedAway ? 1 : 0;
     summary_.frames_damaged += work.frame.damaged ? 1 : 0;
     if (options_.progress) options_.progress({summary_.frames, total_});
   }
@@ -223,6 +238,13 @@ class Run {
       warn(options_.warn,
            "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
                " frames; they are bridged, and truth.jsonl says which");
+    if (turned_away_ > 0)
+      warn(
+          options_.warn,
+          "in " + number(turned_away_) +
+              " of them the camera has turned so far from the first frame that no homography holds "
+              "both; expected [motion] reference = \"smoothed\", or model = \"rotation\" with the "
+              "camera's lens");
     for (std::size_t i = 0; i < seen_.size(); ++i) {
       warn_not_flyable(i);
       if (!seen_[i]) warn_never_seen(i);
@@ -279,18 +301,20 @@ class Run {
 
   Options options_;
   std::optional<fs::path> camera_file_;
+  StagedFolder staged_;
   video::Reader reader_;
   lens::ImageSize size_;
   std::optional<image::Mask> mask_;
+  StatedScene stated_;
   scene::Scene scene_;
   World world_;
-  std::string video_sha256_;
-  MotionSource motion_;
-  AmbientEstimator ambient_;
   std::unique_ptr<Painter> painter_;
-  StagedFolder staged_;
+  std::string video_sha256_;
+  std::optional<MotionSource> motion_;
+  std::optional<AmbientEstimator> ambient_;
   std::optional<Outputs> outputs_;
   std::vector<bool> seen_;
+  std::int64_t turned_away_ = 0;  // frames
   Summary summary_;
   double last_time_s_ = 0;
   mutable std::int64_t total_ = 0;

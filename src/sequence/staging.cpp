@@ -28,6 +28,24 @@ void refuse_what_exists(const fs::path& folder, bool overwrite) {
         {folder.string()});
 }
 
+// The uppermost folder of a path that is not there yet; empty where all are.
+fs::path first_missing(fs::path folder) {
+  fs::path missing;
+  while (!folder.empty() && !fs::exists(folder)) {
+    missing = folder;
+    if (!folder.has_relative_path()) break;
+    folder = folder.parent_path();
+  }
+  return missing;
+}
+
+// From `folder` up to `first`, as long as they are empty. Nothing where `first` is empty.
+void remove_empty(fs::path folder, const fs::path& first) {
+  std::error_code failed;
+  while (!first.empty() && fs::remove(folder, failed) && folder != first)
+    folder = folder.parent_path();
+}
+
 void clear(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
 }
@@ -40,7 +58,8 @@ StagedFolder::StagedFolder(fs::path final_folder, bool overwrite)
   const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
   part_ = parent / ("." + final_.filename().string() + ".part");
   std::error_code failed;
-  made_parent_ = fs::create_directories(parent, failed);
+  first_made_ = first_missing(parent);
+  fs::create_directories(parent, failed);
   if (!failed) fs::create_directory(part_, failed);
   if (failed)
     throw Error("cannot create the output folder: " + failed.message(), {parent.string()});
@@ -65,8 +84,7 @@ StagedFolder::~StagedFolder() {
   if (!committed_) {
     std::error_code ignored;
     fs::remove_all(part_, ignored);
-    if (made_parent_)
-      fs::remove(final_.parent_path(), ignored);  // fails, rightly, where it is not empty
+    remove_empty(final_.parent_path(), first_made_);
   }
   ::close(lock_);
 }

@@ -29,7 +29,7 @@ class StagedFolder {
   fs::path part_;
   int lock_ = -1;
   bool committed_ = false;
-  bool made_parent_ = false;
+  fs::path first_made_;  // the uppermost of the folders that were made for it; empty: none
 };
 
 }  // namespace airtruth::sequence

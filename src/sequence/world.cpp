@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+
+#include <fmt/format.h>
 
 #include "annotation/bearing.h"
 #include "base/error.h"
@@ -129,19 +132,6 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
          (after_s - before_s);
 }
 
-Shutter shutter_of(const scene::CameraModel& model) {
-  Shutter shutter;
-  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
-  shutter.exposure_s = model.exposure_s.value_or(0);
-  shutter.readout_s = model.readout_s.value_or(0);
-  const std::string readout = model.readout.value_or("down");
-  shutter.readout = readout == "up"      ? Readout::kUp
-                    : readout == "right" ? Readout::kRight
-                    : readout == "left"  ? Readout::kLeft
-                                         : Readout::kDown;
-  return shutter;
-}
-
 annotation::State state_of(const Moment& moment,
                            std::size_t i,
                            const Vector3& p_in_cam,
@@ -222,6 +212,19 @@ static std::string type_key(const scene::Intruder& intruder, const trajectory::P
   return key;
 }
 
+Shutter shutter_of(const scene::CameraModel& model) {
+  Shutter shutter;
+  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
+  shutter.exposure_s = model.exposure_s.value_or(0);
+  shutter.readout_s = model.readout_s.value_or(0);
+  const std::string readout = model.readout.value_or("down");
+  shutter.readout = readout == "up"      ? Readout::kUp
+                    : readout == "right" ? Readout::kRight
+                    : readout == "left"  ? Readout::kLeft
+                                         : Readout::kDown;
+  return shutter;
+}
+
 trajectory::Path path_of(const scene::Intruder& intruder) {
   const trajectory::AttitudeOverride attitude{
       intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
@@ -275,6 +278,36 @@ World load_world(const scene::Scene& scene,
         {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
   }
   return world;
+}
+
+void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info) {
+  const auto refuse = [&](const char* what, double path_s, double clip_s) {
+    throw Error(
+        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+                    "{:.3f} s; expected a path as long as the clip, or a frame_count",
+                    what,
+                    path_s,
+                    clip_s));
+  };
+  const double rate_hz = info.frame_rate.value();
+  const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
+  const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
+  // A container's length is that of its longest stream: sound may outlast the picture.
+  constexpr double kLengthError_s = 1;
+  if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
+  if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);
+}
+
+void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
+  check_camera_path(at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), info);
+  for (const scene::Intruder& intruder : scene.intruders) {
+    at_place(intruder.where, [&] {
+      return std::filesystem::exists(intruder.aircraft)
+                 ? std::filesystem::path(intruder.aircraft)
+                 : aircraft::find_aircraft(intruder.aircraft).file;
+    });
+    path_of(intruder);
+  }
 }
 
 std::optional<PixelBox> search_bounds(const Moment& moment) {

@@ -17,6 +17,7 @@
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "trajectory/path.h"
+#include "video/reader.h"
 
 // A scene with everything it names loaded: lens, paths, aircraft.
 namespace airtruth::sequence {
@@ -49,11 +50,21 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const std::stop_token& stop = {});
 
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
-// The scene's camera model is resolved (resolve.h). Throws Interrupted on stop.
+// The shutter of a camera model without "auto" keys (resolve.h).
+Shutter shutter_of(const scene::CameraModel& model);
+// The scene has no "auto" keys left (resolve.h). Throws Interrupted on stop.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
                  const std::stop_token& stop = {});
+
+// Error where the camera's path begins after the clip, or ends before it by more than the clip's
+// stated length may be wrong.
+void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info);
+
+// The same for a scene that is not loaded, with the intruders' paths and aircraft: Error where one
+// cannot be read or is not there.
+void check_paths(const scene::Scene& scene, const video::StreamInfo& info);
 
 // Where everything is in one frame, from geometry alone.
 struct Moment {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "image/colour.h"
 #include "video/libav.h"
 #include "video/reader.h"
@@ -146,6 +147,12 @@ bool is_jpeg(const fs::path& path) {
 }
 
 }  // namespace
+
+void check_still_output(const fs::path& path, bool overwrite) {
+  if (path.empty()) return;
+  is_jpeg(path);
+  check_output_file(path, overwrite);
+}
 
 image::Rgb8 read_still(const fs::path& path) {
   ReaderOptions options;

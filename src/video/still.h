@@ -16,6 +16,10 @@ namespace airtruth::video {
 // Error.
 image::Rgb8 read_still(const std::filesystem::path& path);
 
+// Error where write_still() would fail for a reason that is there before the picture is: the path's
+// ending, and what check_output_file() refuses. An empty path is no output and no error.
+void check_still_output(const std::filesystem::path& path, bool overwrite);
+
 // By extension: .png (lossless) or .jpg. Whole or not at all. Throws Error.
 void write_still(const std::filesystem::path& path,
                  const image::Rgb8& rgb,

@@ -347,6 +347,15 @@ Format format_from_name(std::string_view name) {
   throw Error("'" + std::string(name) + "' is no video format; expected mp4, mkv, avi or png");
 }
 
+Format format_of_file(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension != ".mp4" && extension != ".mkv" && extension != ".avi")
+    throw Error("has " + (extension.empty() ? "no ending" : "the ending " + extension) +
+                    "; expected .mp4, .mkv or .avi",
+                {path.string()});
+  return format_from_name(extension.substr(1));
+}
+
 const char* extension(Format format) {
   switch (format) {
     case Format::kMp4:

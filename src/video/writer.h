@@ -20,6 +20,8 @@ enum class Format {
 
 // "mp4", "mkv", "avi", "png"; throws Error naming the four for anything else.
 Format format_from_name(std::string_view name);
+// By a file's ending; Error that names the endings where it has none or another.
+Format format_of_file(const std::filesystem::path& path);
 const char* extension(Format format);  // ".mp4"; for png "" (a folder of 000000.png ...)
 
 struct WriterOptions {

@@ -315,11 +315,51 @@ class Others(Case):
         self.assertEqual(tables[0], tables[1])
         self.assertEqual(len(tables[0].splitlines()), 3)
 
+    def test_calibrate_names_what_is_missing_and_nothing_else(self):
+        """The extinction takes the lens and the altitude; a file that lacks one names that one."""
+        made = run("synth", "-o", os.path.join(self.out, "c.mkv"), "--width", "160", "--height", "120", "--frames", "10", "--no-own-aircraft")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        with open(os.path.join(self.out, "lens.yml"), "w") as file:
+            file.write("image_width: 160\nimage_height: 120\ncamera_matrix: [100, 0, 79.5, 0, 100, 59.5, 0, 0, 1]\ndistortion_coefficients: [0, 0, 0, 0]\n")
+        lens = ["--lens", os.path.join(self.out, "lens.yml")]
+        cases = [([], "--lens", "--altitude"), (["--altitude", "80"], "--lens", ""), (lens, "--altitude", "")]
+        for words, *named in cases:
+            made = run("calibrate", os.path.join(self.out, "c.mkv"), "-o", os.path.join(self.out, "c.toml"), "--overwrite", *words)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            notes = [line for line in made.stderr.splitlines() if "air.extinction_per_km" in line]
+            self.assertEqual(len(notes), 1, made.stderr)
+            for option in ("--lens", "--altitude"):
+                self.assertEqual(option in notes[0], option in named, notes[0])
+
+    def test_lens_crop_writes_what_the_refusal_offers(self):
+        profile = os.path.join(self.out, "lens.yml")
+        with open(profile, "w") as file:
+            file.write("image_width: 160\nimage_height: 120\ncamera_matrix: [100, 0, 79.5, 0, 100, 59.5, 0, 0, 1]\ndistortion_coefficients: [0, 0, 0, 0]\n")
+        wide = os.path.join(self.out, "wide.yml")
+        refused = run("calibrate", "flight.mkv", "-o", os.path.join(self.out, "c.toml"), "--lens", profile)
+        self.assertNotIn("lens.yml", refused.stderr)  # of the same shape
+        made = run("lens", "crop", profile, "--size", "320x180", "-o", wide)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        # Twice the size; the middle stays the middle.
+        self.assertIn("focal_px = [200.0, 200.0]\nprincipal_point_px = [160.0, 90.0]", made.stdout)
+        refused = run("motion", "flight.mkv", "-o", os.path.join(self.out, "m.csv"), "--model", "rotation", "--lens", wide)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn(f"was made for 320x180, but the video is 160x120", refused.stderr)
+        self.assertIn(f"airtruth lens crop {wide} --size 160x120", refused.stderr)
+        refused = run("lens", "crop", profile, "--size", "wide")
+        self.assertEqual(refused.returncode, 2)
+
     def test_aircraft(self):
         result = run("aircraft", "list", "c172")
         self.assertEqual(result.returncode, 0)
         self.assertIn("c172/news", result.stdout.splitlines())
+        for words in ("C172", "C172/*", "*NEWS"):
+            self.assertIn("c172/news", run("aircraft", "list", words).stdout.splitlines(), words)
+        for name in run("aircraft", "list", "c172/*").stdout.splitlines():
+            self.assertTrue(name.startswith("c172/"), name)
         self.assert_refused(run("aircraft", "list", "zeppelin"))
+        self.assert_refused(run("aircraft", "show", "C172"), "unknown aircraft 'C172'", "c172/")
+        self.assert_refused(run("aircraft", "show", "C172/NEWS"), "c172/news")
         result = run("aircraft", "show", "c172/news")
         self.assertEqual(result.returncode, 0, result.stderr)
         size = re.search(r"length ([\d.]+) m, span ([\d.]+) m", result.stdout)

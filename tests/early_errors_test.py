@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can be known at once is said before long work: python3 early_errors_test.py AIRTRUTH
+
+Every command here has one fault that needs no frame to be known and an input whose measuring fails with a message of its own. The fault's message
+shows that nothing was measured before."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+AIRTRUTH = ""
+ROOT = ""
+
+SCENE = """name = "clip"
+[background]
+video = "short.mkv"
+{background}
+[lens]
+{lens}
+[camera]
+position_ned_m = [0, 0, -150]
+{camera}
+{realism}
+[[intruder]]
+id = "one"
+aircraft = "{aircraft}"
+{path}
+[output]
+video = "{output}"
+{more}
+"""
+
+
+def scene(**change):
+    """A scene that is right but for what `change` says, and whose clip is too short to measure a camera on."""
+    keys = {
+        "background": "",
+        "lens": "vertical_fov_deg = 75",
+        "camera": "",
+        "realism": "[realism]\nauto = true",
+        "aircraft": "c172/news",
+        "path": "waypoints_ned_m = [[60, -8, -150], [60, 100, -150]]\nspeed_mps = 50",
+        "output": "mkv",
+        "more": "",
+    }
+    keys.update(change)
+    return SCENE.format(**keys)
+
+
+def path(*names):
+    return os.path.join(ROOT, *names)
+
+
+def write(name, content):
+    with open(path(name), "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+    return path(name)
+
+
+def run(*arguments):
+    return subprocess.run([AIRTRUTH, *arguments], cwd=ROOT, capture_output=True, text=True, errors="replace", timeout=120)
+
+
+class EarlyErrors(unittest.TestCase):
+    def assert_says(self, result, *words):
+        """One line, exit code 2, with these words in it."""
+        self.assertEqual(result.returncode, 2, result.stderr)
+        lines = [line for line in result.stderr.splitlines() if ": error: " in line]
+        self.assertEqual(len(lines), 1, result.stderr)
+        for word in words:
+            self.assertIn(word.lower(), lines[0].lower())
+
+    def render(self, text, out="out", *arguments):
+        return run("render", write("scene.toml", text), "--out", path(out), "--no-cache", *arguments)
+
+    def test_the_clip_itself_cannot_be_measured(self):
+        self.assert_says(self.render(scene(), "none"), "cannot be measured")
+        self.assertFalse(os.path.exists(path("none")))
+
+    def test_an_output_that_exists(self):
+        shutil.copytree(path("made"), path("there"))
+        self.assert_says(self.render(scene(), "there"), "exists already")
+        self.assertEqual(os.listdir(path("there")), ["clip"])
+        self.assert_says(self.render(scene(), "there", "--overwrite"), "cannot be measured")
+        self.assertEqual(sorted(os.listdir(path("there", "clip"))), sorted(os.listdir(path("made", "clip"))))
+
+    def test_faults_of_a_scene(self):
+        faults = {
+            "the camera's path file": (scene(camera='path_file = "bad.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "bad.csv"),
+            "a camera's path that begins late": (
+                scene(camera='path_file = "late.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "begins at 1.000 s"),
+            "the intruder's path file": (scene(path='path_file = "bad.csv"'), "bad.csv"),
+            "a path file that is missing": (scene(path='path_file = "none.csv"'), "none.csv"),
+            "the mask's size": (scene(background='mask = "small.pgm"'), "16x12"),
+            "a mask that is missing": (scene(background='mask = "none.png"'), "none.png"),
+            "the lens file": (scene(lens='file = "bad.yml"'), "bad.yml"),
+            "the camera file": (scene(realism='[realism]\nauto = true\nfile = "bad.toml"'), "bad.toml"),
+            "the aircraft": (scene(aircraft="c172/newz"), "c172/newz"),
+            "the format of an odd size": (scene(output="mp4").replace("short.mkv", "odd.mkv"), "odd size"),
+            "the method": (scene(more='[composite]\nmethod = "chroma-key"'), "chroma-key"),
+        }
+        for name, (text, word) in faults.items():
+            with self.subTest(name):
+                self.assert_says(self.render(text, "fault"), word)
+                self.assertFalse(os.path.exists(path("fault")))
+
+    def test_nothing_is_left_of_folders_that_were_made(self):
+        self.assert_says(self.render(scene(), os.path.join("a", "b", "c")), "cannot be measured")
+        self.assertFalse(os.path.exists(path("a")))
+
+    def test_outputs_of_the_other_commands(self):
+        write("there.txt", "mine")
+        faults = [
+            (("calibrate", "short.mkv", "-o", "no/c.toml"), "no folder no"),
+            (("calibrate", "short.mkv", "-o", "c.toml", "--plot", "p.txt"), "expected .png or .jpg"),
+            (("calibrate", "short.mkv", "-o", "there.txt"), "exists already"),
+            (("calibrate", "short.mkv", "-o", "."), "exists already"),
+            (("calibrate", "short.mkv", "-o", "c.toml", "--lens", "bad.yml"), "bad.yml"),
+            (("calibrate", "short.mkv", "-o", "c.toml", "--mask", "small.pgm"), "16x12"),
+            (("mask", "short.mkv", "-o", "m.txt"), "expected .png or .jpg"),
+            (("motion", "short.mkv", "-o", "m.csv", "--stabilised", "s.txt"), ".txt"),
+            (("motion", "short.mkv", "-o", "m.csv", "--plot", "no/p.png"), "no folder no"),
+            (("lens", "estimate", "short.mkv", "-o", "no/l.yml"), "no folder no"),
+            (("synth", "-o", "new.mkv", "--truth", "no/t.csv"), "no folder no"),
+            (("synth", "-o", "new.mkv", "--mask", "m.txt"), "expected .png or .jpg"),
+            (("evision", "nowhere", "--frames", "there.txt"), "exists already"),
+            (("aircraft", "show", "c172/news", "-o", "there.txt"), "expected .png or .jpg"),
+            (("overlay", "made/clip", "-o", "no/o.mp4"), "no folder no"),
+            (("inspect", "made/clip", "--frame", "0", "-o", "i.txt"), "expected .png or .jpg"),
+            (("dataset", "report", "made/clip", "-o", "no/r.html"), "no folder no"),
+            (("track", "short.mkv", "--init", "1,1,9,9", "-t", "am3", "-o", "there.txt"), "there.txt is no folder"),
+            (("evaluate", "made/clip", "nowhere", "-o", "e", "--against", "there.txt"), "no evaluation.json"),
+        ]
+        before = sorted(os.listdir(ROOT))
+        for words, message in faults:
+            with self.subTest(" ".join(words)):
+                self.assert_says(run(*words), message)
+                self.assertEqual(sorted(os.listdir(ROOT)), before)
+        with open(path("there.txt")) as file:
+            self.assertEqual(file.read(), "mine")
+
+    def test_a_catalogue(self):
+        catalogue = """name = "set"
+[[background]]
+name = "sky"
+flight = {{ seed = 3, frame_count = 8, width = 160, height = 120 }}
+lens = {{ {lens} }}
+camera = {{ {camera} }}
+{more}
+[[aircraft]]
+name = "one"
+aircraft = "c172/news"
+[[trajectory]]
+name = "across"
+waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
+speed_mps = 60
+[[product]]
+[composite]
+method = "{method}"
+"""
+        right = {"lens": "vertical_fov_deg = 75", "camera": "position_ned_m = [0, 0, -150]", "more": "", "method": "matte"}
+        faults = [
+            ({"camera": 'path_file = "bad.csv"'}, "bad.csv"),
+            ({"lens": 'file = "bad.yml"'}, "bad.yml"),
+            ({"more": 'realism = { file = "bad.toml" }'}, "bad.toml"),
+            ({"lens": 'model = "fisheye", vertical_fov_deg = 75', "method": "chroma-key"}, "chroma-key"),
+        ]
+        for change, word in faults:
+            with self.subTest(word):
+                text = write("catalogue.toml", catalogue.format(**{**right, **change}))
+                self.assert_says(run("dataset", "plan", text), word)
+                self.assert_says(run("dataset", "build", text, "--out", path("set")), word)
+                self.assertFalse(os.path.exists(path("set")))
+        text = write("catalogue.toml", catalogue.format(**right))
+        self.assertEqual(run("dataset", "plan", text).returncode, 0)
+
+
+def make_inputs():
+    for name, size in (("short.mkv", ("160", "120")), ("odd.mkv", ("161", "121"))):
+        made = run("synth", "-o", name, "--width", size[0], "--height", size[1], "--frames", "3", "--no-own-aircraft")
+        assert made.returncode == 0, made.stderr
+    write("small.pgm", b"P5\n16 12\n255\n" + b"\xff" * (16 * 12))
+    write("bad.csv", "this is a letter\n")
+    write("late.csv", "time_s,north_m,east_m,down_m\n1,0,0,-150\n2,10,0,-150\n")
+    write("bad.yml", "this is a letter\n")
+    write("bad.toml", "this is = a = letter\n")
+    made = run("render", write("made.toml", scene(realism="[motion]\nmodel = \"none\"")), "--out", path("made"))
+    assert made.returncode == 0, made.stderr
+
+
+if __name__ == "__main__":
+    AIRTRUTH = os.path.abspath(sys.argv.pop(1))
+    ROOT = tempfile.mkdtemp(prefix="airtruth_early_errors_test_")
+    os.environ["XDG_CACHE_HOME"] = os.path.join(ROOT, "cache")
+    try:
+        make_inputs()
+        unittest.main()
+    finally:
+        shutil.rmtree(ROOT, ignore_errors=True)
