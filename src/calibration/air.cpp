@@ -27,11 +27,11 @@ struct SkySample {
 
 AirMeter::AirMeter(const lens::Lens& lens,
                    const image::Mask* own_aircraft,
-                   std::optional<double> altitude_m,
+                   const GroundRange& ground,
                    const image::ToneCurve& tone)
     : lens_(lens),
       own_aircraft_(own_aircraft),
-      altitude_m_(altitude_m),
+      ground_(ground),
       tone_(tone),
       sky_rays_(pixel_rays(lens, own_aircraft, kFirstSky, kSkyStep)) {}
 
@@ -62,17 +62,16 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   if (!air.airlight) {
     air.why = "the horizon is not seen, and so not the sky just above it";
     air.why_no_extinction = air.why;
-  } else if (!altitude_m_) {
-    air.why_no_extinction =
-        "without the camera's height above the ground (--altitude) terrain has no range";
+  } else if (!ground_.altitude_m) {
+    air.why_no_extinction = ground_.why_unknown;
   } else if (const auto again = seen_again(stop)) {
     air.extinction_per_km = again->extinction_per_km;
     air.airlight = again->airlight;
-  } else if (const auto fading =
-                 fading_of_ground(ground_patches(views_, lens_, own_aircraft_, *altitude_m_, tone_),
-                                  sky,
-                                  *altitude_m_,
-                                  air.why_no_extinction)) {
+  } else if (const auto fading = fading_of_ground(
+                 ground_patches(views_, lens_, own_aircraft_, *ground_.altitude_m, tone_),
+                 sky,
+                 *ground_.altitude_m,
+                 air.why_no_extinction)) {
     air.extinction_per_km = fading->extinction_per_km;
     air.airlight = airlight_of(sky, fading->horizon_rad);
   }
@@ -84,7 +83,7 @@ std::optional<SeenAgain> AirMeter::seen_again(const std::stop_token& stop) const
   if (!track) return std::nullopt;
   return fading_of_same_ground(ground_seen(views_, *track, lens_, own_aircraft_, tone_),
                                sky_curves(sky_light(track->level_from_world), kOverTrueHorizon),
-                               *altitude_m_);
+                               *ground_.altitude_m);
 }
 
 std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {

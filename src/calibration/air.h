@@ -15,12 +15,19 @@
 
 namespace airtruth::calibration {
 
+// What gives a point of the ground its range: the camera's height above it, through a lens that is
+// known.
+struct GroundRange {
+  std::optional<double> altitude_m;
+  std::string why_unknown;  // where it is empty: what is missing
+};
+
 // Air and sun from the colours above and below the horizon.
 class AirMeter {
  public:
   AirMeter(const lens::Lens& lens,
            const image::Mask* own_aircraft,
-           std::optional<double> altitude_m,
+           const GroundRange& ground,
            const image::ToneCurve& tone);
   // cam_from_world: north-east-down, with the heading that the caller knows. The picture must
   // outlive the meter.
@@ -51,7 +58,7 @@ class AirMeter {
   };
   lens::Lens lens_;
   const image::Mask* own_aircraft_;
-  std::optional<double> altitude_m_;
+  GroundRange ground_;
   image::ToneCurve tone_;
   std::vector<PixelRay> sky_rays_;
   std::vector<GroundView> views_;

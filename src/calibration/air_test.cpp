@@ -49,8 +49,8 @@ image::Picture hazy_land(const lens::Lens& lens, std::uint64_t land) {
 TEST(AirMeter, TellsExtinctionFromTheDarkestGround) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, {640, 480});
   std::vector<image::Picture> pictures;
-  AirMeter meter(lens, nullptr, kAltitudeM, {});
-  AirMeter blind(lens, nullptr, {}, {});
+  AirMeter meter(lens, nullptr, {kAltitudeM, ""}, {});
+  AirMeter blind(lens, nullptr, {std::nullopt, "no altitude"}, {});
   for (std::uint64_t land = 0; land < 6; ++land) pictures.push_back(hazy_land(lens, land));
   for (const image::Picture& picture : pictures) {
     meter.add(picture, cam_from_body());

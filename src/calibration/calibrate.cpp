@@ -19,6 +19,17 @@
 namespace airtruth::calibration {
 namespace {
 
+GroundRange ground_range(const Options& options) {
+  if (options.lens && options.altitude_m) return {options.altitude_m, ""};
+  const std::string lens = "the lens (--lens)";
+  const std::string altitude =
+      "the camera's height above the ground (--altitude; in a scene, position_ned_m)";
+  const std::string missing = options.lens         ? altitude
+                              : options.altitude_m ? lens
+                                                   : lens + " and " + altitude;
+  return {std::nullopt, "the ground has no range without " + missing};
+}
+
 constexpr std::int64_t kSampledFrames = 40;
 constexpr std::int64_t kFewestFrames = 8;
 constexpr double kAssumedFovDeg = 60;  // where no lens is given, to look for the horizon
@@ -201,10 +212,7 @@ class Session {
         ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
     }
     tint_sky(lens, found);
-    AirMeter air(lens,
-                 options_.own_aircraft,
-                 options_.lens ? options_.altitude_m : std::nullopt,
-                 options_.tone);
+    AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
     const auto first_from_level = levelled(ups);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       // With a lens all frames share one attitude; without, each has its own horizon.
@@ -266,7 +274,9 @@ class Session {
   }
 
   void take_sun(const AirMeter& air, bool level_known) {
-    std::string why = "its direction takes a lens (--lens) and a horizon";
+    std::string why = !options_.lens ? "the lens is not known (--lens)"
+                      : !level_known ? "no horizon is seen that says where level is"
+                                     : "";
     std::optional<AirMeter::Sun> sun;
     if (options_.lens && level_known) sun = air.sun(why);
     if (sun) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "cli/picture_size.h"
 #include "dataset/export.h"
 #include "dataset/import.h"
 #include "dataset/report.h"
@@ -69,18 +69,6 @@ struct Import {
   std::vector<std::string> videos;
   dataset::ImportOptions options;
 };
-
-std::pair<int, int> size_from(const std::string& text) {
-  int width = 0;
-  int height = 0;
-  const char* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, width);
-  const bool parted = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
-  const auto second = parted ? std::from_chars(first.ptr + 1, end, height) : first;
-  if (!parted || second.ec != std::errc() || second.ptr != end || width < 1 || height < 1)
-    throw Error("--size is '" + text + "'; expected WIDTHxHEIGHT, as 1280x960");
-  return {width, height};
-}
 
 void run_import(Import arguments, Context& context) {
   Console& console = context.console();

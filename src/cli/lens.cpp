@@ -5,7 +5,11 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
+#include "cli/picture_size.h"
+#include "lens/calibration_file.h"
+#include "lens/calibration_write.h"
 #include "motion/lens_estimate.h"
 #include "video/reader.h"
 #include "video/still.h"
@@ -17,30 +21,59 @@ struct EstimateArguments {
   std::string video;
   std::string mask;
   std::string out;
+  bool uncertain = false;
   bool overwrite = false;
 };
 
-// An OpenCV calibration that read_calibration() takes.
-std::string calibration_text(const motion::LensEstimator::Result& found, int width, int height) {
+lens::Lens lens_of(const motion::LensEstimator::Result& found, lens::ImageSize size) {
+  const Pixel focal(found.focal_px, found.focal_px);
+  const Pixel middle(size.width / 2.0, size.height / 2.0);
+  if (found.fisheye) return lens::Lens(lens::Fisheye{focal, middle, {0, 0, 0, 0}}, size);
+  return lens::Lens(lens::Pinhole{focal, middle}, size);
+}
+
+std::string words_of(const motion::LensEstimator::Result& found) {
   return fmt::format(
-      "%YAML:1.0\n---\n# estimated by airtruth lens estimate: focal length +- {:.1f} px\n"
-      "image_width: {}\nimage_height: {}\nfisheye_model: {}\n"
-      "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
-      "   data: [ {}, 0., {}, 0., {}, {}, 0., 0., 1. ]\n"
-      "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n   data: [ 0., "
-      "0., 0., 0. ]\n",
+      "{}, focal_px {:.1f} +- {:.1f}, {:.0f} to {:.0f} fit as well ({} turns of the camera; "
+      "{:.2f} px left over, {:.2f} as a {})",
+      found.fisheye ? "fisheye (equidistant)" : "pinhole",
+      found.focal_px,
       found.sigma_px,
-      width,
-      height,
-      found.fisheye ? 1 : 0,
-      found.focal_px,
-      width / 2.0 - 0.5,
-      found.focal_px,
-      height / 2.0 - 0.5);
+      found.low_px,
+      found.high_px,
+      found.pairs,
+      found.rms_px,
+      found.other_rms_px,
+      found.fisheye ? "pinhole" : "fisheye");
+}
+
+// What the user takes from an estimate: a file, or the table to copy.
+void hand_over(const motion::LensEstimator::Result& found,
+               const std::string& why,
+               lens::ImageSize size,
+               const EstimateArguments& arguments,
+               Console& console) {
+  const lens::Lens lens = lens_of(found, size);
+  console.result(words_of(found) + "\nfor a scene:\n" + lens::scene_table(lens));
+  if (!found.is_certain && !arguments.out.empty() && !arguments.uncertain)
+    throw Error("is not written: " + why + "; --uncertain writes the estimate all the same",
+                {arguments.out});
+  if (!found.is_certain) console.warning("this lens is not certain: " + why);
+  if (!arguments.out.empty())
+    write_file(
+        arguments.out,
+        lens::opencv_calibration(
+            lens,
+            fmt::format("estimated by airtruth lens estimate: focal length {:.1f} px, {:.0f} "
+                        "to {:.0f} px fit as well{}",
+                        found.focal_px,
+                        found.low_px,
+                        found.high_px,
+                        found.is_certain ? "" : "; not certain")));
 }
 
 void estimate(const EstimateArguments& arguments, Context& context) {
-  refuse_existing(arguments.out, arguments.overwrite);
+  check_output_file(arguments.out, arguments.overwrite);
   Console& console = context.console();
   video::Reader reader(arguments.video, {}, console.warn());
   const video::StreamInfo info = reader.info();
@@ -55,18 +88,32 @@ void estimate(const EstimateArguments& arguments, Context& context) {
   console.end_progress();
   std::string why;
   const auto found = estimator.result(why);
-  if (!found) throw Error("does not hold its lens: " + why, {arguments.video});
+  if (!found) throw Error("does not show its lens: " + why, {arguments.video});
+  hand_over(*found, why, {info.width, info.height}, arguments, console);
+}
+
+struct CropArguments {
+  std::string file;
+  std::string size;
+  std::string out;
+  bool overwrite = false;
+};
+
+void crop(const CropArguments& arguments, Context& context) {
+  check_output_file(arguments.out, arguments.overwrite);
+  const auto [width, height] = size_from(arguments.size);
+  const lens::Lens whole = lens::read_calibration(arguments.file);
+  const lens::Lens lens = lens::cropped(whole, {width, height});
+  const std::string from = fmt::format("{}x{}", whole.size().width, whole.size().height);
   if (!arguments.out.empty())
-    write_file(arguments.out, calibration_text(*found, info.width, info.height));
-  console.result(fmt::format(
-      "{}, focal_px {:.1f} +- {:.1f} ({} turns of the camera; {:.2f} px left over, {:.2f} as a {})",
-      found->fisheye ? "fisheye (equidistant)" : "pinhole",
-      found->focal_px,
-      found->sigma_px,
-      found->pairs,
-      found->rms_px,
-      found->other_rms_px,
-      found->fisheye ? "pinhole" : "fisheye"));
+    write_file(
+        arguments.out,
+        lens::opencv_calibration(
+            lens,
+            fmt::format(
+                "the middle of {}, cut by airtruth lens crop out of {}", from, arguments.file)));
+  context.console().result("the middle of " + from + ", cut to " + arguments.size +
+                           "\nfor a scene:\n" + lens::scene_table(lens));
 }
 
 }  // namespace
@@ -81,8 +128,21 @@ void add_lens(CLI::App& app, Context& context) {
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");
+  command->add_flag("--uncertain",
+                    arguments->uncertain,
+                    "Write the calibration also where other focal lengths fit as well");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
   command->callback([arguments, &context] { estimate(*arguments, context); });
+  auto* crop_command = group->add_subcommand(
+      "crop", "Write the lens of a picture that is the middle of the calibrated one");
+  auto cut = std::make_shared<CropArguments>();
+  crop_command->add_option("CALIBRATION", cut->file, "OpenCV or Gyroflow calibration")->required();
+  crop_command
+      ->add_option("--size", cut->size, "WIDTHxHEIGHT of the video: its largest part of that shape")
+      ->required();
+  crop_command->add_option("-o,--out", cut->out, "Calibration to write, for [lens] file (.yml)");
+  crop_command->add_flag("--overwrite", cut->overwrite, "Replace the file if it exists");
+  crop_command->callback([cut, &context] { crop(*cut, context); });
 }
 
 }  // namespace airtruth::cli

@@ -8,9 +8,11 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "lens/calibration_file.h"
 #include "motion/plot.h"
+#include "motion/reach.h"
 #include "motion/stabilise.h"
 #include "sequence/motion_source.h"
 #include "video/still.h"
@@ -48,9 +50,8 @@ void stabilise(const MotionArguments& arguments,
                const std::optional<lens::Lens>& lens,
                Context& context) {
   const fs::path out = arguments.stabilised;
-  const std::string extension = out.extension().string();
   video::WriterOptions options;
-  options.format = video::format_from_name(extension.empty() ? extension : extension.substr(1));
+  options.format = video::format_of_file(out);
   video::Reader reader(arguments.video);
   video::Writer writer(out, reader.info(), options);
   while (auto frame = reader.next()) {
@@ -66,9 +67,15 @@ void stabilise(const MotionArguments& arguments,
   writer.finish();
 }
 
+void check_outputs(const MotionArguments& arguments) {
+  for (const std::string& file : {arguments.out, arguments.stabilised})
+    check_output_file(file, arguments.overwrite);
+  video::check_still_output(arguments.plot, arguments.overwrite);
+  if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
+}
+
 void measure(const MotionArguments& arguments, Context& context) {
-  for (const std::string& file : {arguments.out, arguments.plot, arguments.stabilised})
-    refuse_existing(file, arguments.overwrite);
+  check_outputs(arguments);
   Console& console = context.console();
   video::Reader reader(arguments.video, {}, console.warn());
   const video::StreamInfo info = reader.info();
@@ -95,15 +102,25 @@ void measure(const MotionArguments& arguments, Context& context) {
                     degrees(fit->rms_radps)));
   else if (!gyro.empty())
     console.warning("the video's gyro does not agree with its motion; it is not used");
-  if (arguments.reference == "smoothed") all = motion::smoothed(all, options);
+  all = arguments.reference == "smoothed"
+            ? motion::smoothed(all, options)
+            : motion::within_reach(std::move(all), info.width, info.height);
   write_file(arguments.out, motion::csv_from_motion(all));
   if (!arguments.plot.empty())
     video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
   std::size_t measured = 0;
-  for (const auto& frame : all)
-    measured +=
-        frame.state == motion::State::kMeasured || frame.state == motion::State::kReference ? 1 : 0;
+  std::size_t away = 0;
+  for (const auto& frame : all) {
+    measured += motion::is_known(frame.state) ? 1 : 0;
+    away += frame.state == motion::State::kTurnedAway ? 1 : 0;
+  }
+  if (away > 0)
+    console.warning(
+        fmt::format("in {} frames the camera has turned so far from the first that no homography "
+                    "holds both (turned_away); --reference smoothed and --model rotation have no "
+                    "such limit",
+                    away));
   console.result(fmt::format("{}: {} frames, measured in {}", arguments.out, all.size(), measured));
 }
 

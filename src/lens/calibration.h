@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "lens/lens.h"
@@ -17,6 +18,7 @@ struct Calibration {
   std::vector<double> distortion;
   ImageSize size;
   double max_angle_rad = kPi;  // of a fisheye, where the file states it
+  std::string camera;          // "GoPro Hero3+Black"; empty where the file names none
 };
 
 Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name);

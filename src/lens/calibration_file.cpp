@@ -28,16 +28,13 @@ void check_matrix(const Calibration& c, const std::string& file) {
     throw Error("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]", {file});
 }
 
-// The file's size to ours: the same aspect ratio, another resolution.
-Pixel scale_of(ImageSize from, ImageSize to, const std::string& file) {
-  const Pixel scale(static_cast<double>(to.width) / from.width,
-                    static_cast<double>(to.height) / from.height);
-  if (std::abs(scale.x() / scale.y() - 1) > kAspectTolerance)
-    throw Error("was made for " + std::to_string(from.width) + "x" + std::to_string(from.height) +
-                    ", but the video is " + std::to_string(to.width) + "x" +
-                    std::to_string(to.height) + "; expected the same aspect ratio",
-                {file});
-  return scale;
+bool same_aspect(ImageSize a, ImageSize b) {
+  const double ratio = static_cast<double>(a.width) * b.height / a.height / b.width;
+  return std::abs(ratio - 1) <= kAspectTolerance;
+}
+
+std::string words(ImageSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const std::string& file) {
@@ -63,10 +60,7 @@ std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const 
   return distortion;
 }
 
-}  // namespace
-
-Lens parse_calibration(std::string_view text, const std::filesystem::path& name, ImageSize size) {
-  const std::string file = name.string();
+Calibration parsed(std::string_view text, const std::filesystem::path& name) {
   std::string extension = name.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   Calibration c;
@@ -76,11 +70,19 @@ Lens parse_calibration(std::string_view text, const std::filesystem::path& name,
     c = parse_opencv_calibration(text, name);
   } else {
     throw Error("is no calibration file: expected .json (Gyroflow) or .yml, .yaml, .xml (OpenCV)",
-                {file});
+                {name.string()});
   }
-  check_matrix(c, file);
-  if (c.size.width <= 0 || c.size.height <= 0) c.size = size;
-  const Pixel scale = scale_of(c.size, size, file);
+  check_matrix(c, name.string());
+  return c;
+}
+
+bool has_size(const Calibration& c) { return c.size.width > 0 && c.size.height > 0; }
+
+// Of the same aspect ratio, or of no size at all.
+Lens lens_from(const Calibration& c, const std::string& file, ImageSize size) {
+  const ImageSize from = has_size(c) ? c.size : size;
+  const Pixel scale(static_cast<double>(size.width) / from.width,
+                    static_cast<double>(size.height) / from.height);
   const Pixel focal(c.camera_matrix[0] * scale.x(), c.camera_matrix[4] * scale.y());
   // OpenCV's (0, 0) is the middle of the first pixel; ours is its corner.
   const Pixel centre((c.camera_matrix[2] + 0.5) * scale.x(),
@@ -96,8 +98,73 @@ Lens parse_calibration(std::string_view text, const std::filesystem::path& name,
   }
 }
 
+std::string refusal(const Calibration& c, ImageSize size) {
+  return "was made for " + words(c.size) + (c.camera.empty() ? "" : " of a " + c.camera) +
+         ", but the video is " + words(size) + ", another aspect ratio";
+}
+
+std::string how_to_crop(const std::filesystem::path& path, ImageSize size) {
+  return "; where the video is the middle of that picture, cut and not squeezed, `airtruth lens "
+         "crop " +
+         path.string() + " --size " + words(size) + " -o LENS.yml` writes its lens";
+}
+
+// Profiles of the same camera beside the file whose aspect ratio is the video's, at most three.
+std::string profiles_that_fit(const std::filesystem::path& path,
+                              const Calibration& c,
+                              ImageSize size) {
+  constexpr std::size_t kMostRead = 1000;
+  constexpr std::size_t kMostNamed = 3;
+  if (c.camera.empty()) return "";
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator at(path.has_parent_path() ? path.parent_path() : ".",
+                                              failed);
+       !failed && at != std::filesystem::directory_iterator() && files.size() < kMostRead;
+       at.increment(failed))
+    if (at->path().extension() == ".json" && at->is_regular_file(failed))
+      files.push_back(at->path());
+  std::sort(files.begin(), files.end());
+  std::string named;
+  std::size_t count = 0;
+  for (const std::filesystem::path& file : files) {
+    try {
+      const Calibration other = parsed(read_file(file, kMaxBytes), file);
+      if (other.camera != c.camera || !same_aspect(other.size, size)) continue;
+      if (++count <= kMostNamed)
+        named +=
+            (named.empty() ? "" : ", ") + file.filename().string() + " (" + words(other.size) + ")";
+    } catch (const Error&) {  // another JSON file, or a profile that cannot be honoured
+    }
+  }
+  return named.empty() ? "" : "; of the same camera and the video's aspect ratio: " + named;
+}
+
+}  // namespace
+
+Lens parse_calibration(std::string_view text, const std::filesystem::path& name, ImageSize size) {
+  const Calibration c = parsed(text, name);
+  if (has_size(c) && !same_aspect(c.size, size))
+    throw Error(refusal(c, size) + "; expected the same aspect ratio", {name.string()});
+  return lens_from(c, name.string(), size);
+}
+
 Lens read_calibration(const std::filesystem::path& path, ImageSize size) {
-  return parse_calibration(read_file(path, kMaxBytes), path, size);
+  const Calibration c = parsed(read_file(path, kMaxBytes), path);
+  if (has_size(c) && !same_aspect(c.size, size))
+    throw Error(refusal(c, size) + profiles_that_fit(path, c, size) + how_to_crop(path, size),
+                {path.string()});
+  return lens_from(c, path.string(), size);
+}
+
+Lens read_calibration(const std::filesystem::path& path) {
+  const Calibration c = parsed(read_file(path, kMaxBytes), path);
+  if (!has_size(c))
+    throw Error(
+        "does not say which picture size it was made for; expected image_width and "
+        "image_height",
+        {path.string()});
+  return lens_from(c, path.string(), c.size);
 }
 
 }  // namespace airtruth::lens

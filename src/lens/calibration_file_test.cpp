@@ -6,8 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <unistd.h>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "lens/calibration_write.h"
 
 namespace airtruth::lens {
 namespace {
@@ -42,6 +45,68 @@ TEST(Gyroflow, ScalesToAnotherSizeOfTheSameShapeAlone) {
   EXPECT_EQ(std::get<Fisheye>(lens.model()).focal_px, Pixel(280, 280.5));
   EXPECT_EQ(std::get<Fisheye>(lens.model()).principal_point_px, Pixel(320, 240));
   EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}), testing::HasSubstr("same aspect ratio"));
+}
+
+// A camera that cuts 1280x720 out of the middle of its 1280x960: a ray lands 120 rows higher.
+TEST(Calibration, CroppedKeepsTheDirectionOfEveryPixelThatIsLeft) {
+  const Lens whole = parse_calibration(profile(), "a.json", kProfileSize);
+  const Lens wide = cropped(whole, {1280, 720});
+  const Lens small = cropped(whole, {640, 360});
+  const Lens narrow = cropped(whole, {720, 960});
+  for (const Pixel& p : {Pixel(640, 480), Pixel(300.5, 200.25), Pixel(900, 800)}) {
+    const Vector3 ray = whole.ray_from_pixel(p).value();
+    EXPECT_TRUE(wide.pixel_from_cam(ray)->isApprox(Pixel(p.x(), p.y() - 120), 1e-9));
+    EXPECT_TRUE(small.pixel_from_cam(ray)->isApprox(Pixel(p.x(), p.y() - 120) / 2, 1e-9));
+    EXPECT_TRUE(narrow.pixel_from_cam(ray)->isApprox(Pixel(p.x() - 280, p.y()), 1e-9));
+  }
+}
+
+TEST(Calibration, WhatIsWrittenIsReadAsTheSameLens) {
+  const Lens fisheye = parse_calibration(profile(), "a.json", {640, 480});
+  const Lens brown(BrownConrady{{900.25, 905}, {641, 479}, {-0.28, 0.09, 1e-3, -5e-4, 0.02}},
+                   kProfileSize);
+  const Lens pinhole(Pinhole{{1000, 1000}, {640, 480}}, kProfileSize);
+  for (const Lens& lens : {fisheye, brown, pinhole}) {
+    const Lens read = parse_calibration(opencv_calibration(lens, "a\nb"), "a.yml", lens.size());
+    EXPECT_STREQ(read.name(), lens.name());
+    const Vector3 ray(0.3, -0.2, 1);
+    EXPECT_TRUE(read.pixel_from_cam(ray)->isApprox(*lens.pixel_from_cam(ray), 1e-12));
+  }
+  // OpenCV itself reads it.
+  cv::FileStorage storage(opencv_calibration(brown, "a note"),
+                          cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  cv::Mat matrix;
+  storage["camera_matrix"] >> matrix;
+  EXPECT_EQ(matrix.at<double>(0, 2), 640.5);  // OpenCV's pixels have integer centres
+}
+
+TEST(Calibration, ARefusedShapeNamesTheCameraWhatFitsAndHowToCrop) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("airtruth_profiles_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const auto write = [&](const char* name, const std::string& model, const std::string& size) {
+    std::string text =
+        profile("\"camera_brand\": \"GoPro\", \"camera_model\": \"" + model + "\",\n");
+    text.replace(text.find("{\"w\": 1280, \"h\": 960}"), 21, size);
+    write_file(folder / name, text);
+  };
+  write("4by3.json", "Hero", "{\"w\": 1280, \"h\": 960}");
+  write("16by9.json", "Hero", "{\"w\": 1920, \"h\": 1080}");
+  write("other.json", "Max", "{\"w\": 1280, \"h\": 720}");
+  write_file(folder / "broken.json", "{");
+  std::string message;
+  try {
+    read_calibration(folder / "4by3.json", {1280, 720});
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  fs::remove_all(folder);
+  EXPECT_THAT(
+      message,
+      testing::HasSubstr("was made for 1280x960 of a GoPro Hero, but the video is 1280x720"));
+  EXPECT_THAT(message, testing::HasSubstr("video's aspect ratio: 16by9.json (1920x1080);"));
+  EXPECT_THAT(message, testing::HasSubstr("airtruth lens crop"));
+  EXPECT_THAT(message, testing::Not(testing::HasSubstr("other.json")));
 }
 
 TEST(Gyroflow, NamesTheFieldItCannotHonour) {

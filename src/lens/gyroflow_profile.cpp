@@ -78,6 +78,18 @@ double stated_max_angle(const Profile& profile, const json& fisheye) {
   return limit == 0 ? kPi : std::atan(limit);
 }
 
+// Brand and model, without what would break a message's line.
+std::string camera_of(const json& object) {
+  std::string camera;
+  for (const char* key : {"camera_brand", "camera_model"}) {
+    const auto at = object.find(key);
+    if (at == object.end() || !at->is_string() || at->get<std::string>().empty()) continue;
+    camera += (camera.empty() ? "" : " ") + at->get<std::string>();
+  }
+  std::erase_if(camera, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  return camera;
+}
+
 }  // namespace
 
 Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name) {
@@ -118,6 +130,7 @@ Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem:
   if (!(width >= 1 && width <= 65536 && height >= 1 && height <= 65536))
     profile.fail("calib_dimension", "is not a size in pixels");
   c.size = {static_cast<int>(width), static_cast<int>(height)};
+  c.camera = camera_of(object);
   return c;
 }
 

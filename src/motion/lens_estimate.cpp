@@ -19,6 +19,12 @@ constexpr std::size_t kMostPairs = 40;
 constexpr std::size_t kFewestPairs = 4;
 constexpr int kFewestPoints = 30;
 constexpr double kOutlierPx = 2.5;
+constexpr double kShortest = 0.25;  // focal lengths that are tried, in widths of the image
+constexpr double kLongest = 6.0;
+constexpr double kFits = 1.02;  // of the least mean squared misfit: a lens that fits as well
+constexpr double kIntervalStep = 1.05;
+constexpr double kMostSigma = 0.12;  // of the focal length, for an estimate that is certain
+constexpr double kMostOff = 0.25;    // the same of the longest focal length that fits as well
 
 struct Match {
   Pixel before, after;  // ours
@@ -73,7 +79,7 @@ Best search(const std::vector<Pair>& pairs,
             bool fisheye,
             const lens::ImageSize& size) {
   Best best;
-  const double low = 0.25 * size.width, high = 6.0 * size.width;
+  const double low = kShortest * size.width, high = kLongest * size.width;
   const auto look = [&](double f) {
     const double m = miss_of(pairs, from, step, candidate(fisheye, f, size));
     if (m < best.miss) best = {f, m};
@@ -85,6 +91,18 @@ Best search(const std::vector<Pair>& pairs,
     look(middle * (1 + width));
   }
   return best;
+}
+
+// From the best focal length in steps of `factor` as far as the lens fits as well, within what the
+// search tries.
+template <typename Fits>
+double end_of_fit(double focal_px, double factor, const lens::ImageSize& size, const Fits& fits) {
+  const double low = kShortest * size.width;
+  const double high = kLongest * size.width;
+  double end = focal_px;
+  while (end * factor >= low && end * factor <= high && fits(end * factor)) end *= factor;
+  if (end * factor < low) return low;
+  return end * factor > high ? high : end;
 }
 
 }  // namespace
@@ -167,13 +185,19 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   const Best odd = search(pairs, 1, 2, result.fisheye, size);
   const Best even = search(pairs, 0, 2, result.fisheye, size);
   result.sigma_px = std::max(0.004 * best.focal_px, std::abs(odd.focal_px - even.focal_px) / 2);
-  const double off = miss_of(pairs, 0, 1, candidate(result.fisheye, 1.25 * best.focal_px, size));
-  if (result.sigma_px > 0.12 * best.focal_px || off < 1.02 * best.miss) {
-    why = "the way the picture turns fits many focal lengths (about " +
-          std::to_string(static_cast<int>(best.focal_px)) + " +- " +
-          std::to_string(static_cast<int>(result.sigma_px)) + " px)";
-    return std::nullopt;
-  }
+  const auto fits = [&](double focal_px) {
+    return miss_of(pairs, 0, 1, candidate(result.fisheye, focal_px, size)) < kFits * best.miss;
+  };
+  result.low_px = std::min(end_of_fit(best.focal_px, 1 / kIntervalStep, size, fits),
+                           best.focal_px - result.sigma_px);
+  result.high_px = std::max(end_of_fit(best.focal_px, kIntervalStep, size, fits),
+                            best.focal_px + result.sigma_px);
+  result.is_certain = result.sigma_px <= kMostSigma * best.focal_px &&
+                      result.high_px < (1 + kMostOff) * best.focal_px;
+  if (!result.is_certain)
+    why = "the way the picture turns fits every focal length from " +
+          std::to_string(static_cast<int>(result.low_px)) + " to " +
+          std::to_string(static_cast<int>(result.high_px)) + " px";
   return result;
 }
 

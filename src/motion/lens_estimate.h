@@ -26,12 +26,16 @@ class LensEstimator {
   struct Result {
     bool fisheye = false;  // equidistant; else pinhole
     double focal_px = 0;
-    double sigma_px = 0;  // from how the misfit grows about its least, and from half the pairs each
-    double rms_px = 0;    // of what is left over
+    double sigma_px = 0;  // from half the pairs each
+    double low_px = 0;    // every focal length from here to high_px fits as well, within 2 % of the
+    double high_px = 0;  // mean squared misfit; the search ends at 0.25 and 6 widths of the picture
+    bool is_certain = false;  // that interval is narrow enough to take the value as the camera's
+    double rms_px = 0;        // of what is left over
     double other_rms_px = 0;  // the same of the best lens of the other kind
     int pairs = 0;
   };
-  // Empty, with the reason, where the camera turned too little or the focal length does not show.
+  // Empty, with the reason, where the camera turned too little. An estimate that is not certain
+  // comes with the reason too.
   std::optional<Result> result(std::string& why) const;
 
  private:

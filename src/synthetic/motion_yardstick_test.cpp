@@ -230,6 +230,9 @@ TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
                 found->other_rms_px);
     EXPECT_EQ(found->fisheye, std::holds_alternative<lens::Fisheye>(lens.model()));
     EXPECT_NEAR(found->focal_px, lens.focal_px(), 0.05 * lens.focal_px());
+    EXPECT_TRUE(found->is_certain) << why;
+    EXPECT_LE(found->low_px, lens.focal_px());
+    EXPECT_GE(found->high_px, lens.focal_px());
   }
 }
 
