@@ -21,7 +21,8 @@ constexpr std::size_t kCells = 14;
 constexpr std::size_t kRotationCells = 9;
 
 State state_of(const std::string& word, const Where& where) {
-  for (State state : {State::kReference, State::kMeasured, State::kBridged, State::kCut})
+  for (State state :
+       {State::kReference, State::kMeasured, State::kBridged, State::kCut, State::kTurnedAway})
     if (word == name(state)) return state;
   throw Error("state is '" + word.substr(0, 40) + "'; expected reference, measured, bridged or cut",
               where);

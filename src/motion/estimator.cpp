@@ -93,6 +93,8 @@ const char* name(State state) {
       return "measured";
     case State::kBridged:
       return "bridged";
+    case State::kTurnedAway:
+      return "turned_away";
     case State::kCut:
       return "cut";
   }

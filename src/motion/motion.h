@@ -34,8 +34,16 @@ enum class State {
   kBridged,  // could not be measured (blank sky, blur, damage); carried on from its neighbours and
              // flagged
   kCut,      // the scene changed: nothing links it to the frames before; carried on and flagged
+  kTurnedAway,  // a homography alone: the camera has turned so far from the first frame that one
+                // plane does not hold both pictures (reach.h); carried on and flagged
 };
-const char* name(State state);  // "reference", "measured", "bridged", "cut"
+// "reference", "measured", "bridged", "cut", "turned_away"
+const char* name(State state);
+
+// Whether the state says that the motion is known; else it is carried on from other frames.
+inline bool is_known(State state) {
+  return state == State::kReference || state == State::kMeasured;
+}
 
 struct FrameMotion {
   std::int64_t frame = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <optional>
 
 #include "motion/corners.h"
@@ -80,8 +81,10 @@ FrameMotion Planar::measured(const ModelFit& fit,
                              const std::vector<cv::Point2f>& key,
                              const std::vector<cv::Point2f>& moved,
                              const cv::Mat& grey) {
+  // h33 passes through 0 where the camera turns away from the first frame; the determinant does
+  // not.
   const Homography composed = fit.frame_from_key * key_from_first_;
-  now_from_first_ = composed / composed(2, 2);
+  now_from_first_ = composed / std::cbrt(composed.determinant());
   FrameMotion motion;
   motion.frame_from_reference = ours_from_cv(now_from_first_);
   motion.inliers = fit.inliers;

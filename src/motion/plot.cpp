@@ -56,7 +56,7 @@ void shade_unmeasured(cv::Mat& canvas,
   const double per_frame =
       double(area.width) / static_cast<double>(std::max<std::size_t>(1, motion.size()));
   for (std::size_t i = 0; i < motion.size(); ++i) {
-    if (motion[i].state != State::kBridged && motion[i].state != State::kCut) continue;
+    if (is_known(motion[i].state)) continue;
     const int x0 = area.x + static_cast<int>(static_cast<double>(i) * per_frame);
     const int x1 =
         std::max(x0 + 1, area.x + static_cast<int>(static_cast<double>(i + 1) * per_frame));
@@ -64,6 +64,60 @@ void shade_unmeasured(cv::Mat& canvas,
         motion[i].state == State::kCut ? cv::Scalar(250, 190, 190) : cv::Scalar(255, 228, 190);
     cv::rectangle(canvas, {x0, area.y}, {x1, area.y + area.height}, colour, cv::FILLED);
   }
+}
+
+struct Limits {
+  double low = 0;
+  double high = 1;
+};
+
+// The axis holds 0 and what the middle 98 % of the values span, widened by kBeyond of it on either
+// side where values lie there: a single one far off does not press the others flat.
+Limits limits_of(const std::vector<Series>& series) {
+  constexpr double kTail = 0.01;
+  constexpr double kBeyond = 1.0;
+  std::vector<double> values;
+  for (const Series& s : series)
+    for (const double v : s.values)
+      if (std::isfinite(v)) values.push_back(v);
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(values.size()));
+  const double low = std::min(0.0, values[tail]);
+  const double high = std::max(0.0, values[values.size() - 1 - tail]);
+  const double span = high - low;
+  Limits limits{std::min(low, std::max(values.front(), low - kBeyond * span)),
+                std::max(high, std::min(values.back(), high + kBeyond * span))};
+  if (limits.high - limits.low < 1e-6) limits.high = limits.low + 1;
+  const double margin = 0.06 * (limits.high - limits.low);
+  if (limits.low < 0) limits.low -= margin;
+  limits.high += margin;
+  return limits;
+}
+
+// A line through the values; one beyond the axis is drawn at its end, under a small triangle.
+// Returns how many are.
+int draw_line(cv::Mat& canvas, const cv::Rect& area, const Limits& limits, const Series& s) {
+  const auto count = static_cast<double>(std::max<std::size_t>(2, s.values.size()) - 1);
+  int off_scale = 0;
+  std::vector<cv::Point> line;
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const double v = s.values[i];
+    const int x = area.x + static_cast<int>(static_cast<double>(i) / count * area.width);
+    const double share = std::isfinite(v) ? (v - limits.low) / (limits.high - limits.low)
+                         : v > 0          ? 2.0
+                                          : -1.0;
+    const int y = area.y + area.height -
+                  static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * area.height));
+    line.emplace_back(x, y);
+    if (share >= 0 && share <= 1) continue;
+    ++off_scale;
+    const int inward = share > 1 ? 9 : -9;
+    const std::vector<cv::Point> mark = {{x, y}, {x - 5, y + inward}, {x + 5, y + inward}};
+    cv::fillConvexPoly(canvas, mark, s.colour, cv::LINE_AA);
+  }
+  if (line.size() > 1) cv::polylines(canvas, line, false, s.colour, 1, cv::LINE_AA);
+  return off_scale;
 }
 
 void panel(cv::Mat& canvas,
@@ -74,14 +128,9 @@ void panel(cv::Mat& canvas,
   const cv::Rect area(
       kLeftPx, kTopPx + row * (kPanelPx + kTopPx), kWidthPx - kLeftPx - kRightPx, kPanelPx);
   shade_unmeasured(canvas, motion, area);
-  double low = 0;
-  double high = 0;
-  for (const Series& s : series)
-    for (double v : s.values) low = std::min(low, v), high = std::max(high, v);
-  if (high - low < 1e-6) high = low + 1;
-  const double margin = 0.06 * (high - low);
-  if (low < 0) low -= margin;
-  high += margin;
+  const Limits limits = limits_of(series);
+  const double low = limits.low;
+  const double high = limits.high;
   const auto y_of = [&](double v) {
     return area.y + area.height - (v - low) / (high - low) * area.height;
   };
@@ -101,6 +150,7 @@ void panel(cv::Mat& canvas,
           0.42,
           kInk);
   cv::rectangle(canvas, area, kInk, 1);
+  int off_scale = 0;
   int x = area.x + 6;
   write(canvas, unit, x, area.y - 10, 0.5, kInk);
   x += 40 + static_cast<int>(unit.size()) * 9;
@@ -108,12 +158,10 @@ void panel(cv::Mat& canvas,
     cv::line(canvas, {x, area.y - 15}, {x + 26, area.y - 15}, s.colour, 2, cv::LINE_AA);
     write(canvas, s.name, x + 32, area.y - 10, 0.48, kInk);
     x += 60 + static_cast<int>(s.name.size()) * 9;
-    std::vector<cv::Point> line;
-    for (std::size_t i = 0; i < s.values.size(); ++i)
-      line.emplace_back(area.x + static_cast<int>(static_cast<double>(i) / count * area.width),
-                        static_cast<int>(y_of(s.values[i])));
-    if (line.size() > 1) cv::polylines(canvas, line, false, s.colour, 1, cv::LINE_AA);
+    off_scale += draw_line(canvas, area, limits, s);
   }
+  if (off_scale > 0)
+    write(canvas, std::to_string(off_scale) + " off the scale", x, area.y - 10, 0.48, kInk);
 }
 
 }  // namespace
@@ -146,7 +194,12 @@ image::Rgb8 plot(const std::vector<FrameMotion>& motion, int width, int height) 
   panel(canvas, motion, 1, "degrees", {turn});
   panel(canvas, motion, 2, "px", {rms});
   panel(canvas, motion, 3, "corners", {inliers});
-  write(canvas, "frame (shaded: bridged; red: cut)", kLeftPx + 300, canvas.rows - 12, 0.48, kInk);
+  write(canvas,
+        "frame (shaded: not measured; red: cut)",
+        kLeftPx + 300,
+        canvas.rows - 12,
+        0.48,
+        kInk);
   image::Rgb8 result = image::make_rgb8(canvas.cols, canvas.rows);
   for (int row = 0; row < canvas.rows; ++row)
     std::memcpy(result.at(0, row), canvas.ptr(row), static_cast<std::size_t>(canvas.cols) * 3);

@@ -11,15 +11,22 @@ namespace {
 
 constexpr int kReach = 8;
 
+bool is_away(const FrameMotion& motion) { return motion.state == State::kTurnedAway; }
+
+// Does frame i go on from the frame before it? Not after a cut, and not where motion that is held
+// meets motion that is measured.
+bool goes_on(const std::vector<FrameMotion>& motion, std::size_t i) {
+  return motion[i].state != State::kCut && is_away(motion[i]) == is_away(motion[i - 1]);
+}
+
 // How far frames around k are linked to it, at even times; at most kReach to each side.
 int linked_reach(const std::vector<FrameMotion>& motion, std::size_t k) {
-  const auto is_cut = [&](std::size_t i) { return motion[i].state == State::kCut; };
   int reach = 0;
   const double step_s = k + 1 < motion.size() ? motion[k + 1].time_s - motion[k].time_s : 0;
   while (reach < kReach) {
     const auto next = static_cast<std::size_t>(reach) + 1;
     if (k < next || k + next >= motion.size()) break;
-    if (is_cut(k + next) || is_cut(k - next + 1)) break;
+    if (!goes_on(motion, k + next) || !goes_on(motion, k - next + 1)) break;
     const double after_s = motion[k + next].time_s - motion[k + next - 1].time_s;
     const double before_s = motion[k - next + 1].time_s - motion[k - next].time_s;
     if (std::abs(after_s - step_s) > 0.02 * step_s || std::abs(before_s - step_s) > 0.02 * step_s)
@@ -54,9 +61,9 @@ Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
     return shake;
   }
   // At an end: the one neighbour that there is.
-  if (k + 1 < motion.size() && motion[k + 1].state != State::kCut)
+  if (k + 1 < motion.size() && goes_on(motion, k + 1))
     add(k + 1, 1 / (motion[k + 1].time_s - now.time_s));
-  else if (k > 0 && now.state != State::kCut)
+  else if (k > 0 && goes_on(motion, k))
     add(k - 1, -1 / (now.time_s - motion[k - 1].time_s));
   return shake;
 }

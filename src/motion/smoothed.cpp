@@ -11,8 +11,9 @@ namespace airtruth::motion {
 namespace {
 
 Homography unit_determinant(const Homography& h) {
+  // The cube root keeps the sign: h33 = 1 makes -H of an H that has turned past a right angle.
   const double d = h.determinant();
-  return d > 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
+  return d != 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
 }
 
 // Consecutive frames: b_from_a of neighbours, from the composed maps.

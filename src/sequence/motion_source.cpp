@@ -57,7 +57,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
                            const std::string& video_sha256,
                            const image::Mask* mask,
                            const fs::path& cache)
-    : mask_(mask) {
+    : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
   const std::string model = motion_model(scene, lens);
   none_ = model == "none";
   smoothed_ = !none_ && scene.motion.reference == "smoothed";
@@ -90,7 +90,8 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
   against_first_ = std::move(against_first);
   std::vector<motion::FrameMotion> bridged = against_first_;
   bridge_by_gyro(gyro_, bridged);
-  all_ = smoothed_ ? motion::smoothed(bridged, options_) : std::move(bridged);
+  all_ = smoothed_ ? motion::smoothed(bridged, options_)
+                   : motion::within_reach(std::move(bridged), size_.width, size_.height);
   ready_ = true;
 }
 
@@ -109,7 +110,7 @@ MotionSource::Measured MotionSource::next(const video::Frame& frame) {
     return {still, {}};
   }
   if (!ready_) {
-    const motion::FrameMotion motion = measured(frame);
+    const motion::FrameMotion motion = guard_.next(measured(frame));
     return {motion, motion::shake_of({motion}, 0)};
   }
   check(frame.index < static_cast<std::int64_t>(all_.size()), "motion is known for every frame");

@@ -12,6 +12,7 @@
 #include "motion/cache.h"
 #include "motion/gyro.h"
 #include "motion/motion.h"
+#include "motion/reach.h"
 #include "scene/scene.h"
 #include "video/reader.h"
 
@@ -78,6 +79,8 @@ class MotionSource {
   motion::Options options_;
   motion::CacheKey key_;
   const image::Mask* mask_;
+  lens::ImageSize size_;
+  motion::ReachGuard guard_;  // of motion against the first frame
   std::optional<motion::Estimator> estimator_;
   std::vector<motion::FrameMotion> against_first_;
   std::vector<motion::FrameMotion> all_;
