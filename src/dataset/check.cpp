@@ -47,9 +47,10 @@ video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
 // Mask, lens, camera file and path of a background. How much of the clip is used is each
 // sequence's, and the camera's path must be as long as that alone.
 void check_background(const Catalogue& catalogue,
-                      const Background& background,
+                      std::size_t place,
                       const std::map<std::string, fs::path>& videos) {
-  scene::Scene scene = scene_over(catalogue, background);
+  const Background& background = catalogue.backgrounds[place];
+  scene::Scene scene = scene_over(catalogue, place);
   const auto given = videos.find(background.name);
   const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
   video::StreamInfo info;
@@ -90,8 +91,8 @@ void check_names(const Catalogue& catalogue) {
 
 void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos) {
   for (const Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
-  for (const Background& background : catalogue.backgrounds)
-    check_background(catalogue, background, videos);
+  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i)
+    check_background(catalogue, i, videos);
   check_names(catalogue);
 }
 
