@@ -60,6 +60,9 @@ struct ModelAxes {
 struct LoadOptions {
   double airspeed_kt = 250;  // decides `select` conditions: gear is up above its speed
   double altitude_agl_ft = 3000;
+  // Of a catalogue name: the factor on its model's own size; empty: the one that brings it to the
+  // published size of its type (scale.h). Error when given for a model file.
+  std::optional<double> catalogue_scale;
   std::optional<ModelAxes> axes;  // for a bare model file; Error when given for a catalogue name
   std::stop_token stop;           // ends the reading of a model file
 };
@@ -68,6 +71,7 @@ struct Aircraft {
   std::string name;
   std::filesystem::path file;
   Mesh mesh;
+  double catalogue_scale = 1;                  // that the catalogue's model was scaled by
   std::vector<std::filesystem::path> sources;  // every file read, for checksums
 };
 

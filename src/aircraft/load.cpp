@@ -7,6 +7,7 @@
 #include "aircraft/model_cache.h"
 #include "aircraft/model_files.h"
 #include "aircraft/reader.h"
+#include "aircraft/scale.h"
 #include "base/error.h"
 
 namespace airtruth::aircraft {
@@ -72,6 +73,14 @@ RawModel read_source(const Source& source,
   return model;
 }
 
+// A model file says its own unit; a catalogue's model is brought to its type's size.
+double scale_of(const std::string& name, const LoadOptions& options, const Mesh& mesh) {
+  if (options.catalogue_scale) return *options.catalogue_scale;
+  const PublishedSize* published = is_model_file(name) ? nullptr : published_size(name);
+  if (published == nullptr || !published->is_known()) return 1;
+  return scale_to_published(extents(mesh), *published);
+}
+
 }  // namespace
 
 Aircraft load_aircraft(const std::string& name, const LoadOptions& options, const Warn& warn_to) {
@@ -79,6 +88,11 @@ Aircraft load_aircraft(const std::string& name, const LoadOptions& options, cons
   aircraft.name = name;
   Source source;
   if (is_model_file(name)) {
+    if (options.catalogue_scale)
+      throw Error(
+          "catalogue_scale is for names of `airtruth aircraft list`; expected model_scale "
+          "for the model file '" +
+          name + "'");
     aircraft.file = name;
     source = source_of_path(name);
   } else {
@@ -92,6 +106,8 @@ Aircraft load_aircraft(const std::string& name, const LoadOptions& options, cons
   RawModel model = read_source(source, options, aircraft.sources);
   for (const std::string& warning : model.warnings) warn(warn_to, name + ": " + warning);
   aircraft.mesh = mesh_of(std::move(model));
+  aircraft.catalogue_scale = scale_of(name, options, aircraft.mesh);
+  if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
   std::sort(aircraft.sources.begin(), aircraft.sources.end());
   aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
                          aircraft.sources.end());

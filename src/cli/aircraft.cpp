@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "aircraft/catalogue.h"
+#include "aircraft/scale.h"
 #include "base/error.h"
 #include "base/pattern.h"
 #include "cli/commands.h"
@@ -14,9 +15,22 @@
 namespace airtruth::cli {
 namespace {
 
-void list(const std::string& filter, Context& context) {
+// The type's published size, without reading the model.
+std::string published_words(const std::string& name) {
+  const aircraft::PublishedSize* size = aircraft::published_size(name);
+  if (size == nullptr) return "no published size is known: its scale is not checked";
+  if (!size->is_known()) return size->type;
+  return fmt::format(
+      "{}: span {:.2f} m, length {:.2f} m", size->type, size->span_m, size->length_m);
+}
+
+void list(const std::string& filter, bool sizes, Context& context) {
   const std::vector<std::string> names = aircraft::aircraft_named_like(filter);
-  for (const std::string& name : names) fmt::print("{}\n", name);
+  for (const std::string& name : names)
+    if (sizes)
+      fmt::print("{:<40} {}\n", name, published_words(name));
+    else
+      fmt::print("{}\n", name);
   if (names.empty())
     throw Error(
         fmt::format("no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft "
@@ -65,6 +79,10 @@ void show(const ShowArguments& arguments, Context& context) {
       loaded.mesh.triangle_count(),
       loaded.mesh.textures.size(),
       loaded.file.string()));
+  if (loaded.file != arguments.name)
+    console.result("  " + aircraft::size_words(size,
+                                               loaded.catalogue_scale,
+                                               aircraft::published_size(arguments.name)));
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
   for (const std::string& livery : liveries) console.result("    " + livery);
   if (arguments.out.empty()) return;
@@ -84,7 +102,9 @@ void add_aircraft(CLI::App& app, Context& context) {
                            *filter,
                            "Show only names that contain this, or that it fits with * and ?; "
                            "letter case does not matter");
-  list_command->callback([filter, &context] { list(*filter, context); });
+  auto sizes = std::make_shared<bool>(false);
+  list_command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
+  list_command->callback([filter, sizes, &context] { list(*filter, *sizes, context); });
   auto* show_command = command->add_subcommand(
       "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
   auto arguments = std::make_shared<ShowArguments>();

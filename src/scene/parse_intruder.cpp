@@ -16,6 +16,7 @@ void read_axes(const TableReader& table, Intruder& intruder) {
   intruder.model_forward = table.choice("model_forward", axes);
   intruder.model_up = table.choice("model_up", axes);
   intruder.model_scale = table.number("model_scale", kAboveZero);
+  intruder.catalogue_scale = table.number("catalogue_scale", kAboveZero);
   if (intruder.model_forward && intruder.model_up &&
       intruder.model_forward->back() == intruder.model_up->back())
     table.fail("model_up",
@@ -103,6 +104,7 @@ std::vector<Intruder> intruders_from(const TableReader& root) {
                                                "model_forward",
                                                "model_up",
                                                "model_scale",
+                                               "catalogue_scale",
                                                "waypoints_ned_m",
                                                "speed_mps",
                                                "times_s",

@@ -105,7 +105,8 @@ struct Intruder {
   std::optional<std::string>
       model_forward;                    // for a bare model file: which of its axes is the nose ...
   std::optional<std::string> model_up;  // ... and which is up
-  std::optional<double> model_scale;    // metres per unit
+  std::optional<double> catalogue_scale;  // of a catalogue's model; empty: to its published size
+  std::optional<double> model_scale;      // metres per unit
   std::vector<Vector3> waypoints_ned_m;
   std::optional<double> speed_mps;
   std::vector<double> times_s;

@@ -152,6 +152,7 @@ void add_intruder(Text& text, const Intruder& intruder) {
   text.add("model_forward", intruder.model_forward);
   text.add("model_up", intruder.model_up);
   text.add("model_scale", intruder.model_scale);
+  text.add("catalogue_scale", intruder.catalogue_scale);
   text.add("path_file", intruder.path_file);
   if (!intruder.path_file) {
     text.add("waypoints_ned_m", intruder.waypoints_ned_m);

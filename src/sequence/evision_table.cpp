@@ -90,7 +90,7 @@ struct Model {
         silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)},
         rays(aircraft.mesh) {}
   static aircraft::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
-    aircraft::Aircraft loaded = aircraft::load_aircraft(name, {}, warn);
+    aircraft::Aircraft loaded = aircraft::load_aircraft(name, {.catalogue_scale = 1}, warn);
     for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
     return loaded;
   }

@@ -67,6 +67,10 @@ class Run {
         world_(load_world(scene_, size_, options.warn, options.stop)),
         painter_(make_painter(scene_, world_, mask_ptr(), options)) {
     scene_.motion.model = stated_.scene.motion.model = motion_model(scene_, world_.lens);
+    // What was drawn is recorded: the same scene gives the same sizes whatever the table becomes.
+    for (std::size_t i = 0; i < world_.actors.size(); ++i)
+      if (const double scale = world_.actors[i].type->catalogue_scale; scale != 1)
+        scene_.intruders[i].catalogue_scale = stated_.scene.intruders[i].catalogue_scale = scale;
     const video::StreamInfo info = stream_info();
     check_camera_path(world_.camera, info);
     outputs_.emplace(staged_.path(), scene_, world_.lens, info, options_.threads);

@@ -68,6 +68,7 @@ aircraft::LoadOptions load_options(const scene::Intruder& intruder,
     options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
     options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
   }
+  options.catalogue_scale = intruder.catalogue_scale;
   if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
     aircraft::ModelAxes axes;
     if (intruder.model_forward) axes.forward = *intruder.model_forward;
@@ -207,6 +208,7 @@ static std::string type_key(const scene::Intruder& intruder, const trajectory::P
   const aircraft::LoadOptions options = load_options(intruder, path);
   std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' +
                     std::to_string(options.altitude_agl_ft);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
   if (options.axes)
     key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
   return key;
