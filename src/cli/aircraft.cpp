@@ -18,7 +18,7 @@ void list(const std::string& filter, Context& context) {
   const auto entries = aircraft::list_aircraft();
   for (const auto& entry : entries) {
     if (!filter.empty() && entry.name.find(filter) == std::string::npos) continue;
-    fmt::print("{}\n", entry.name);
+    context.console().print(entry.name + "\n");
     ++shown;
   }
   if (shown == 0)
@@ -26,7 +26,6 @@ void list(const std::string& filter, Context& context) {
         fmt::format("no name among {} aircraft contains '{}'; `airtruth aircraft list` shows all",
                     entries.size(),
                     filter));
-  (void)context;
 }
 
 struct ShowArguments {
