@@ -14,6 +14,7 @@
 #include "comparison/comparison.h"
 #include "comparison/looks.h"
 #include "comparison/place.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 #include "report/draw.h"
 #include "sequence/sequence.h"

@@ -8,6 +8,7 @@
 
 #include "base/median.h"
 #include "geometry/transform.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 
 namespace airtruth::comparison {

@@ -38,18 +38,12 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
-// The nearest whole number of pixels, cut at a million to either side, which is far outside any
-// picture. A place or size from a file may be any number.
-inline int whole_pixels(double px) {
-  return static_cast<int>(std::round(std::clamp(px, -1e6, 1e6)));
-}
-
 // The whole pixels that a box touches; far outside any picture it is cut at a million pixels.
 inline PixelBox pixels_of(const Box& box) {
-  const int x = whole_pixels(std::floor(box.x));
-  const int y = whole_pixels(std::floor(box.y));
-  return {
-      x, y, whole_pixels(std::ceil(box.right())) - x, whole_pixels(std::ceil(box.bottom())) - y};
+  const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
+  const int x = bounded(std::floor(box.x));
+  const int y = bounded(std::floor(box.y));
+  return {x, y, bounded(std::ceil(box.right())) - x, bounded(std::ceil(box.bottom())) - y};
 }
 
 inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/median.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 #include "report/draw.h"
 

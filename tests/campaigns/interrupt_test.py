@@ -78,6 +78,20 @@ def see_clean(done, name, out, whole, marker):
         raise Broken(f"{name}: its inputs were changed: {whole}")
 
 
+def wait_for_main(process):
+    """Until the program has taken over its signals, the first thing that it does: before, they end it as any process."""
+    until = time.monotonic() + common.HANG_S
+    while process.poll() is None and time.monotonic() < until:
+        try:
+            with open(f"/proc/{process.pid}/status") as file:
+                blocked = next(int(line.split()[1], 16) for line in file if line.startswith("SigBlk:"))
+        except (OSError, StopIteration):
+            return
+        if blocked & (1 << (common.SIGNALS["SIGTERM"] - 1)):
+            return
+        time.sleep(0.005)
+
+
 def stop_at_random(airtruth, root, data, rounds):
     dice = random.Random(5)
     before = common.state(data)
@@ -91,7 +105,8 @@ def stop_at_random(airtruth, root, data, rounds):
             which = dice.choice(list(common.SIGNALS))
             process = common.start([w.replace("{out}", out).replace("{marker}", marker) for w in words],
                                    env=common.environment(f"{root}/cache-{turn}"))
-            time.sleep(dice.uniform(0.02, 1.5) ** 2)
+            wait_for_main(process)
+            time.sleep(dice.uniform(0, 1.5) ** 2)
             process.send_signal(common.SIGNALS[which])
             done = common.end(process, f"{name} after {which}")
             stopped += done.code == 130

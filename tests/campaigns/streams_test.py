@@ -30,15 +30,16 @@ def closed_streams(airtruth, root, data):
     plain = os.path.join(root, "plain")
     common.run(render(airtruth, data, plain), codes=(0,))
     expected = common.state(plain)
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     for count in (1, 2, 3):
         for files in itertools.combinations((0, 1, 2), count):
             out = os.path.join(root, "closed")
             shutil.rmtree(out, ignore_errors=True)
-            code = subprocess.run(render(airtruth, data, out), preexec_fn=closing(files), timeout=common.HANG_S).returncode
+            code = subprocess.run(render(airtruth, data, out), preexec_fn=closing(files), timeout=common.HANG_S, **quiet).returncode
             if code != 0 or common.difference(expected, common.state(out)):
                 raise Broken(f"with {files} closed: exit code {code}, differs in {common.difference(expected, common.state(out))}")
     # An error goes nowhere, and is one all the same.
-    code = subprocess.run([airtruth, "render", "/nowhere.toml"], preexec_fn=closing((0, 1, 2)), timeout=common.HANG_S).returncode
+    code = subprocess.run([airtruth, "render", "/nowhere.toml"], preexec_fn=closing((0, 1, 2)), timeout=common.HANG_S, **quiet).returncode
     if code != 2:
         raise Broken(f"an error with all streams closed: exit code {code}")
     print("streams closed at the start, in all 7 ways: the same files")
@@ -198,7 +199,7 @@ def body():
         def prepare(*words):
             common.run([airtruth, *words], codes=(0,))
 
-        prepare("synth", "-o", f"{data}/clip.mkv", "--width", "96", "--height", "64", "--frames", "4")
+        prepare("synth", "-o", f"{data}/clip.mkv", "--width", "96", "--height", "64", "--frames", "8")
         prepare("render", f"{data}/scene.toml", "--out", f"{data}/whole")
         prepare("dataset", "build", f"{data}/set.toml", "--out", f"{data}/set")
         prepare("track", f"{data}/set", "-t", "opencv-mil", "-o", f"{data}/results")
