@@ -162,7 +162,9 @@ double TableReader::checked_number(const toml::node& node,
                                    const std::string& name,
                                    const Limits& limits) const {
   if (!node.is_number()) fail_at(place(node), name, words_of(node.type()), limits.expected);
-  const double value = *node.value<double>();
+  // toml++ gives no double for an integer that none equals.
+  const double value =
+      node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
   if (!limits.holds(value)) fail_at(place(node), name, shown(value), limits.expected);
   return value + 0.0;  // -0 is 0
 }

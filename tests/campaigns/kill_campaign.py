@@ -39,6 +39,7 @@ def prepare(airtruth, data):
     def run(*words):
         common.run([airtruth, *words], codes=(0,))
 
+    os.makedirs(data)
     run("synth", "-o", f"{data}/clip.mkv", "--width", "96", "--height", "64", "--frames", "12")
     common.write(f"{data}/moving.toml", common.SCENE.replace('model = "none"', 'model = "homography"'))
     common.write(f"{data}/set.toml", common.CATALOGUE.replace("frame_count = 3", "frame_count = 8"))

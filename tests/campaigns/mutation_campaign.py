@@ -21,7 +21,7 @@ import common
 from common import Broken
 
 NUMBERS = ["1e308", "-1e308", "1e39", "5e-324", "-0", "nan", "inf", "-inf", "9223372036854775807", "-9223372036854775808", "4294967296",
-           "2147483647", "-1", "0", "1e999", "0.1", "null", "[]", "{}", '""', "true"]
+           "2147483647", "-1", "0", "1e999", "0.1", "1", "2", "7.5", "40", "null", "[]", "{}", '""', "true"]
 WORDS = ["../../../etc/passwd", "/dev/null", "/dev/zero", "%s%n%d", "$(touch pwned)", "`touch pwned`", "\"'<script>", "\u202eevil", "\0",
          "a" * 300, "\xff\xfe", "\n", "-rf", "C:\\x"]
 
@@ -193,6 +193,7 @@ def prepare(airtruth, data):
     def run(*words):
         common.run([airtruth, *words], codes=(0,))
 
+    os.makedirs(data)
     run("synth", "-o", f"{data}/clip.mkv", "--mask", f"{data}/own.png", "--width", "96", "--height", "64", "--frames", "4")
     for kind in ("video", "mask", "scene", "camera", "model"):
         os.makedirs(f"{data}/{kind}")

@@ -193,7 +193,7 @@ class Names:
         self.run(f"a TraX tracker named {label}", "track", f"{self.data}/set", "-t", raw + b"=trax:false", "--start-timeout", "20", "-o", "results")
         if b"/" in raw or len(raw) > 240 or raw == b"..":
             return
-        shutil.copytree(f"{self.data}/results/opencv-mil", os.path.join(self.work.encode(), b"r", raw))
+        shutil.copytree(f"{self.data}/results/opencv-mil".encode(), os.path.join(self.work.encode(), b"r", raw))
         self.run(f"results named {label}", "evaluate", f"{self.data}/set", b"r/" + raw, "-o", "evaluation", "--figures", "svg")
         self.see_page(label, "evaluation/report.html")
 
