@@ -19,9 +19,7 @@ constexpr std::int64_t kMostIntruders = 100;
 constexpr std::int64_t kMostDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
-Range range_in(const TableReader& table,
-               std::string_view key,
-               const scene::Limits& limits) {
+Range range_in(const TableReader& table, std::string_view key, const scene::Limits& limits) {
   const auto values = table.tuple(key, {limits, limits});
   if ((*values)[0] > (*values)[1])
     table.fail(key, std::string(key) + " falls; expected [low, high]");

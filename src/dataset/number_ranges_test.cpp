@@ -373,7 +373,10 @@ TEST_F(NumberRanges, OfACatalogue) {
   };
   const std::string video =
       "[[background]]\nname = 'sky'\nvideo = 'sky.mkv'\nmask = 'm.png'\nfirst_frame = 0\n"
-      "lens = { vertical_fov_deg = 60 }\n[[random]]\naircraft = ['738/*']\n";
+      "lens = { vertical_fov_deg = 60 }\n[[random]]\naircraft = ['738/*']\nframe_count = 2\n"
+      "size_px = [8, 30]\nbank_deg = [-20, 20]\ntime_of_day_h = [10, 12]\nlatitude_deg = 40\n"
+      "day_of_year = 100\nintruders = [1, 2]\nnegatives = 0.1\nstart = 'first'\n"
+      "[slurm]\ncpus = 2\n";
   walk({{kTables, use}, {video, use}}, {});
 }
 
