@@ -207,9 +207,15 @@ class NumberRanges : public testing::Test {
         EXPECT_FALSE(limits.without_low) << path << ": a number as small as can be is let in";
         std::vector<Number> numbers = hostile_numbers();
         add_bounds(numbers, limits);
-        for (const Number& number : numbers)
-          try_number(
-              base, with_number(table, path, key, place, number), limits.holds(as_double(number)));
+        for (const Number& number : numbers) {
+          const double value = as_double(number);
+          // What is drawn: the bounds, and the smallest of all.
+          const bool renders = value == limits.low || value == limits.high || value == 5e-324;
+          try_number(base,
+                     with_number(table, path, key, place, number),
+                     limits.holds(value),
+                     limits.holds(value) && renders);
+        }
       }
     }
   }
