@@ -61,6 +61,7 @@ speed_mps = 205
 name = "{background}-{trajectory}-{aircraft}"
 [output]
 video = "mkv"
+masks = true
 """
 
 # Frame, x, y, width, height: whole and broken pixels, two objects in one frame, one over the picture's edge. The second
@@ -226,6 +227,10 @@ class Readers(unittest.TestCase):
                     self.assertIs(type(annotation["iscrowd"]), int)
                     self.assertEqual(annotation["iscrowd"], 0)
                     x, y, w, h = annotation["bbox"]
+                    if clips is self.built:
+                        self.check_run_lengths(annotation)
+                        got[videos[image["video_id"]]][image["frame_id"]][annotation["track_id"]] = (x, y, w, h)
+                        continue
                     self.assertAlmostEqual(annotation["area"], w * h)
                     # A list of polygons, each of at least three corners; its area by the shoelace formula.
                     (polygon,) = annotation["segmentation"]
@@ -235,6 +240,32 @@ class Readers(unittest.TestCase):
                     self.assertAlmostEqual(abs(area), w * h)
                     got[videos[image["video_id"]]][image["frame_id"]][annotation["track_id"]] = (x, y, w, h)
             self.check_frames(got, clips)
+
+    def check_run_lengths(self, annotation):
+        """common/maskApi.c, rleFrString: run lengths of the columns, zeros first, of size [height, width]; as text five
+        bits a character from '0' on, the lowest first, 32 where more follow, 16 in the last a sign; from the fourth on
+        the difference to the last but one."""
+        counts, text = [], annotation["segmentation"]["counts"]
+        at = 0
+        while at < len(text):
+            value, bits, more = 0, 0, True
+            while more:
+                code = ord(text[at]) - 48
+                self.assertTrue(0 <= code < 64)
+                value |= (code & 31) << bits
+                more = code & 32
+                at, bits = at + 1, bits + 5
+            if code & 16:
+                value -= 1 << bits
+            counts.append(value + (counts[-2] if len(counts) > 2 else 0))
+        self.assertEqual(annotation["segmentation"]["size"], [HEIGHT, WIDTH])
+        self.assertEqual(sum(counts), HEIGHT * WIDTH)
+        values = numpy.arange(len(counts)) % 2
+        pixels = numpy.repeat(values, counts).reshape((HEIGHT, WIDTH), order="F")
+        self.assertEqual(annotation["area"], pixels.sum())
+        rows, columns = pixels.nonzero()
+        x, y, w, h = annotation["bbox"]  # here of every pixel that changed, those of a small alpha too
+        self.assertTrue(x <= columns.min() <= columns.max() < x + w and y <= rows.min() <= rows.max() < y + h)
 
     def test_yolo(self):
         """ultralytics/data/utils.py: check_det_dataset, img2label_paths, verify_image_label."""

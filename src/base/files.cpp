@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/unfinished.h"
 
 namespace airtruth {
 namespace {
@@ -109,6 +110,7 @@ void refuse_existing(const fs::path& path, bool overwrite) {
 
 void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
   const fs::path part = part_path(path);
+  Unfinished unfinished = Unfinished::path(part);
   try {
     Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
     if (file.get() < 0) throw Error("cannot create: " + reason(), {path.string()});
@@ -116,8 +118,10 @@ void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
     if (flush == Flush::kNow && ::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
       throw Error("cannot write: " + reason(), {path.string()});
     if (!file.close()) throw Error("cannot write: " + reason(), {path.string()});
-    if (::rename(part.c_str(), path.c_str()) != 0)
-      throw Error("cannot create: " + reason(), {path.string()});
+    unfinished.finish([&] {
+      if (::rename(part.c_str(), path.c_str()) != 0)
+        throw Error("cannot create: " + reason(), {path.string()});
+    });
   } catch (...) {
     ::unlink(part.c_str());
     throw;

@@ -28,9 +28,9 @@ void list(const std::string& filter, bool sizes, Context& context) {
   const std::vector<std::string> names = aircraft::aircraft_named_like(filter);
   for (const std::string& name : names)
     if (sizes)
-      fmt::print("{:<40} {}\n", name, published_words(name));
+      context.console().print(fmt::format("{:<40} {}\n", name, published_words(name)));
     else
-      fmt::print("{}\n", name);
+      context.console().print(name + "\n");
   if (names.empty())
     throw Error(
         fmt::format("no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft "
@@ -39,7 +39,6 @@ void list(const std::string& filter, bool sizes, Context& context) {
                     is_pattern(filter) ? "fits" : "contains",
                     filter,
                     fmt::join(aircraft::nearest_aircraft(filter, 3), ", ")));
-  (void)context;
 }
 
 struct ShowArguments {

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/console.h"
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <thread>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <pthread.h>
-#include <signal.h>
 #include <unistd.h>
+
+#include "base/error.h"
+#include "base/unfinished.h"
 
 namespace airtruth::cli {
 namespace {
@@ -24,6 +31,20 @@ std::string time_left(double left_s) {
   const auto whole = static_cast<std::int64_t>(left_s + 0.5);
   return whole < 60 ? fmt::format("{} s", whole)
                     : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+// What a warning quotes may hold any byte. The words are one line, and no control sequence reaches
+// the terminal.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = c == '\n' ? ' ' : '?';
+  return text;
+}
+
+// Nobody can be told that standard error cannot be written.
+void to_standard_error(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 }  // namespace
@@ -50,7 +71,7 @@ void Console::progress(const std::string& stage,
   if (options_.json_log) {
     nlohmann::ordered_json line = {
         {"level", "progress"}, {"stage", stage}, {"done", done}, {"total", total}, {"per_s", rate}};
-    fmt::print(stderr, "{}\n", line.dump());
+    to_standard_error(line.dump() + "\n");
     return;
   }
   std::string text =
@@ -61,14 +82,12 @@ void Console::progress(const std::string& stage,
   text += fmt::format("  {:.1f} {}/s", rate, unit);
   if (total > done && rate > 0)
     text += fmt::format("  {} left", time_left(static_cast<double>(total - done) / rate));
-  fmt::print(stderr, "\r\x1b[K{}", text);
-  std::fflush(stderr);
+  to_standard_error("\r\x1b[K" + text);
   line_open_ = true;
 }
 
 void Console::end_progress() {
-  if (line_open_) fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  if (line_open_) to_standard_error("\r\x1b[K");
   line_open_ = false;
 }
 
@@ -76,9 +95,9 @@ void Console::log(const char* level, const std::string& message) {
   end_progress();
   if (options_.json_log) {
     const nlohmann::ordered_json line = {{"level", level}, {"message", message}};
-    fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    to_standard_error(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   } else {
-    fmt::print(stderr, "airtruth: {}: {}\n", level, message);
+    to_standard_error(fmt::format("airtruth: {}: {}\n", level, one_line(message)));
   }
 }
 
@@ -87,22 +106,57 @@ void Console::error(const std::string& message) { log("error", message); }
 
 void Console::result(const std::string& message) {
   end_progress();
-  if (!options_.quiet) fmt::print("{}\n", message);
-  std::fflush(stdout);
+  if (!options_.quiet) print(message + "\n");
 }
+
+void Console::print(const std::string& text) {
+  if (reader_left_) return;
+  errno = 0;
+  const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (whole && std::fflush(stdout) == 0) return;
+  if (errno != EPIPE)
+    throw Error(std::string("cannot write to standard output: ") + std::strerror(errno));
+  reader_left_ = true;
+}
+
+void open_standard_streams() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(file, F_GETFD) < 0 && errno == EBADF)
+      // The lowest number that is free: this one.
+      ::open("/dev/null", file == STDIN_FILENO ? O_RDONLY : O_WRONLY);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+namespace {
+
+// Work that looks at the stop token ends by itself, and its destructors clear away; what does not
+// is ended here. Below the two seconds that a stop may take.
+constexpr timespec kGrace{.tv_sec = 1, .tv_nsec = 300'000'000};
+
+[[noreturn]] void end_now() {
+  undo_unfinished();
+  const std::string words = std::string("airtruth: error: ") + kInterruptedWords + "\n";
+  if (::write(STDERR_FILENO, words.data(), words.size()) < 0) std::_Exit(kInterrupted);
+  std::_Exit(kInterrupted);
+}
+
+}  // namespace
 
 StopOnSignal::StopOnSignal() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  struct sigaction hang_up {};
+  ::sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup ignores it
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals, source = source_]() mutable {
     int which = 0;
     sigwait(&signals, &which);
     source.request_stop();
-    sigwait(&signals, &which);
-    std::_Exit(130);
+    sigtimedwait(&signals, nullptr, &kGrace);  // a second signal ends the wait
+    end_now();
   }).detach();
 }
 

@@ -29,6 +29,9 @@ class Console {
   void warning(const std::string& message);
   void error(const std::string& message);
   void result(const std::string& message);  // what the run made; nothing when quiet
+  // To standard output as it stands. Error where it cannot be written; but nothing where its reader
+  // has left, who wants no more of it.
+  void print(const std::string& text);
   Warn warn() {
     return [this](const std::string& message) { warning(message); };
   }
@@ -39,12 +42,22 @@ class Console {
   ConsoleOptions options_;
   bool terminal_ = false;
   bool line_open_ = false;
+  bool reader_left_ = false;
   std::string stage_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };
 
-// Turns SIGINT and SIGTERM into a request to stop; a second signal ends the process at once with
+inline constexpr int kInterrupted = 130;  // the exit code
+inline constexpr const char* kInterruptedWords = "interrupted; nothing half-made is left behind";
+
+// Opens /dev/null as standard input, output or error where the caller closed it, so that no file
+// that is opened later takes its number and is written over by messages; and makes a pipe that is
+// closed at its other end an error of the write. Called before anything is opened.
+void open_standard_streams();
+
+// Turns SIGINT, SIGTERM and SIGHUP into a request to stop. Where the process has not ended within
+// two seconds, or a second signal comes, what is unfinished is undone and the process ends with
 // 130. Made first thing in main, before any thread, so that every thread inherits the blocked
 // signals.
 class StopOnSignal {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,6 @@ using namespace airtruth;  // the program's own top level
 
 constexpr int kOurFailure = 1;
 constexpr int kBadInput = 2;
-constexpr int kInterrupted = 130;
 
 constexpr const char* kAbout =
     "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the "
@@ -43,6 +44,22 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
               (nearest ? "; did you mean '" + *nearest + "'?" : "") + " (see --help)");
 }
 
+// --help and --version.
+int print_help(const CLI::App& app,
+               const CLI::ParseError& asked,
+               cli::Console& console,
+               const std::function<void(const std::string&)>& say) {
+  std::ostringstream text;
+  app.exit(asked, text, text);
+  try {
+    console.print(text.str());
+  } catch (const Error& error) {
+    say(error.what());
+    return kBadInput;
+  }
+  return 0;
+}
+
 int run(CLI::App& app,
         int argc,
         char** argv,
@@ -58,12 +75,15 @@ int run(CLI::App& app,
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) {
+      if (!console) console.emplace(options);
+      return print_help(app, error, *console, say);
+    }
     say(std::string(error.what()) + " (see --help)");
     return kBadInput;
   } catch (const Interrupted&) {
-    say("interrupted; nothing half-made is left behind");
-    return kInterrupted;
+    say(cli::kInterruptedWords);
+    return cli::kInterrupted;
   } catch (const Error& error) {
     say(error.what());
     return kBadInput;
@@ -77,6 +97,7 @@ int run(CLI::App& app,
 }  // namespace
 
 int main(int argc, char** argv) {
+  cli::open_standard_streams();
   keep_memory();
   const cli::StopOnSignal signals;
   CLI::App app(kAbout, "airtruth");

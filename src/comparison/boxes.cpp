@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -10,6 +11,21 @@
 #include "comparison/comparison.h"
 
 namespace airtruth::comparison {
+namespace {
+
+constexpr double kFarthestPx = 1e6;           // as far as a box may lie from the picture's corner
+constexpr std::int64_t kLongest = 1'000'000;  // frames from the first box to the last: 9 h at 30/s
+
+double pixels(const std::string& cell, const Where& where) {
+  const double value = finite_number(cell, where);
+  if (std::abs(value) > kFarthestPx)
+    throw Error("'" + cell.substr(0, 40) + "' is no place in a picture; expected pixels within 1e6",
+                where);
+  return value;
+}
+
+}  // namespace
+
 RealBoxes read_boxes(const fs::path& file, double origin_px) {
   std::istringstream lines(read_file(file));
   std::string line;
@@ -28,15 +44,20 @@ RealBoxes read_boxes(const fs::path& file, double origin_px) {
     const double frame = finite_number(cells[0], where);
     if (!(frame >= 0 && frame < 1e9) || frame != std::floor(frame))
       throw Error("'" + cells[0] + "' is no frame; expected a whole number from 0", where);
-    const Box box{finite_number(cells[1], where) - origin_px,
-                  finite_number(cells[2], where) - origin_px,
-                  finite_number(cells[3], where),
-                  finite_number(cells[4], where)};
+    const Box box{pixels(cells[1], where) - origin_px,
+                  pixels(cells[2], where) - origin_px,
+                  pixels(cells[3], where),
+                  pixels(cells[4], where)};
     if (!(box.width > 0 && box.height > 0))
       throw Error("has a box without a size; expected width and height above 0", where);
     if (!boxes.emplace(static_cast<std::int64_t>(frame), box).second)
       throw Error("is the second box of frame " + cells[0], where);
   }
+  if (!boxes.empty() && boxes.rbegin()->first - boxes.begin()->first >= kLongest)
+    throw Error(fmt::format("spans the frames {} to {}; expected fewer than a million",
+                            boxes.begin()->first,
+                            boxes.rbegin()->first),
+                {file.string()});
   if (boxes.size() < 2) throw Error("holds fewer than two boxes", {file.string()});
   return boxes;
 }

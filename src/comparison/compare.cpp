@@ -14,6 +14,7 @@
 #include "comparison/comparison.h"
 #include "comparison/looks.h"
 #include "comparison/place.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 #include "report/draw.h"
 #include "sequence/sequence.h"
@@ -97,8 +98,8 @@ Pair flicker_of(const std::vector<Compared>& all) {
 }
 
 image::Rgb8 crop(const image::Picture& picture, const Box& box) {
-  const int x = static_cast<int>(std::lround(box.x + box.width / 2)) - kCropPx / 2;
-  const int y = static_cast<int>(std::lround(box.y + box.height / 2)) - kCropPx / 2;
+  const int x = whole_pixels(box.x + box.width / 2) - kCropPx / 2;
+  const int y = whole_pixels(box.y + box.height / 2) - kCropPx / 2;
   return image::rgb8_from_picture(picture, x, y, kCropPx, kCropPx);
 }
 

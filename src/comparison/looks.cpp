@@ -8,6 +8,7 @@
 
 #include "base/median.h"
 #include "geometry/transform.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 
 namespace airtruth::comparison {
@@ -148,9 +149,9 @@ double blockiness(const cv::Mat& grey, int x0) {
 
 std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   const double half = std::max(8.0, std::max(box.width, box.height));
-  const int side = 2 * static_cast<int>(std::ceil(half));
-  const int x = static_cast<int>(std::lround(box.x + box.width / 2)) - side / 2;
-  const int y = static_cast<int>(std::lround(box.y + box.height / 2)) - side / 2;
+  const int side = 2 * whole_pixels(std::ceil(half));
+  const int x = whole_pixels(box.x + box.width / 2) - side / 2;
+  const int y = whole_pixels(box.y + box.height / 2) - side / 2;
   if (x < 0 || y < 0 || x + side > picture.width || y + side > picture.height) return std::nullopt;
   image::Rgb8 crop = image::rgb8_from_picture(picture, x, y, side, side);
   Patch patch;

@@ -34,11 +34,9 @@ synthetic::FlightOptions flight_from(const TableReader& table) {
       static_cast<int>(table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count));
   flight.width = static_cast<int>(table.whole("width", 64, 8192).value_or(flight.width));
   flight.height = static_cast<int>(table.whole("height", 64, 8192).value_or(flight.height));
-  flight.cloud_cover =
-      table.number("cloud_cover", {.expected = "a number from 0 to 1", .low = 0, .high = 1})
-          .value_or(flight.cloud_cover);
-  flight.speed_mps = table.number("speed_mps", scene::kNotNegative).value_or(flight.speed_mps);
-  flight.altitude_m = table.number("altitude_m", scene::kAboveZero).value_or(flight.altitude_m);
+  flight.cloud_cover = table.number("cloud_cover", scene::kShare).value_or(flight.cloud_cover);
+  flight.speed_mps = table.number("speed_mps", scene::kOwnSpeed).value_or(flight.speed_mps);
+  flight.altitude_m = table.number("altitude_m", scene::kAltitude).value_or(flight.altitude_m);
   return flight;
 }
 
@@ -71,14 +69,14 @@ Trajectory trajectory_from(const TableReader& table) {
   Trajectory trajectory;
   trajectory.where = table.where();
   trajectory.name = required_name(table);
-  const auto points = table.points("waypoints_ned_m");
+  const auto points = table.points("waypoints_ned_m", scene::kPosition);
   if (!points || points->size() < 2)
     throw Error("trajectory '" + trajectory.name + "' has fewer than two waypoints_ned_m",
                 table.where());
   trajectory.waypoints_ned_m = *points;
   table.exclude("speed_mps", {"times_s"});
-  trajectory.speed_mps = table.number("speed_mps", scene::kAboveZero);
-  trajectory.times_s = table.numbers("times_s").value_or(std::vector<double>{});
+  trajectory.speed_mps = table.number("speed_mps", scene::kSpeed);
+  trajectory.times_s = table.numbers("times_s", scene::kTime).value_or(std::vector<double>{});
   if (!trajectory.speed_mps && trajectory.times_s.size() != trajectory.waypoints_ned_m.size())
     throw Error("trajectory '" + trajectory.name + "' has " +
                     std::to_string(trajectory.waypoints_ned_m.size()) + " waypoints and " +

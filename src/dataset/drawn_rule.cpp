@@ -16,11 +16,10 @@ namespace {
 using scene::TableReader;
 
 constexpr std::int64_t kMostIntruders = 100;
+constexpr std::int64_t kMostDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
-Range range_in(const TableReader& table,
-               std::string_view key,
-               const scene::Limits& limits = scene::kFinite) {
+Range range_in(const TableReader& table, std::string_view key, const scene::Limits& limits) {
   const auto values = table.tuple(key, {limits, limits});
   if ((*values)[0] > (*values)[1])
     table.fail(key, std::string(key) + " falls; expected [low, high]");
@@ -30,7 +29,7 @@ Range range_in(const TableReader& table,
 // The range at `key`; empty where the key is absent.
 std::optional<Range> maybe_range(const TableReader& table,
                                  std::string_view key,
-                                 const scene::Limits& limits = scene::kFinite) {
+                                 const scene::Limits& limits) {
   if (!table.has(key)) return std::nullopt;
   return range_in(table, key, limits);
 }
@@ -38,7 +37,7 @@ std::optional<Range> maybe_range(const TableReader& table,
 // Of "type", or of [low, high]: empty for the first.
 std::optional<Range> range_or_type(const TableReader& table,
                                    std::string_view key,
-                                   const scene::Limits& limits = scene::kFinite) {
+                                   const scene::Limits& limits) {
   if (table.says(key, kSuitsType)) return std::nullopt;
   return maybe_range(table, key, limits);
 }
@@ -146,16 +145,14 @@ void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& dra
 
 void read_paths(const TableReader& table, Drawn& drawn) {
   table.exclude("size_px", {"range_m"});
-  drawn.range_m = maybe_range(table, "range_m").value_or(drawn.range_m);
-  if (drawn.range_m.low <= 0) table.fail("range_m", "range_m begins at or below 0");
-  drawn.size_px = maybe_range(table, "size_px", scene::kAboveZero);
-  drawn.azimuth_deg = maybe_range(table, "azimuth_deg").value_or(drawn.azimuth_deg);
-  drawn.elevation_deg = maybe_range(table, "elevation_deg").value_or(drawn.elevation_deg);
-  drawn.speed_mps = range_or_type(table, "speed_mps");
-  if (drawn.speed_mps && drawn.speed_mps->low <= 0)
-    table.fail("speed_mps", "speed_mps begins at or below 0");
-  drawn.heading_deg = maybe_range(table, "heading_deg").value_or(drawn.heading_deg);
-  drawn.climb_deg = range_or_type(table, "climb_deg");
+  drawn.range_m = maybe_range(table, "range_m", scene::kRangeToAircraft).value_or(drawn.range_m);
+  drawn.size_px = maybe_range(table, "size_px", scene::kApparentSize);
+  drawn.azimuth_deg = maybe_range(table, "azimuth_deg", scene::kTurn).value_or(drawn.azimuth_deg);
+  drawn.elevation_deg =
+      maybe_range(table, "elevation_deg", scene::kPitch).value_or(drawn.elevation_deg);
+  drawn.speed_mps = range_or_type(table, "speed_mps", scene::kSpeed);
+  drawn.heading_deg = maybe_range(table, "heading_deg", scene::kTurn).value_or(drawn.heading_deg);
+  drawn.climb_deg = range_or_type(table, "climb_deg", scene::kPitch);
   drawn.bank_deg = range_or_type(
       table,
       "bank_deg",
@@ -170,15 +167,15 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   if (drawn.name.find("{index}") == std::string::npos)
     table.fail("name", "name has no {index}; every sequence needs its own");
   drawn.count = table.whole("count", 1, kMost).value_or(1);
-  drawn.frame_count = table.whole("frame_count", 1, kMost).value_or(drawn.frame_count);
+  drawn.frame_count = table.whole("frame_count", 1, kMostDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   drawn.types = types_from(table);
   read_paths(table, drawn);
   read_intruders(table, drawn);
   read_start(table, catalogue, drawn);
   drawn.daytime = daytime_from(table);
-  drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg");
-  drawn.sun_elevation_deg = maybe_range(table, "sun_elevation_deg");
+  drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg", scene::kTurn);
+  drawn.sun_elevation_deg = maybe_range(table, "sun_elevation_deg", scene::kPitch);
   return drawn;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -14,6 +16,16 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 16u << 20;
 constexpr double kAspectTolerance = 0.01;
+// As the keys of [lens] in a scene (scene/limits.h).
+constexpr double kLeastFocal_px = 1;
+constexpr double kFarthest_px = 1e6;
+constexpr double kLargestCoefficient = 1e6;
+
+std::string shown(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
+}
 
 void check_matrix(const Calibration& c, const std::string& file) {
   for (double value : c.camera_matrix)
@@ -24,6 +36,19 @@ void check_matrix(const Calibration& c, const std::string& file) {
     throw Error("the camera matrix has a skew of " + std::to_string(m[1]) +
                     "; expected 0 (no lens model here has skew)",
                 {file});
+  for (const std::size_t i : {std::size_t{0}, std::size_t{4}})
+    if (!(m[i] >= kLeastFocal_px && m[i] <= kFarthest_px))
+      throw Error(
+          "the camera matrix has a focal length of " + shown(m[i]) + "; expected 1 to 1e6 pixels",
+          {file});
+  for (const std::size_t i : {std::size_t{2}, std::size_t{5}})
+    if (std::abs(m[i]) > kFarthest_px)
+      throw Error("the camera matrix has its centre at " + shown(m[i]) + "; expected it within 1e6",
+                  {file});
+  for (const double k : c.distortion)
+    if (!(std::abs(k) <= kLargestCoefficient))
+      throw Error("has a distortion coefficient of " + shown(k) + "; expected it within 1e6",
+                  {file});
   if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
     throw Error("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]", {file});
 }

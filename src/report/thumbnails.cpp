@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/median.h"
+#include "geometry/whole_pixels.h"
 #include "image/colour.h"
 #include "report/draw.h"
 
@@ -30,16 +31,17 @@ image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
 }
 
 image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side) {
-  const int size = std::max(
-      kSmallestPx, static_cast<int>(std::lround(kSurroundings * std::max(box.width, box.height))));
+  const int largest = 2 * std::max({picture.width, picture.height, kSmallestPx});
+  const int size = std::clamp(
+      whole_pixels(kSurroundings * std::max(box.width, box.height)), kSmallestPx, largest);
   return square(
       picture, box.x + box.width / 2 - size / 2.0, box.y + box.height / 2 - size / 2.0, size, side);
 }
 
 image::Rgb8 square(const image::Picture& picture, double left, double top, double px, int side) {
-  const int size = static_cast<int>(std::lround(px));
-  const int x = static_cast<int>(std::lround(left));
-  const int y = static_cast<int>(std::lround(top));
+  const int size = whole_pixels(px);
+  const int x = whole_pixels(left);
+  const int y = whole_pixels(top);
   image::Rgb8 square = image::make_rgb8(size, size);
   const auto inside = intersection({x, y, size, size}, {0, 0, picture.width, picture.height});
   if (inside) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <limits>
+
 #include "base/files.h"
 #include "scene/parse_intruder.h"
 #include "scene/scene.h"
@@ -8,7 +11,8 @@
 namespace airtruth::scene {
 namespace {
 
-constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMostFrames = 1'000'000'000;
 
 std::string name_of(const TableReader& root, const fs::path& file) {
   if (const auto name = root.file_name("name")) return *name;
@@ -26,8 +30,8 @@ Background background_from(const TableReader& table) {
     throw Error("[background] has no video; expected the path of a video file", table.where());
   background.video = *video;
   background.mask = table.path("mask");
-  background.first_frame = table.whole("first_frame", 0, kLargest).value_or(0);
-  background.frame_count = table.whole("frame_count", 1, kLargest);
+  background.first_frame = table.whole("first_frame", 0, kMostFrames).value_or(0);
+  background.frame_count = table.whole("frame_count", 1, kMostFrames);
   return background;
 }
 
@@ -59,7 +63,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
-  scene.seed = static_cast<std::uint64_t>(root.whole("seed", 0, kLargest).value_or(1));
+  scene.seed = static_cast<std::uint64_t>(root.whole("seed", 0, kLargestSeed).value_or(1));
   scene.background =
       background_from(root.table("background", {"video", "mask", "first_frame", "frame_count"}));
   scene.lens = lens_in(root);

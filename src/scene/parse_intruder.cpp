@@ -15,8 +15,8 @@ void read_axes(const TableReader& table, Intruder& intruder) {
   const TableReader::Keys axes = {"x", "-x", "y", "-y", "z", "-z"};
   intruder.model_forward = table.choice("model_forward", axes);
   intruder.model_up = table.choice("model_up", axes);
-  intruder.model_scale = table.number("model_scale", kAboveZero);
-  intruder.catalogue_scale = table.number("catalogue_scale", kAboveZero);
+  intruder.model_scale = table.number("model_scale", kModelScale);
+  intruder.catalogue_scale = table.number("catalogue_scale", kModelScale);
   if (intruder.model_forward && intruder.model_up &&
       intruder.model_forward->back() == intruder.model_up->back())
     table.fail("model_up",
@@ -59,10 +59,10 @@ void check_times(const TableReader& table,
 void read_path(const TableReader& table, Intruder& intruder) {
   table.exclude("path_file", {"waypoints_ned_m", "speed_mps", "times_s"});
   table.exclude("speed_mps", {"times_s"});
-  intruder.start_s = table.number("start_s").value_or(0);
+  intruder.start_s = table.number("start_s", kTime).value_or(0);
   intruder.path_file = table.path("path_file");
   if (intruder.path_file) return;
-  const auto points = table.points("waypoints_ned_m");
+  const auto points = table.points("waypoints_ned_m", kPosition);
   if (!points)
     throw Error(
         "[[intruder]] has no path; expected waypoints_ned_m with speed_mps or times_s, or "
@@ -70,8 +70,8 @@ void read_path(const TableReader& table, Intruder& intruder) {
         table.where());
   check_waypoints(table, *points);
   intruder.waypoints_ned_m = *points;
-  intruder.speed_mps = table.number("speed_mps", kAboveZero);
-  intruder.times_s = table.numbers("times_s").value_or(std::vector<double>{});
+  intruder.speed_mps = table.number("speed_mps", kSpeed);
+  intruder.times_s = table.numbers("times_s", kTime).value_or(std::vector<double>{});
   if (table.has("times_s")) check_times(table, intruder.times_s, points->size());
   if (!intruder.speed_mps && !table.has("times_s"))
     throw Error("[[intruder]] has waypoints_ned_m alone; expected speed_mps or times_s with them",

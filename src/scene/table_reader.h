@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,29 +14,11 @@
 
 #include "base/error.h"
 #include "geometry/transform.h"
+#include "scene/limits.h"
 
 // Reads a table of a TOML file strictly: what is there must be known, of the right type and in
 // range, or an Error says so at its line and column. For the readers of TOML files; not installed.
 namespace airtruth::scene {
-
-// The numbers that a key takes, and how a message calls them. NaN and infinity are never among
-// them.
-struct Limits {
-  std::string_view expected = "a finite number";
-  double low = -std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::max();
-  bool without_low = false;
-  bool without_high = false;
-
-  bool holds(double value) const;
-};
-
-inline constexpr Limits kFinite{};
-inline constexpr Limits kAboveZero{.expected = "a number above 0", .low = 0, .without_low = true};
-inline constexpr Limits kNotNegative{.expected = "a number not below 0", .low = 0};
-inline constexpr Limits kGamma{.expected = "a number from 1.2 to 3", .low = 1.2, .high = 3};
-inline constexpr Limits kTurn{.expected = "degrees from -360 to 360", .low = -360, .high = 360};
-inline constexpr Limits kPitch{.expected = "degrees from -90 to 90", .low = -90, .high = 90};
 
 class TableReader {
  public:
@@ -45,7 +26,13 @@ class TableReader {
 
   // `title` is how messages call the table: "[lens]". Throws where the table holds a key that is
   // not in `keys`.
-  TableReader(const toml::table& table, std::string title, const std::string& file, Keys keys);
+  // `path` is the table's place in the file as a KeyLog has it: "background[0].lens", "" at the
+  // top.
+  TableReader(const toml::table& table,
+              std::string title,
+              const std::string& file,
+              Keys keys,
+              std::string path = "");
 
   bool has(std::string_view key) const;
   bool says(std::string_view key, std::string_view word) const;  // is the value this very string?
@@ -54,7 +41,7 @@ class TableReader {
   Where where(std::string_view key) const;  // the value's
 
   // Each is empty where the key is absent.
-  std::optional<double> number(std::string_view key, const Limits& limits = kFinite) const;
+  std::optional<double> number(std::string_view key, const Limits& limits) const;
   std::optional<std::int64_t> whole(std::string_view key,
                                     std::int64_t low,
                                     std::int64_t high) const;
@@ -66,13 +53,12 @@ class TableReader {
   std::optional<std::string> choice(std::string_view key, Keys choices) const;
   // Relative paths are taken from the folder of the scene file.
   std::optional<std::filesystem::path> path(std::string_view key) const;
-  std::optional<std::vector<double>> numbers(std::string_view key,
-                                             const Limits& each = kFinite) const;
+  std::optional<std::vector<double>> numbers(std::string_view key, const Limits& each) const;
   // One limit for each number: exactly so many are expected.
   std::optional<std::vector<double>> tuple(std::string_view key,
                                            const std::vector<Limits>& limits) const;
-  std::optional<Vector3> vector(std::string_view key) const;
-  std::optional<std::vector<Vector3>> points(std::string_view key) const;
+  std::optional<Vector3> vector(std::string_view key, const Limits& each) const;
+  std::optional<std::vector<Vector3>> points(std::string_view key, const Limits& each) const;
 
   // A table inside; an empty one where absent.
   TableReader table(std::string_view key, Keys keys) const;
@@ -87,6 +73,7 @@ class TableReader {
 
  private:
   const toml::node* node(std::string_view key) const;
+  std::string path_of(std::string_view key) const;
   Where place(const toml::node& node) const;
   double checked_number(const toml::node& node,
                         const std::string& name,
@@ -99,6 +86,7 @@ class TableReader {
 
   const toml::table* table_;
   std::string title_;
+  std::string path_;
   std::string file_;
   std::vector<std::string> keys_;
 };

@@ -11,19 +11,6 @@
 namespace airtruth::scene {
 namespace {
 
-Limits view_limits(const std::string& model) {
-  if (model == "fisheye")
-    return {.expected = "degrees above 0, up to 360 for a fisheye",
-            .low = 0,
-            .high = 360,
-            .without_low = true};
-  return {.expected = "degrees between 0 and 180 (a fisheye reaches further)",
-          .low = 0,
-          .high = 180,
-          .without_low = true,
-          .without_high = true};
-}
-
 std::optional<std::array<double, 2>> pair_from(const TableReader& table,
                                                std::string_view key,
                                                const Limits& limits) {
@@ -45,8 +32,10 @@ void check_distortion(const TableReader& table, const std::string& model, std::s
                fmt::format("distortion has {} numbers; fisheye takes at most 4", count));
 }
 
-std::optional<std::array<double, 3>> colour_from(const TableReader& table, std::string_view key) {
-  const auto values = table.tuple(key, {kNotNegative, kNotNegative, kNotNegative});
+std::optional<std::array<double, 3>> three_from(const TableReader& table,
+                                                std::string_view key,
+                                                const Limits& each) {
+  const auto values = table.tuple(key, {each, each, each});
   if (!values) return std::nullopt;
   return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
 }
@@ -87,10 +76,11 @@ Lens lens_in(const TableReader& parent) {
   lens.file = table.path("file");
   if (lens.file) return lens;
   lens.model = table.choice("model", {"pinhole", "brown_conrady", "fisheye"}).value_or(lens.model);
-  lens.vertical_fov_deg = table.number("vertical_fov_deg", view_limits(lens.model));
-  lens.focal_px = pair_from(table, "focal_px", kAboveZero);
-  lens.principal_point_px = pair_from(table, "principal_point_px", kFinite);
-  lens.distortion = table.numbers("distortion").value_or(std::vector<double>{});
+  lens.vertical_fov_deg =
+      table.number("vertical_fov_deg", lens.model == "fisheye" ? kFisheyeView : kPinholeView);
+  lens.focal_px = pair_from(table, "focal_px", kFocal);
+  lens.principal_point_px = pair_from(table, "principal_point_px", kPrincipalPoint);
+  lens.distortion = table.numbers("distortion", kDistortion).value_or(std::vector<double>{});
   check_distortion(table, lens.model, lens.distortion.size());
   if (!lens.vertical_fov_deg && !lens.focal_px)
     throw Error("[lens] has no focal length; expected vertical_fov_deg, focal_px or file",
@@ -105,8 +95,9 @@ Camera camera_in(const TableReader& parent) {
   camera.where = table.where();
   table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
   camera.path_file = table.path("path_file");
-  camera.position_ned_m = table.vector("position_ned_m").value_or(camera.position_ned_m);
-  camera.velocity_ned_mps = table.vector("velocity_ned_mps").value_or(camera.velocity_ned_mps);
+  camera.position_ned_m = table.vector("position_ned_m", kPosition).value_or(camera.position_ned_m);
+  camera.velocity_ned_mps =
+      table.vector("velocity_ned_mps", kVelocity).value_or(camera.velocity_ned_mps);
   if (const auto angles = table.tuple("attitude_yaw_pitch_roll_deg", {kTurn, kPitch, kTurn}))
     camera.attitude_yaw_pitch_roll_deg = {(*angles)[0], (*angles)[1], (*angles)[2]};
   return camera;
@@ -120,7 +111,7 @@ Motion motion_in(const TableReader& parent) {
       table.choice("model", {"auto", "rotation", "homography", "none"}).value_or(motion.model);
   motion.reference =
       table.choice("reference", {"first_frame", "smoothed"}).value_or(motion.reference);
-  motion.smoothing_s = table.number("smoothing_s", kAboveZero).value_or(motion.smoothing_s);
+  motion.smoothing_s = table.number("smoothing_s", kSmoothing).value_or(motion.smoothing_s);
   return motion;
 }
 
@@ -135,8 +126,8 @@ class AutoReader {
   std::optional<double> number(std::string_view key, const Limits& limits) {
     return is_automatic(key) ? std::nullopt : table_.number(key, limits);
   }
-  std::optional<std::array<double, 3>> colour(std::string_view key) {
-    return is_automatic(key) ? std::nullopt : colour_from(table_, key);
+  std::optional<std::array<double, 3>> three(std::string_view key, const Limits& each) {
+    return is_automatic(key) ? std::nullopt : three_from(table_, key, each);
   }
 
  private:
@@ -151,13 +142,6 @@ class AutoReader {
   std::vector<std::string>& automatic_;
 };
 
-constexpr Limits kAngle{.expected = "degrees from 0 to 360", .low = 0, .high = 360};
-constexpr Limits kSeconds{.expected = "seconds from 0 to 1", .low = 0, .high = 1};
-constexpr Limits kSpread{.expected = "pixels from 0 to 10", .low = 0, .high = 10};
-constexpr Limits kAmount{.expected = "a number from 0 to 3", .low = 0, .high = 3};
-constexpr Limits kVariance{.expected = "a variance from 0 to 0.1", .low = 0, .high = 0.1};
-constexpr Limits kStep{.expected = "code values from 0 to 128", .low = 0, .high = 128};
-
 }  // namespace
 
 CameraModel camera_model_in(const TableReader& parent) {
@@ -166,21 +150,21 @@ CameraModel camera_model_in(const TableReader& parent) {
       parent.table("shutter", {"exposure_s", "angle_deg", "readout_s", "readout"});
   shutter.exclude("exposure_s", {"angle_deg"});
   AutoReader in_shutter(shutter, "shutter", model.automatic);
-  model.exposure_s = in_shutter.number("exposure_s", kSeconds);
-  model.angle_deg = shutter.number("angle_deg", kAngle);
-  model.readout_s = in_shutter.number("readout_s", kSeconds);
+  model.exposure_s = in_shutter.number("exposure_s", kExposureTime);
+  model.angle_deg = shutter.number("angle_deg", kShutterAngle);
+  model.readout_s = in_shutter.number("readout_s", kExposureTime);
   model.readout = shutter.choice("readout", {"down", "up", "right", "left"});
 
   const TableReader air = parent.table("air", {"extinction_per_km", "airlight"});
   AutoReader in_air(air, "air", model.automatic);
-  model.extinction_per_km = in_air.colour("extinction_per_km");
-  model.airlight = in_air.colour("airlight");
+  model.extinction_per_km = in_air.three("extinction_per_km", kExtinction);
+  model.airlight = in_air.three("airlight", kLinearLight);
 
   const TableReader optics =
       parent.table("optics", {"point_spread_px", "sharpening", "sharpening_px"});
   AutoReader in_optics(optics, "optics", model.automatic);
   model.point_spread_px = in_optics.number("point_spread_px", kSpread);
-  model.sharpening = in_optics.number("sharpening", kAmount);
+  model.sharpening = in_optics.number("sharpening", kSharpening);
   model.sharpening_px = in_optics.number("sharpening_px", kSpread);
 
   const TableReader sensor = parent.table(
@@ -189,7 +173,7 @@ CameraModel camera_model_in(const TableReader& parent) {
   model.noise_gain = in_sensor.number("noise_gain", kVariance);
   model.noise_floor = in_sensor.number("noise_floor", kVariance);
   model.noise_correlation_px = in_sensor.number("noise_correlation_px", kSpread);
-  model.codec_step = in_sensor.number("codec_step", kStep);
+  model.codec_step = in_sensor.number("codec_step", kCodecStep);
   model.gamma = sensor.number("gamma", kGamma);
   return model;
 }
@@ -213,9 +197,9 @@ Light light_in(const TableReader& parent) {
   light.sun_elevation_deg =
       table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
   light.sun_is_stated = table.has("sun_azimuth_deg") || table.has("sun_elevation_deg");
-  light.exposure = table.number("exposure", kAboveZero);
-  light.sky_colour = colour_from(table, "sky_colour");
-  light.ground_colour = colour_from(table, "ground_colour");
+  light.exposure = table.number("exposure", kExposureFactor);
+  light.sky_colour = three_from(table, "sky_colour", kLinearLight);
+  light.ground_colour = three_from(table, "ground_colour", kLinearLight);
   return light;
 }
 

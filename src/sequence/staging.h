@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "base/unfinished.h"
 
 namespace airtruth::sequence {
 
@@ -25,11 +28,17 @@ class StagedFolder {
   void commit();
 
  private:
+  void remove_part() const;
+  void move_into_place();
+  void recover() const;
+
   fs::path final_;
   fs::path part_;
+  fs::path old_;  // what is replaced, until it is removed
   int lock_ = -1;
   bool committed_ = false;
   fs::path first_made_;  // the uppermost of the folders that were made for it; empty: none
+  std::optional<Unfinished> unfinished_;
 };
 
 }  // namespace airtruth::sequence

@@ -164,6 +164,7 @@ Child::Child(const std::string& command, Transport transport, std::stop_token st
                      fmt::format("TRAX_SOCKET={}", ntohs(place.sin_port)));
   }
   chatter_ = take(chatter.read);
+  unfinished_.emplace([group = process_] { ::kill(-group, SIGKILL); });
 }
 
 Child::~Child() {
@@ -175,6 +176,7 @@ Child::~Child() {
   }
   // What it started may outlive it. The group's number is not given to another before the wait.
   ::kill(-process_, SIGKILL);
+  unfinished_.reset();  // before the group's number is free for another
   int status = 0;
   while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }

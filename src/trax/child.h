@@ -10,6 +10,7 @@
 
 #include <sys/types.h>
 
+#include "base/unfinished.h"
 #include "trax/message.h"
 
 namespace airtruth::trax {
@@ -67,6 +68,7 @@ class Child {
 
   std::stop_token stop_;
   pid_t process_ = -1;
+  std::optional<Unfinished> unfinished_;  // its process group is ended
   std::optional<int> status_;
   int listening_ = -1;
   int to_ = -1;

@@ -32,7 +32,9 @@ fs::path new_folder() {
 }  // namespace
 
 Images::Images(ImageKind kind) : kind_(kind) {
-  if (kind_ != ImageKind::kMemory) folder_ = new_folder();
+  if (kind_ == ImageKind::kMemory) return;
+  folder_ = new_folder();
+  unfinished_.emplace(Unfinished::path(folder_));
 }
 
 Images::~Images() {

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "base/unfinished.h"
 #include "image/picture.h"
 
 namespace airtruth::trax {
@@ -31,6 +33,7 @@ class Images {
  private:
   ImageKind kind_;
   fs::path folder_;
+  std::optional<Unfinished> unfinished_;
   std::int64_t count_ = 0;
 };
 

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/suggest.h"
+#include "base/unfinished.h"
 #include "image/colour.h"
 #include "video/libav.h"
 #include "video/still.h"
@@ -129,6 +131,7 @@ struct Writer::State {
   std::int64_t last_pts = -1;
   std::int64_t first_pts = 0;
   bool finished = false;
+  std::optional<Unfinished> unfinished;
 
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(message, {path.string()});
@@ -255,6 +258,7 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->info = info;
   state_->options = options;
   state_->stored = stored_colour(info.colour, options.format, path);
+  state_->unfinished.emplace(Unfinished::path(state_->part));
   try {
     if (options.format == Format::kPng) {
       std::error_code failed;
@@ -333,10 +337,13 @@ void Writer::finish() {
     if (const int closed = avio_closep(&s.output->pb); closed < 0)
       s.fail("cannot write: " + reason(closed));
   }
-  std::error_code failed;
-  if (s.options.format == Format::kPng && fs::exists(s.path)) fs::remove(s.path, failed);  // empty
-  fs::rename(s.part, s.path, failed);
-  if (failed) s.fail("cannot create: " + failed.message());
+  s.unfinished->finish([&s] {
+    std::error_code failed;
+    if (s.options.format == Format::kPng && fs::exists(s.path))
+      fs::remove(s.path, failed);  // empty
+    fs::rename(s.part, s.path, failed);
+    if (failed) s.fail("cannot create: " + failed.message());
+  });
   s.finished = true;
 }
 

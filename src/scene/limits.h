@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <string_view>
+
+// The ranges of the numbers in TOML files; docs/formats/scene.md states each. Every range is closed
+// and bounded on both sides, far beyond what a flight needs and far from where squares and
+// quotients of doubles or floats overflow or vanish. Not installed.
+namespace airtruth::scene {
+
+// The numbers that a key takes, and how a message calls them. NaN and infinity are never among
+// them. A bound that is itself excluded is written in `expected`.
+struct Limits {
+  std::string_view expected;
+  double low = 0;
+  double high = 0;
+  bool without_low = false;
+  bool without_high = false;
+
+  bool holds(double value) const {
+    if (!std::isfinite(value) || value < low || value > high) return false;
+    return !(without_low && value == low) && !(without_high && value == high);
+  }
+};
+
+// Angles.
+inline constexpr Limits kTurn{.expected = "degrees from -360 to 360", .low = -360, .high = 360};
+inline constexpr Limits kPitch{.expected = "degrees from -90 to 90", .low = -90, .high = 90};
+inline constexpr Limits kFisheyeView{
+    .expected = "degrees from 0.01 to 360", .low = 0.01, .high = 360};
+inline constexpr Limits kPinholeView{
+    .expected = "degrees from 0.01, below 180 (a fisheye reaches further)",
+    .low = 0.01,
+    .high = 180,
+    .without_high = true};
+
+// Places, times and speeds. 1e9 is what path files allow as well.
+inline constexpr Limits kPosition{.expected = "metres from -1e9 to 1e9", .low = -1e9, .high = 1e9};
+inline constexpr Limits kTime{.expected = "seconds from -1e9 to 1e9", .low = -1e9, .high = 1e9};
+inline constexpr Limits kVelocity{
+    .expected = "metres a second from -1e4 to 1e4", .low = -1e4, .high = 1e4};
+inline constexpr Limits kSpeed{
+    .expected = "metres a second from 0.001 to 1e4", .low = 0.001, .high = 1e4};
+inline constexpr Limits kSmoothing{
+    .expected = "seconds from 0.001 to 1e4", .low = 0.001, .high = 1e4};
+inline constexpr Limits kModelScale{
+    .expected = "a number from 1e-6 to 1e6", .low = 1e-6, .high = 1e6};
+
+// The lens.
+inline constexpr Limits kFocal{.expected = "pixels from 1 to 1e6", .low = 1, .high = 1e6};
+inline constexpr Limits kPrincipalPoint{
+    .expected = "pixels from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+inline constexpr Limits kDistortion{
+    .expected = "a number from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+
+// Light, air, optics and sensor.
+inline constexpr Limits kExposureFactor{
+    .expected = "a number from 1e-6 to 1e4", .low = 1e-6, .high = 1e4};
+inline constexpr Limits kLinearLight{
+    .expected = "a number from 0 to 1e4", .low = 0, .high = 1e4};  // 1 is white
+inline constexpr Limits kExtinction{
+    .expected = "a number from 0 to 1e4", .low = 0, .high = 1e4};  // 1/km: sees 0.4 m far
+inline constexpr Limits kGamma{.expected = "a number from 1.2 to 3", .low = 1.2, .high = 3};
+inline constexpr Limits kShutterAngle{.expected = "degrees from 0 to 360", .low = 0, .high = 360};
+inline constexpr Limits kExposureTime{.expected = "seconds from 0 to 1", .low = 0, .high = 1};
+inline constexpr Limits kSpread{.expected = "pixels from 0 to 10", .low = 0, .high = 10};
+inline constexpr Limits kSharpening{.expected = "a number from 0 to 3", .low = 0, .high = 3};
+inline constexpr Limits kVariance{.expected = "a variance from 0 to 0.1", .low = 0, .high = 0.1};
+inline constexpr Limits kCodecStep{.expected = "code values from 0 to 128", .low = 0, .high = 128};
+
+// Catalogues.
+inline constexpr Limits kShare{.expected = "a number from 0 to 1", .low = 0, .high = 1};
+inline constexpr Limits kOwnSpeed{
+    .expected = "metres a second from 0 to 1000", .low = 0, .high = 1000};
+inline constexpr Limits kAltitude{.expected = "metres from 1 to 20000", .low = 1, .high = 20000};
+inline constexpr Limits kRangeToAircraft{
+    .expected = "metres from 0.1 to 1e6", .low = 0.1, .high = 1e6};
+
+inline constexpr Limits kApparentSize{
+    .expected = "pixels from 0.1 to 1e5", .low = 0.1, .high = 1e5};
+
+}  // namespace airtruth::scene
