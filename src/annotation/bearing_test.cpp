@@ -8,11 +8,11 @@
 namespace airtruth::annotation {
 namespace {
 
-constexpr lens::ImageSize kSize{1280, 960};
+constexpr lens::ImageSize kBearingSize{1280, 960};
 const lens::Pinhole kPinhole{{480, 480}, {640, 480}};
 
 // The camera of the world's north: x_cam is east, y_cam is down, z_cam is north.
-Sight looking_north(const lens::Lens& lens) {
+Sight cam_looking_north(const lens::Lens& lens) {
   return {&lens, Rigid{cam_from_body(), Vector3::Zero()}, Homography::Identity()};
 }
 
@@ -32,8 +32,8 @@ TEST(Bearing, IsRightAndUpFromTheAxis) {
 // A picture that a homography moves 48 px to the right shows what is straight ahead at atan(0.1)
 // to the right, wherever the nominal boresight points.
 TEST(Bearing, OfAPictureThatMovedIsTheRayOfThePixel) {
-  const lens::Lens lens(kPinhole, kSize);
-  Sight sight = looking_north(lens);
+  const lens::Lens lens(kPinhole, kBearingSize);
+  Sight sight = cam_looking_north(lens);
   sight.frame_from_nominal(0, 2) = 48;
   const auto seen = seen_bearing(sight, {1000, 0, 0}, Vector3::Zero());
   ASSERT_TRUE(seen);
@@ -44,8 +44,8 @@ TEST(Bearing, OfAPictureThatMovedIsTheRayOfThePixel) {
 
 // Without a homography the direction needs no pixel: also behind the camera.
 TEST(Bearing, OfATurnedCameraIsItsOwn) {
-  const lens::Lens lens(kPinhole, kSize);
-  Sight sight = looking_north(lens);
+  const lens::Lens lens(kPinhole, kBearingSize);
+  Sight sight = cam_looking_north(lens);
   // The camera yaws right by 10 degrees: north is then 10 degrees to its left.
   sight.cam_from_world.rotation =
       rotation_from_vector(Vector3(0, radians(-10), 0)) * sight.cam_from_world.rotation;
@@ -56,8 +56,8 @@ TEST(Bearing, OfATurnedCameraIsItsOwn) {
 // A camera that yaws right at 1 rad/s, read out in 20 ms downwards: what lies on the lowest row is
 // taken 10 ms after the middle row, when the camera has turned 0.01 rad further.
 TEST(Bearing, WithARollingShutterIsOfThePointsOwnRow) {
-  const lens::Lens lens(kPinhole, kSize);
-  Sight sight = looking_north(lens);
+  const lens::Lens lens(kPinhole, kBearingSize);
+  Sight sight = cam_looking_north(lens);
   sight.shutter = {0, 0.02, Readout::kDown};
   sight.camera.rate_radps = {0, 0, 1};     // about down
   const double down = 1000 * 479.5 / 480;  // on the lowest row's centre line

@@ -12,8 +12,8 @@
 namespace airtruth::composite {
 namespace {
 
-constexpr int kWidth = 90;
-constexpr int kHeight = 70;
+constexpr int kCoverWidth = 90;
+constexpr int kCoverHeight = 70;
 
 // An opaque grey rectangle, by the share of each pixel that it covers.
 image::Layer rectangle(const Box& box) {
@@ -51,8 +51,8 @@ double seen_share(double x, double from, double to, double sigma) {
 // Bounds of the pixels of at least this alpha, all in closed form.
 std::optional<PixelBox> bounds_in_closed_form(const Box& box, double sigma, double alpha) {
   std::optional<PixelBox> found;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kCoverHeight; ++y)
+    for (int x = 0; x < kCoverWidth; ++x) {
       const double here =
           seen_share(x, box.x, box.right(), sigma) * seen_share(y, box.y, box.bottom(), sigma);
       if (here < alpha) continue;
@@ -72,7 +72,7 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
     for (const double width : {0.6, 1.0, 3.3, 20.0})
       for (const double shift : {0.0, 0.25, 0.5, 0.9}) {
         const Box box{30 + shift, 25 + 0.7 * shift, width, 0.4 * width + 0.5};
-        const image::Layer layer = spread(rectangle(box), sigma, 0, kWidth, kHeight);
+        const image::Layer layer = spread(rectangle(box), sigma, 0, kCoverWidth, kCoverHeight);
         const auto covered = covered_box(layer, 0, nullptr);
         const double effective = sigma > 0 ? std::sqrt(sigma * sigma + 1.0 / 12) : 0;
         const auto most = bounds_in_closed_form(box, effective, kAlpha - kOff);
@@ -95,7 +95,8 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
 }
 
 TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
-  const image::Layer layer = spread(rectangle({20.3, 30.2, 17, 5}), 0.9, 0, kWidth, kHeight);
+  const image::Layer layer =
+      spread(rectangle({20.3, 30.2, 17, 5}), 0.9, 0, kCoverWidth, kCoverHeight);
   const AlphaMask mask = alpha_mask(layer, 0, nullptr);
   double sum = 0;
   int pixels = 0;
@@ -107,14 +108,15 @@ TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
 }
 
 TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
-  image::Mask own{kWidth, kHeight, std::vector<unsigned char>(kWidth * kHeight, 255)};
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < 30; ++x) own.free[static_cast<std::size_t>(y * kWidth + x)] = 0;
+  image::Mask own{
+      kCoverWidth, kCoverHeight, std::vector<unsigned char>(kCoverWidth * kCoverHeight, 255)};
+  for (int y = 0; y < kCoverHeight; ++y)
+    for (int x = 0; x < 30; ++x) own.free[static_cast<std::size_t>(y * kCoverWidth + x)] = 0;
   image::Layer sharp = rectangle({25, 30, 20, 10});
   find_free_area(sharp, own);
   EXPECT_NEAR(sharp.area_free_px[0], 15 * 10, 1e-3);
   EXPECT_NEAR(sharp.area_seen_px[0], 20 * 10, 1e-9);
-  const image::Layer layer = spread(sharp, 1, 0, kWidth, kHeight);
+  const image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
   EXPECT_NEAR(layer.area_free_px[0], 15 * 10, 1e-3);
   const auto covered = covered_box(layer, 0, &own);
   ASSERT_TRUE(covered);
@@ -136,12 +138,15 @@ TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
 
 // A codec's ripple moves samples all around and no box of what is covered.
 TEST(Cover, TheCodecsStepMovesTheVisibleBoxAlone) {
-  const image::Layer layer = spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kWidth, kHeight);
+  const image::Layer layer =
+      spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kCoverWidth, kCoverHeight);
   const auto composed = [&](double codec_step) {
-    image::Picture picture = image::make_picture(
-        kWidth, kHeight, {image::Chroma::kNone, image::Matrix::kBt601, image::Range::kFull});
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) picture.planes[0].row(y)[x] = 180;
+    image::Picture picture =
+        image::make_picture(kCoverWidth,
+                            kCoverHeight,
+                            {image::Chroma::kNone, image::Matrix::kBt601, image::Range::kFull});
+    for (int y = 0; y < kCoverHeight; ++y)
+      for (int x = 0; x < kCoverWidth; ++x) picture.planes[0].row(y)[x] = 180;
     MatteOptions options;
     options.sensor.codec_step = codec_step;
     return composite_matte(picture, layer, options).at(0);

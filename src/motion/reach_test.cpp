@@ -11,14 +11,14 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
+constexpr int kReachWidth = 640;
+constexpr int kReachHeight = 480;
 constexpr double kFocalPx = 500;
 
 // A pinhole that has turned right: H = K R K^-1, with h33 = 1 as the estimator has it.
 FrameMotion turned(int frame, double yaw_deg) {
   Homography k;
-  k << kFocalPx, 0, kWidth / 2.0, 0, kFocalPx, kHeight / 2.0, 0, 0, 1;
+  k << kFocalPx, 0, kReachWidth / 2.0, 0, kFocalPx, kReachHeight / 2.0, 0, 0, 1;
   const Eigen::AngleAxisd cam_from_reference(-radians(yaw_deg), Vector3::UnitY());
   const Homography h = k * cam_from_reference.toRotationMatrix() * k.inverse();
   FrameMotion motion;
@@ -36,7 +36,7 @@ TEST(Reach, EndsWhereTheFrameLeavesThePlane) {
   const bool within[] = {true, true, true, false, false, false, false, true, false, true};
   std::vector<FrameMotion> all;
   for (int k = 0; k < 10; ++k) all.push_back(turned(k, yaw_deg[k]));
-  const std::vector<FrameMotion> held = within_reach(all, kWidth, kHeight);
+  const std::vector<FrameMotion> held = within_reach(all, kReachWidth, kReachHeight);
   for (std::size_t k = 0; k < held.size(); ++k) {
     EXPECT_EQ(is_known(held[k].state), within[k]) << yaw_deg[k];
     if (within[k]) continue;
@@ -51,7 +51,7 @@ TEST(Reach, ARotationHasNone) {
   FrameMotion motion = turned(0, 120);
   motion.rotation = Quaternion(Eigen::AngleAxisd(radians(120), Vector3::UnitY()));
   motion.state = State::kMeasured;
-  EXPECT_EQ(within_reach({motion}, kWidth, kHeight)[0].state, State::kMeasured);
+  EXPECT_EQ(within_reach({motion}, kReachWidth, kReachHeight)[0].state, State::kMeasured);
 }
 
 // A turn at a steady rate has no shake, also where h33 changes its sign.
@@ -89,7 +89,7 @@ TEST(Plot, OneFrameFarOffDoesNotPressTheOthersFlat) {
     if (k == 150) motion.frame_from_reference(0, 2) = 1.36e6;
     all.push_back(motion);
   }
-  const image::Rgb8 picture = plot(all, kWidth, kHeight);
+  const image::Rgb8 picture = plot(all, kReachWidth, kReachHeight);
   EXPECT_GT(rows_of_line(picture, 780), 60);  // of 250; a linear axis leaves 0
 }
 
