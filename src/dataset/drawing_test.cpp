@@ -208,7 +208,7 @@ TEST(Drawing, KeysThatMakeNoSenseAreOneLineAtTheirPlace) {
   const auto error = [&](const std::string& keys) { return random_error(aircraft + keys); };
   EXPECT_THAT(error("size_px = [8, 30]\nrange_m = [80, 90]\n"), HasSubstr("exclude each other"));
   EXPECT_THAT(error("size_px = [0, 30]\n"),
-              HasSubstr("size_px[0] is 0; expected a number above 0"));
+              HasSubstr("size_px[0] is 0; expected pixels from 0.1 to 1e5"));
   EXPECT_THAT(error("size_px = [30, 8]\n"), HasSubstr("size_px falls"));
   EXPECT_THAT(error("negatives = 1.2\n"), HasSubstr("negatives is 1.2; expected a share"));
   EXPECT_THAT(error("intruders = 0\n"), HasSubstr("intruders is 0"));

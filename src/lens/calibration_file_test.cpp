@@ -185,7 +185,7 @@ TEST(OpenCv, RefusesSkewPrismAndGarbage) {
   EXPECT_THAT(error_of(yml("900,0,640,0,x,480,0,0,1", "0"), "a.yml"),
               testing::StartsWith("a.yml:1: camera_matrix holds 'x'"));
   EXPECT_THAT(error_of(yml("-900,0,640,0,900,480,0,0,1", "0"), "a.yml"),
-              testing::HasSubstr("focal_px"));
+              testing::HasSubstr("focal length of -900; expected 1 to 1e6 pixels"));
   EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "image_width: 1280\n", "a.yml"),
               testing::HasSubstr("only one of image_width"));
   EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "fisheye_model: maybe\n", "a.yml"),
