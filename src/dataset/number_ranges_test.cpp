@@ -73,7 +73,7 @@ double as_double(const Number& number) {
 // A file of TOML, a reader of it, and what to do with what it reads.
 struct Base {
   std::string text;
-  // Reads the text, and where `renders` also draws what it says.
+  // Reads the text, and where `renders` also makes what it says.
   std::function<void(const std::string& text, bool renders)> use;
 };
 
@@ -209,8 +209,7 @@ class NumberRanges : public testing::Test {
         add_bounds(numbers, limits);
         for (const Number& number : numbers) {
           const double value = as_double(number);
-          // What is drawn: the bounds, and the smallest of all.
-          const bool renders = value == limits.low || value == limits.high || value == 5e-324;
+          const bool renders = value == limits.low || value == limits.high;
           try_number(base,
                      with_number(table, path, key, place, number),
                      limits.holds(value),
@@ -243,11 +242,12 @@ class NumberRanges : public testing::Test {
     for (const Base& base : bases) {
       SCOPED_TRACE(base.text);
       std::optional<scene::KeyLog> log(std::in_place);
-      ASSERT_EQ(error_of([&] { base.use(base.text, true); }), "");
+      ASSERT_EQ(error_of([&] { base.use(base.text, false); }), "");
       known.insert(log->known().begin(), log->known().end());
       read.insert(log->read().begin(), log->read().end());
       Keys keys{log->numbers(), log->wholes()};
       log.reset();
+      ASSERT_EQ(error_of([&] { base.use(base.text, true); }), "");
       std::erase_if(keys.numbers,
                     [&](const auto& key) { return !walked.insert(key.first).second; });
       std::erase_if(keys.wholes, [&](const auto& key) { return !walked.insert(key.first).second; });
@@ -368,8 +368,9 @@ const std::string kTables =
     "2]\n";
 
 TEST_F(NumberRanges, OfACatalogue) {
-  const auto use = [](const std::string& text, bool) {
+  const auto use = [](const std::string& text, bool expands) {
     const Catalogue catalogue = parse_catalogue(text, root_ / "in.toml");
+    if (!expands) return;
     const Expansion expansion(catalogue);
     for (const std::int64_t i : {std::int64_t{0}, expansion.size() / 2, expansion.size() - 1}) {
       Item item = expansion.at(i);
