@@ -17,6 +17,8 @@ import sys
 import tempfile
 import threading
 
+from numbered_clip import HEIGHT, READ_NUMBER, WIDTH, box_of, write_otb
+
 CATALOGUE = """
 name = "<script><b onclick=x>set"
 [[background]]
@@ -68,7 +70,14 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   const drawn = (canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v !== 0);
   const out = { title: page.getElementById('title').textContent, all: names(), count: page.getElementById('count').textContent };
   out.canvases = [...page.querySelectorAll('canvas')].map(drawn);
-  out.pictures = [...page.querySelectorAll('.pictures img')].map((i) => i.naturalWidth);
+  out.films = page.querySelectorAll('.film canvas').length;
+  // Every bin of every histogram has a label.
+  out.unlabelled = [...page.querySelectorAll('.charts canvas')].map((c) => frame.contentWindow.eval('Chart').getChart(c))
+    .filter((chart) => chart.config.type === 'bar')
+    .filter((chart) => {
+      const names = chart.scales[chart.options.indexAxis];
+      return names.ticks.length !== chart.data.labels.length || names.ticks.some((tick) => !tick.label);
+    }).map((chart) => chart.canvas.id);
   out.injected = page.querySelectorAll('h2 *, #title *, #card dd *, #card b, option *').length;
   out.links = [];
   for (const a of page.querySelectorAll('.links a')) out.links.push((await fetch(a.getAttribute('href'), { method: 'HEAD' })).status);
@@ -92,6 +101,117 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   document.getElementById('result').textContent = JSON.stringify(out);
 })().catch((error) => { document.getElementById('result').textContent = JSON.stringify({ broken: String(error) }); });
 """
+
+
+# Of a page on clips whose frames carry their numbers as pixels, and on sequences of which half have no intruder.
+PLAY = """
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+""" + READ_NUMBER + """
+(async () => {
+  const text = await (await fetch('PAGE')).text();
+  const frame = document.getElementById('frame');
+  const loaded = new Promise((done) => frame.addEventListener('load', done));
+  frame.srcdoc = text.replace('<head>', `<head><script>window.found = []; addEventListener('error', (e) => found.push(e.message || 'cannot load'), true);<` + `/script>`);
+  await loaded;
+  await wait(500);
+  const page = frame.contentDocument;
+  const send = (element, kind) => element.dispatchEvent(new frame.contentWindow.Event(kind, { bubbles: true }));
+  const card = page.querySelector('.sequence');
+  const slider = card.querySelector('input[type=range]');
+  const pair = () => [Number(/frame (\\d+)/.exec(card.querySelector('.film .note').textContent)[1]), numberOn(card.querySelector('.film canvas'))];
+  const out = { summary: page.getElementById('summary').textContent, most: page.getElementById('most').textContent };
+  out.pairs = [pair()];
+  for (const value of [0, 1, 7, slider.max]) {
+    slider.value = value;
+    send(slider, 'input');
+    await wait(100);
+    out.pairs.push(pair());
+  }
+  const play = card.querySelector('button');
+  play.click(); // from its end on: begins again
+  for (let k = 0; k < 12; ++k) { await wait(63); out.pairs.push(pair()); }
+  const set = async (value) => {
+    page.getElementById('shows').value = value;
+    send(page.getElementById('shows'), 'input');
+    await wait(50);
+    return [...page.querySelectorAll('.sequence h2')].map((h) => h.textContent);
+  };
+  out.some = await set('some');
+  out.none = await set('none');
+  await set('');
+  const file = [...page.querySelectorAll('.film button')].find((b) => b.textContent === 'Play the file');
+  if (file) {
+    const film = file.closest('.film');
+    file.click();
+    const video = film.querySelector('video');
+    for (let k = 0; k < 60 && film.querySelector('video') && !video.videoWidth; ++k) await wait(100);
+    out.video = [video.videoWidth, video.videoHeight, film.querySelectorAll('video').length];
+  }
+  out.found = frame.contentWindow.found;
+  document.getElementById('result').textContent = JSON.stringify(out);
+})().catch((error) => { document.getElementById('result').textContent = JSON.stringify({ broken: String(error) }); });
+"""
+
+NEGATIVES = """
+name = "negatives"
+[[background]]
+name = "sky"
+flight = { seed = 3, frame_count = 8, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+[[random]]
+name = "r{index}"
+count = 4
+frame_count = 8
+aircraft = ["c172/*"]
+range_m = [60, 90]
+azimuth_deg = [-5, 5]
+elevation_deg = [0, 5]
+negatives = 0.5
+"""
+
+
+def data_of(page):
+    """What the page holds of the set, as JSON."""
+    with open(page, encoding="utf-8") as file:
+        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', file.read(), re.S).group(1))
+
+
+def played(airtruth, browser, root):
+    """The page shows the frames that it names, counts boxes where they are, and plays the file beside it."""
+    run = lambda *command: subprocess.run([airtruth, "dataset", *command], check=True, stdout=subprocess.DEVNULL, cwd=root)
+    write_otb(root + "/otb", ["numbered 100%"], 100)
+    run("import", "otb", "--format", "otb", "-o", "clips")
+    run("report", "clips", "-o", "numbered.html")
+    data = data_of(root + "/numbered.html")
+    wanted = [0] * (32 * 24)
+    for number in range(100):
+        x, y, width, height = box_of(number)
+        wanted[int((y + height / 2) * 24 / HEIGHT) * 32 + int((x + width / 2) * 32 / WIDTH)] += 1
+    with open(root + "/n.toml", "w", encoding="utf-8") as file:
+        file.write(NEGATIVES)
+    run("build", "n.toml", "--out", "negatives")
+    run("report", "negatives", "-o", "negatives.html")
+    look = lambda page: looked_at(browser, root, (1400, 4000), PLAY.replace("PAGE", page))
+    numbered = look("numbered.html")
+    negatives_look = PLAY.replace("PAGE", "negatives.html").replace(
+        "const pair = () =>", "const pair = () => [0, 0]; const unused = () =>")
+    negatives = looked_at(browser, root, (1400, 4000), negatives_look)
+    empty = [s["name"] for s in data_of(root + "/negatives.html")["sequences"] if not s["visible"]]
+    faults = []
+    for what, got, expected in (
+            ("complaints", (numbered.get("found", numbered), negatives.get("found", negatives)), ([], [])),
+            ("frames not the ones named", [p for p in numbered.get("pairs", []) if p[0] != p[1]], []),
+            ("first and last frame seen", {0, 99} <= {p[0] for p in numbered.get("pairs", [])}, True),
+            ("centres of boxes", data["centres"]["counts"], wanted),
+            ("classes", data["classes"], {"aircraft": 100}),
+            ("negative sequences", len(empty), 2),
+            ("with an intruder and without", (len(negatives.get("some", [])), sorted(negatives.get("none", []))), (2, sorted(empty))),
+            ("the summary", "negatives: 2 sequences and " in negatives.get("summary", ""), True),
+            ("the file's picture", negatives.get("video"), [160, 120, 1])):
+        if got != expected:
+            faults.append(f"{what}: {got!r}; expected {expected!r}")
+    if faults:
+        sys.exit("report_page_test:\n  " + "\n  ".join(faults))
 
 
 def looked_at(browser, folder, size, look=LOOK):
@@ -124,11 +244,12 @@ def main():
         catalogue = os.path.join(root, "c.toml")
         with open(catalogue, "w", encoding="utf-8") as file:
             file.write(CATALOGUE)
+        played(airtruth, browser, root)
         made = os.path.join(root, "set #1 50% <", "script><b>")
         page = os.path.join(root, "report.html")
         for command in (["build", catalogue, "--out", made], ["report", made, "-o", page]):
             subprocess.run([airtruth, "dataset", *command], check=True, stdout=subprocess.DEVNULL)
-        for size in ((1400, 4000), (400, 20000)):
+        for size in ((1600, 7000), (400, 24000)):
             out = looked_at(browser, root, size)
             faults = []
 
@@ -140,8 +261,9 @@ def main():
             expect("title", out["title"], "<script><b onclick=x>set")
             expect("sequences", len(out["all"]), 8)
             expect("count", out["count"], "8 of 8")
-            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (5 + 3 * 8, True))
-            expect("pictures", [w > 0 for w in out["pictures"]], [True] * 8)
+            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (8 + 4 * 8, True))
+            expect("films", out["films"], 8)
+            expect("charts with bins that have no label", out["unlabelled"], [])
             expect("markup made of names", out["injected"], 0)
             expect("links", set(out["links"]), {200})
             expect("by aircraft", all(n.endswith("c172") for n in out["c172"]) and len(out["c172"]), 4)

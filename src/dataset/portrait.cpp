@@ -5,33 +5,15 @@
 #include <cmath>
 #include <map>
 
-#include "base/error.h"
 #include "dataset/in_view.h"
-#include "report/pictures.h"
-#include "report/thumbnails.h"
 #include "sequence/finished.h"
 #include "sequence/world.h"
 #include "video/reader.h"
-#include "video/still.h"
 
 namespace airtruth::dataset {
 namespace {
 
-constexpr int kPreviewWidth = 400;
-constexpr int kLoopSide = 96;
-constexpr std::size_t kLoopFrames = 10;
-constexpr int kJpegQuality = 5;
-
 std::array<double, 3> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
-// Indices of n things, thinned to at most `most`, the last among them.
-std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
-  std::vector<std::size_t> chosen;
-  const std::size_t count = std::min(n, most);
-  for (std::size_t k = 0; k < count; ++k)
-    chosen.push_back(count == 1 ? 0 : k * (n - 1) / (count - 1));
-  return chosen;
-}
 
 Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intruder& intruder) {
   Portrait::Point point;
@@ -61,15 +43,33 @@ Portrait::Camera camera_of(const annotation::Frame& frame, int width, int height
           std::atan2(h(1, 0), h(0, 0)) * degrees};
 }
 
+// The cell of the picture that a box's centre lies in.
+std::size_t cell_of(const PixelBox& box, int width, int height) {
+  const auto part = [](double at, double whole, int parts) {
+    return static_cast<std::size_t>(std::clamp(std::floor(at / whole * parts), 0.0, parts - 1.0));
+  };
+  return part(box.y + box.height / 2.0, height, Portrait::kCellRows) * Portrait::kCellColumns +
+         part(box.x + box.width / 2.0, width, Portrait::kCellColumns);
+}
+
 void count(const sequence::Finished& finished, Portrait& portrait) {
   std::optional<lens::Lens> lens;
   if (finished.scene) lens = lens_from(finished.truth.lens);
-  for (const annotation::Frame& frame : finished.truth.frames)
+  portrait.centres.assign(Portrait::kCellColumns * Portrait::kCellRows, 0);
+  for (const annotation::Frame& frame : finished.truth.frames) {
+    bool is_seen = false;
     for (const annotation::Intruder& intruder : frame.intruders) {
       ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
       portrait.covered_boxes += intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && lacks_box(frame, intruder, *lens) ? 1 : 0;
+      const auto box = annotation::box_to_show(intruder);
+      if (!box) continue;
+      is_seen = true;
+      ++portrait.boxes_by_class[category_of(intruder.aircraft)];
+      ++portrait.centres[cell_of(*box, portrait.width, portrait.height)];
     }
+    portrait.frames_with_intruder += is_seen ? 1 : 0;
+  }
 }
 
 void add_series(const sequence::Finished& finished, Portrait& portrait) {
@@ -86,63 +86,12 @@ void add_series(const sequence::Finished& finished, Portrait& portrait) {
   }
 }
 
-const annotation::Intruder* first_visible(const annotation::Frame& frame) {
-  for (const annotation::Intruder& intruder : frame.intruders)
-    if (intruder.visible_box_px) return &intruder;
-  return nullptr;
-}
-
-// Of the frames that show an intruder: the loop's, and the one where it is largest for the preview.
-void add_pictures(const sequence::Finished& finished,
-                  const std::stop_token& stop,
-                  Portrait& portrait) {
-  std::vector<std::size_t> seen;
-  std::size_t largest = 0;
-  int largest_px = -1;
-  const auto& frames = finished.truth.frames;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const annotation::Intruder* intruder = first_visible(frames[i]);
-    if (intruder == nullptr) continue;
-    seen.push_back(i);
-    const PixelBox box = *annotation::box_to_show(*intruder);
-    const int size = std::max(box.width, box.height);
-    if (intruder->cut_by_frame > 0 && largest_px >= 0) continue;
-    if (size > largest_px) {
-      largest_px = size;
-      largest = i;
-    }
-  }
-  if (seen.empty()) return;
-  const std::vector<std::string> ids = sequence::intruder_ids(finished.truth);
-  std::vector<bool> in_loop(frames.size(), false);
-  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop[seen[k]] = true;
-  std::vector<image::Rgb8> squares;
-  video::Reader reader(finished.video, {.threads = 1});
-  for (std::size_t i = 0; i <= seen.back(); ++i) {
-    if (stop.stop_requested()) throw Interrupted();
-    const auto frame = reader.next();
-    if (!frame) throw Error("holds fewer frames than its truth", {finished.video.string()});
-    if (!in_loop[i] && i != largest) continue;
-    const PixelBox box = *annotation::box_to_show(*first_visible(frames[i]));
-    if (i == largest)
-      portrait.preview_jpeg = video::jpeg_of(
-          report::small_copy(report::overlay(frame->picture, frames[i], ids), kPreviewWidth),
-          kJpegQuality);
-    if (!in_loop[i]) continue;
-    portrait.contrasts.push_back(report::contrast(frame->picture, box));
-    squares.push_back(
-        report::enlarged(frame->picture,
-                         {double(box.x), double(box.y), double(box.width), double(box.height)},
-                         kLoopSide));
-  }
-  portrait.loop_frames = static_cast<int>(squares.size());
-  portrait.loop_side = kLoopSide;
-  portrait.loop_jpeg = video::jpeg_of(report::strip(squares), kJpegQuality);
-}
-
 }  // namespace
 
-Portrait portrait_of(const LabelledSet& set, const std::string& name, const std::stop_token& stop) {
+Portrait portrait_of(const LabelledSet& set,
+                     const std::string& name,
+                     std::size_t stills,
+                     const std::stop_token& stop) {
   const sequence::Finished finished = sequence::open_finished(set.folder(name));
   Portrait portrait;
   portrait.facts = set.facts(name);
@@ -167,7 +116,9 @@ Portrait portrait_of(const LabelledSet& set, const std::string& name, const std:
   }
   count(finished, portrait);
   add_series(finished, portrait);
-  add_pictures(finished, stop, portrait);
+  portrait.ids = sequence::intruder_ids(finished.truth);
+  portrait.film = film_of(finished, stills, stop);
+  if (fs::is_regular_file(finished.video)) portrait.video = finished.video;
   return portrait;
 }
 

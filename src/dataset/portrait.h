@@ -2,11 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "dataset/film.h"
 #include "dataset/labelled_set.h"
 #include "scene/scene.h"
 
@@ -16,6 +20,9 @@ namespace airtruth::dataset {
 // Series are thinned to at most kMostPoints.
 struct Portrait {
   static constexpr std::size_t kMostPoints = 120;
+  // Cells of the picture in which the centres of boxes are counted.
+  static constexpr int kCellColumns = 32;
+  static constexpr int kCellRows = 24;
 
   struct Point {  // of one intruder in one frame
     std::int64_t frame = 0;
@@ -52,13 +59,18 @@ struct Portrait {
   std::array<std::int64_t, 5> frames_by_state{};  // visible, hidden, outside, behind, ended
   std::int64_t covered_boxes = 0;                 // of the visible ones
   std::int64_t without_box = 0;                   // in view by geometry (dataset/in_view.h)
-  std::vector<double> contrasts;                  // of sampled frames
-  std::string preview_jpeg;                       // bytes; empty where nothing is ever seen
-  std::string loop_jpeg;                          // kLoopFrames squares side by side
-  int loop_frames = 0;
-  int loop_side = 0;
+  std::int64_t frames_with_intruder = 0;          // that a label says something of
+  std::map<std::string, std::int64_t> boxes_by_class;
+  std::vector<std::int64_t> centres;  // of boxes by cell of the picture, row by row from the top
+  std::vector<std::string> ids;       // of all intruders (sequence::intruder_ids)
+  Film film;
+  std::filesystem::path video;  // empty where the pictures are files of their own
 };
 
-Portrait portrait_of(const LabelledSet& set, const std::string& name, const std::stop_token& stop);
+// `stills`: pictures in its film at most.
+Portrait portrait_of(const LabelledSet& set,
+                     const std::string& name,
+                     std::size_t stills,
+                     const std::stop_token& stop);
 
 }  // namespace airtruth::dataset

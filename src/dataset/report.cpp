@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,11 +45,22 @@ std::vector<double> steps(double from, double to, double step) {
   return edges;
 }
 
+constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
+
+// Stills of all sequences together: about 13 kB each on the page.
+constexpr std::size_t kMostStills = 1500;
+constexpr std::size_t kMostStillsOfOne = 60;
+constexpr std::size_t kLeastStillsOfOne = 4;
+
 // What is counted over the whole set, from the thinned series.
 struct Totals {
   std::int64_t frames = 0;
   std::array<std::int64_t, 5> by_state{};
   std::int64_t without_box = 0;
+  std::int64_t frames_with_intruder = 0;
+  std::int64_t negative_sequences = 0;  // that show no intruder in any frame
+  std::map<std::string, std::int64_t> boxes_by_class;
+  std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCells);
   Histogram range_m{
       {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
   Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
@@ -57,6 +71,10 @@ struct Totals {
     frames += portrait.facts.frames;
     for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
     without_box += portrait.without_box;
+    frames_with_intruder += portrait.frames_with_intruder;
+    negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
+    for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
+    for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
     for (const Portrait::Intruder& intruder : portrait.intruders)
       for (const Portrait::Point& point : intruder.points) {
         if (!point.width_px) continue;
@@ -64,7 +82,7 @@ struct Totals {
         if (point.range_m) range_m.add(*point.range_m);
         if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
       }
-    for (const double value : portrait.contrasts) contrast.add(value);
+    for (const double value : portrait.film.contrasts) contrast.add(value);
   }
 };
 
@@ -128,38 +146,63 @@ Json camera_of(const Portrait& portrait) {
           {"roll_deg", roll}};
 }
 
+// Of the containers that airtruth writes and imports, those that browsers play.
+bool plays_in_browsers(const fs::path& video) {
+  return video.extension() == ".mp4" || video.extension() == ".webm";
+}
+
+Json film_json(const Film& film) {
+  Json stills = Json::array();
+  for (const Film::Still& still : film.stills) {
+    Json boxes = Json::array();
+    for (const Film::Marked& one : still.boxes)
+      boxes.push_back({one.intruder, one.box.x, one.box.y, one.box.width, one.box.height});
+    stills.push_back({{"frame", still.frame}, {"boxes", boxes}});
+  }
+  return stills;
+}
+
 Json json_of(const Portrait& portrait, const fs::path& page) {
   Json files = Json::array();
-  const fs::path folder =
-      fs::absolute(portrait.folder).lexically_relative(fs::absolute(page).parent_path());
+  const auto beside_page = [&](const fs::path& path) {
+    return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
+  };
+  const fs::path folder = beside_page(portrait.folder);
   for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
   Json intruders = Json::array();
   for (const Portrait::Intruder& intruder : portrait.intruders)
     intruders.push_back(series_of(intruder));
   double contrast = 0;
-  for (const double value : portrait.contrasts) contrast += value;
-  return {{"name", portrait.facts.name},
-          {"background", fs::path(portrait.facts.background).filename().string()},
-          {"aircraft", portrait.facts.categories},
-          {"frames", portrait.facts.frames},
-          {"seconds", rounded(portrait.duration_s, 0.01)},
-          {"width", portrait.width},
-          {"height", portrait.height},
-          {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
-          {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
-          {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
-          {"motion_model", portrait.motion_model},
-          {"visible", portrait.frames_by_state[0]},
-          {"hidden", portrait.frames_by_state[1]},
-          {"contrast",
-           portrait.contrasts.empty()
-               ? Json()
-               : Json(rounded(contrast / static_cast<double>(portrait.contrasts.size()), 0.1))},
-          {"loop_frames", portrait.loop_frames},
-          {"loop_side", portrait.loop_side},
-          {"intruders", intruders},
-          {"camera", camera_of(portrait)},
-          {"files", files}};
+  for (const double value : portrait.film.contrasts) contrast += value;
+  return {
+      {"name", portrait.facts.name},
+      {"background", fs::path(portrait.facts.background).filename().string()},
+      {"aircraft", portrait.facts.categories},
+      {"frames", portrait.facts.frames},
+      {"seconds", rounded(portrait.duration_s, 0.01)},
+      {"width", portrait.width},
+      {"height", portrait.height},
+      {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+      {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
+      {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
+      {"motion_model", portrait.motion_model},
+      {"visible", portrait.frames_by_state[0]},
+      {"hidden", portrait.frames_by_state[1]},
+      {"contrast",
+       portrait.film.contrasts.empty()
+           ? Json()
+           : Json(rounded(contrast / static_cast<double>(portrait.film.contrasts.size()), 0.1))},
+      {"loop_frames", portrait.film.loop_frames},
+      {"loop_side", portrait.film.loop_side},
+      {"stills", film_json(portrait.film)},
+      {"poster", portrait.film.poster},
+      {"ids", portrait.ids},
+      {"video",
+       plays_in_browsers(portrait.video) ? Json(beside_page(portrait.video).generic_string())
+                                         : Json()},
+      {"intruders", intruders},
+      {"camera", camera_of(portrait)},
+      {"files", files}};
 }
 
 }  // namespace
@@ -168,11 +211,14 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
   check_output_file(out, options.overwrite);
   const LabelledSet labelled(set);
   std::vector<Portrait> portraits(labelled.names().size());
+  const std::size_t stills = std::clamp(kMostStills / std::max<std::size_t>(1, portraits.size()),
+                                        kLeastStillsOfOne,
+                                        kMostStillsOfOne);
   in_parallel(
       portraits.size(),
       options.jobs,
       [&](std::size_t i) {
-        portraits[i] = portrait_of(labelled, labelled.names()[i], options.stop);
+        portraits[i] = portrait_of(labelled, labelled.names()[i], stills, options.stop);
       },
       options.progress,
       options.stop);
@@ -193,6 +239,13 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
                      {"states", totals.by_state},
                      {"without_box", totals.without_box},
                      {"missing", labelled.missing()},
+                     {"frames_with_intruder", totals.frames_with_intruder},
+                     {"negative_sequences", totals.negative_sequences},
+                     {"classes", totals.boxes_by_class},
+                     {"centres",
+                      {{"columns", Portrait::kCellColumns},
+                       {"rows", Portrait::kCellRows},
+                       {"counts", totals.centres}}},
                      {"histograms",
                       {{"range_m", totals.range_m.json()},
                        {"size_px", totals.size_px.json()},
@@ -202,9 +255,11 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
                      {"sequences", sequences}};
   std::vector<PageBlob> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
-    if (portraits[i].preview_jpeg.empty()) continue;
-    pictures.push_back({fmt::format("preview-{}", i), base64_of(portraits[i].preview_jpeg)});
-    pictures.push_back({fmt::format("loop-{}", i), base64_of(portraits[i].loop_jpeg)});
+    const Film& film = portraits[i].film;
+    for (std::size_t k = 0; k < film.stills.size(); ++k)
+      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(film.stills[k].jpeg)});
+    if (!film.loop_jpeg.empty())
+      pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
   }
   write_file(out,
              page_of("airtruth data set",

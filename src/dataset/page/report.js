@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, colours, element, least, most, number, line, axis, legend } = airtruth;
+  const { byId, bins, colours, counted, element, ink, least, most, number, line, axis, legend } = airtruth;
 
   // What a sequence is sorted and filtered by: over the frames that show an intruder.
   data.sequences.forEach((sequence, index) => {
@@ -24,31 +24,63 @@
   const drawOverview = () => {
     byId('title').textContent = data.title;
     document.title = data.title;
-    const missing = data.missing > 0 ? `, ${number(data.missing)} sequences missing` : '';
+    const missing = data.missing > 0 ? `, ${counted(data.missing, 'sequence')} missing` : '';
     byId('summary').textContent =
-      `${number(data.sequences.length)} sequences, ${number(data.frames)} frames${missing}; ` +
+      `${counted(data.sequences.length, 'sequence')}, ${counted(data.frames, 'frame')}${missing}; ` +
+      `negatives: ${counted(data.negative_sequences, 'sequence')} and ${counted(data.frames - data.frames_with_intruder, 'frame')} show no intruder; ` +
       `in view by geometry and without a box: ${number(data.without_box)}`;
     for (const [key, value] of Object.entries(data.card)) {
       byId('card').append(element('dt', key), element('dd', String(value)));
     }
     for (const [key, histogram] of Object.entries(data.histograms)) {
-      const labels = histogram.counts.map((_, i) => `${histogram.edges[i]}–${histogram.edges[i + 1]}`);
-      new Chart(byId(`hist-${key}`), {
-        type: 'bar',
-        data: { labels, datasets: [{ data: histogram.counts, backgroundColor: colours[0] }] },
-        options: {
-          plugins: { legend: { display: false } },
-          scales: { x: { ticks: { maxRotation: 60 }, grid: { display: false } }, y: { beginAtZero: true, ticks: { precision: 0 } } },
-        },
-      });
+      // What lies beyond the edges is counted in the first and the last bin.
+      const last = histogram.counts.length - 1;
+      const labels = histogram.counts.map((_, i) =>
+        i === last ? `≥ ${histogram.edges[i]}` : i === 0 ? `< ${histogram.edges[1]}` : `${histogram.edges[i]}–${histogram.edges[i + 1]}`);
+      bars(`hist-${key}`, labels, histogram.counts, colours[0]);
     }
-    new Chart(byId('states'), {
+    bars('classes', Object.keys(data.classes), Object.values(data.classes), colours[0]);
+    bars('negatives', ['with an intruder', 'without'], [data.frames_with_intruder, data.frames - data.frames_with_intruder], [colours[0], colours[8]], 'y');
+    bars('states', ['visible', 'hidden', 'outside', 'behind', 'ended'], data.states, colours, 'y');
+    drawCentres();
+  };
+
+  // Bars along x, or lying along y; every one has its label.
+  const bars = (id, labels, counts, colour, along = 'x') => {
+    const count = { beginAtZero: true, ticks: { precision: 0, maxTicksLimit: 6 } };
+    const names = along === 'x' ? bins() : { ticks: { autoSkip: false }, grid: { display: false } };
+    new Chart(byId(id), {
       type: 'bar',
-      data: {
-        labels: ['visible', 'hidden', 'outside', 'behind', 'ended'],
-        datasets: [{ data: data.states, backgroundColor: colours }],
+      data: { labels, datasets: [{ data: counts, backgroundColor: colour }] },
+      options: { indexAxis: along, plugins: { legend: { display: false } }, scales: along === 'x' ? { x: names, y: count } : { x: count, y: names } },
+    });
+  };
+
+  // A cell is as dark as it has boxes (square root); the picture's upper left corner is the plot's.
+  const drawCentres = () => {
+    const { columns, rows, counts } = data.centres;
+    const top = most(counts) || 0;
+    byId('most').textContent = `; darkest: ${counted(top, 'box', 'boxes')} of ${number(counts.reduce((a, b) => a + b, 0))}`;
+    const cells = {
+      id: 'cells',
+      beforeDatasetsDraw: (chart) => {
+        const { left, top: above, width, height } = chart.chartArea;
+        counts.forEach((count, i) => {
+          if (!count) return;
+          chart.ctx.globalAlpha = 0.15 + 0.85 * Math.sqrt(count / top);
+          chart.ctx.fillStyle = colours[0];
+          const [x, y] = [i % columns, Math.floor(i / columns)];
+          chart.ctx.fillRect(left + (x * width) / columns, above + (y * height) / rows, width / columns + 0.5, height / rows + 0.5);
+        });
+        chart.ctx.globalAlpha = 1;
       },
-      options: { indexAxis: 'y', plugins: { legend: { display: false } }, scales: { x: { ticks: { precision: 0, maxTicksLimit: 5 } } } },
+    };
+    const share = (more) => ({ type: 'linear', min: 0, max: 100, ticks: { stepSize: 25 }, ...more });
+    new Chart(byId('centres'), {
+      type: 'scatter',
+      data: { datasets: [{ data: [] }] },
+      options: { events: [], plugins: { legend: { display: false }, tooltip: { enabled: false } }, scales: { x: share({ position: 'bottom' }), y: share({ reverse: true }) } },
+      plugins: [cells],
     });
   };
 
@@ -100,7 +132,7 @@
     const sets = [line('camera height, m', camera.frame.map((x, i) => ({ x, y: -camera.down_m[i] })), '#7d8590')];
     sequence.intruders.forEach((intruder, k) =>
       sets.push(line(`${intruder.id} height, m`, intruder.frame.map((x, i) => ({ x, y: intruder.down_m[i] === null ? null : -intruder.down_m[i] })), colours[k % colours.length])));
-    sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#bf8700', { yAxisID: 'shift', borderWidth: 1 }));
+    sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#B8B000', { yAxisID: 'shift', borderWidth: 1 }));
     return new Chart(canvas, {
       type: 'scatter',
       data: { datasets: sets },
@@ -114,7 +146,7 @@
       const colour = colours[k % colours.length];
       sets.push(line(`${intruder.id} range, m`, intruder.frame.map((x, i) => ({ x, y: intruder.range_m[i] })), colour));
       sets.push(line('width, px', intruder.frame.map((x, i) => ({ x, y: intruder.width_px[i] })), colour, { yAxisID: 'px', borderDash: [4, 3] }));
-      sets.push(line('height, px', intruder.frame.map((x, i) => ({ x, y: intruder.height_px[i] })), '#2da44e', { yAxisID: 'px', borderDash: [2, 3] }));
+      sets.push(line('height, px', intruder.frame.map((x, i) => ({ x, y: intruder.height_px[i] })), colour, { yAxisID: 'px', borderDash: [2, 3] }));
     });
     return new Chart(canvas, {
       type: 'scatter',
@@ -123,14 +155,113 @@
     });
   };
 
-  const picture = (kind, index) => {
-    const holder = byId(`${kind}-${index}`);
+  const picture = (id) => {
+    const holder = byId(id);
     return holder ? `data:image/jpeg;base64,${holder.textContent}` : null;
+  };
+  const address = (path) => path.split('/').map(encodeURIComponent).join('/');
+
+  // Plays the frames that the page holds, each with its number and boxes; and, where the browser knows its
+  // format and it is still where it was, the video file itself.
+  const playerOf = (sequence) => {
+    const place = element('div', undefined, 'film');
+    const canvas = element('canvas');
+    canvas.width = 400;
+    canvas.height = Math.max(1, Math.round((400 * sequence.height) / sequence.width));
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `Frames of ${sequence.name}`);
+    const controls = element('div', undefined, 'scrub');
+    const button = element('button', 'Play');
+    button.type = 'button';
+    const slider = element('input');
+    slider.type = 'range';
+    slider.min = 0;
+    slider.max = Math.max(0, sequence.stills.length - 1);
+    slider.setAttribute('aria-label', 'Frame');
+    controls.append(button, slider);
+    const caption = element('p', '', 'note');
+    place.append(canvas, controls, caption);
+    let at = sequence.poster;
+    let playing = 0;
+    let asked = 0;
+
+    // Picture, boxes, caption and slider change together, once the picture is decoded.
+    const show = (index) => new Promise((done) => {
+      at = index;
+      asked += 1;
+      const mine = asked;
+      const still = sequence.stills[index];
+      const image = new Image();
+      image.onerror = done;
+      image.onload = () => {
+        if (mine === asked) {
+          const context = canvas.getContext('2d');
+          context.drawImage(image, 0, 0, canvas.width, canvas.height);
+          const scale = canvas.width / sequence.width;
+          for (const [intruder, x, y, width, height] of still.boxes)
+            for (const [colour, thickness] of [['#000000', 3.5], [colours[intruder % colours.length], 1.8]]) {
+              context.strokeStyle = colour;
+              context.lineWidth = thickness;
+              context.strokeRect(x * scale - 2, y * scale - 2, width * scale + 4, height * scale + 4);
+            }
+          caption.textContent = `frame ${still.frame}` + (still.boxes.length ? '' : ', no intruder is seen');
+          slider.value = index;
+        }
+        done();
+      };
+      image.src = picture(`still-${sequence.index}-${index}`);
+    });
+    const stop = () => {
+      playing += 1;
+      button.textContent = 'Play';
+    };
+    const play = async () => {
+      playing += 1;
+      const mine = playing;
+      button.textContent = 'Pause';
+      const pause = Math.max(40, Math.min(400, (1000 * sequence.seconds) / Math.max(1, sequence.stills.length)));
+      if (at >= sequence.stills.length - 1) await show(0);
+      while (mine === playing && at < sequence.stills.length - 1)
+        await Promise.all([show(at + 1), new Promise((done) => setTimeout(done, pause))]);
+      if (mine === playing) stop();
+    };
+    button.addEventListener('click', () => (button.textContent === 'Play' ? play() : stop()));
+    slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
+
+    const addFile = () => {
+      const open = element('button', 'Play the file');
+      open.type = 'button';
+      controls.append(open);
+      open.addEventListener('click', () => {
+        stop();
+        const video = element('video');
+        video.controls = true;
+        video.muted = true;
+        video.playsInline = true;
+        video.addEventListener('error', () => {
+          video.replaceWith(canvas);
+          controls.hidden = false;
+          open.remove();
+          caption.textContent = 'the video file is not beside this page, or of no format that this browser plays';
+        });
+        video.src = address(sequence.video);
+        canvas.replaceWith(video);
+        controls.hidden = true;
+        caption.textContent = 'the video file, every frame; without boxes';
+        video.play().catch(() => {});
+      });
+    };
+    const begin = () => {
+      if (!sequence.stills.length) { place.replaceChildren(element('p', 'no pictures', 'note')); return; }
+      if (sequence.video) addFile();
+      show(at);
+    };
+    return { place, begin };
   };
 
   const link = (path) => {
     const a = element('a', path.split('/').pop());
-    a.href = path.split('/').map(encodeURIComponent).join('/');
+    a.href = address(path);
     return a;
   };
 
@@ -141,14 +272,13 @@
     const light = sequence.sun_elevation_deg === null ? '' :
       ` · sun ${number(sequence.sun_azimuth_deg)}° / ${number(sequence.sun_elevation_deg)}° high`;
     card.append(element('p',
-      `${sequence.aircraft.join(', ') || 'nothing labelled'} over ${sequence.background} · ${number(sequence.frames)} frames, ${number(sequence.seconds, 1)} s, ` +
+      `${sequence.aircraft.join(', ') || (sequence.visible ? 'nothing labelled' : 'no intruder (a negative)')} over ${sequence.background} · ${counted(sequence.frames, 'frame')}, ${number(sequence.seconds, 1)} s, ` +
       `${sequence.width}×${sequence.height} · seen in ${number(sequence.visible)}, hidden in ${number(sequence.hidden)} · ` +
-      `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` +
+      (sequence.visible ? `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` : '') +
       `contrast ${number(sequence.contrast, 1)}${light}${sequence.motion_model ? ` · motion: ${sequence.motion_model}` : ''}`));
     const row = element('div', undefined, 'row');
     const pictures = element('div', undefined, 'pictures');
-    const image = element('img');
-    image.alt = `A frame of ${sequence.name}`;
+    const player = playerOf(sequence);
     const pair = element('div', undefined, 'pair');
     const loop = element('div', undefined, 'loop');
     loop.setAttribute('role', 'img');
@@ -156,7 +286,7 @@
     const links = element('div', undefined, 'links');
     sequence.files.forEach((path) => links.append(link(path)));
     pair.append(loop, links);
-    pictures.append(image, pair);
+    pictures.append(player.place, pair);
     row.append(pictures);
     const plots = ['plan', 'profile', 'sizes'].map(() => {
       const plot = element('div', undefined, 'plot');
@@ -166,9 +296,8 @@
     });
     card.append(row);
     card.draw = () => {
-      const preview = picture('preview', sequence.index);
-      if (preview) image.src = preview; else image.remove();
-      const strip = picture('loop', sequence.index);
+      player.begin();
+      const strip = picture(`loop-${sequence.index}`);
       if (strip) {
         const side = sequence.loop_side;
         loop.style.backgroundImage = `url(${strip})`;
@@ -203,6 +332,7 @@
     const shown = data.sequences.filter((s) =>
       s.name.toLowerCase().includes(find) &&
       (!byId('aircraft').value || s.aircraft.includes(byId('aircraft').value)) &&
+      (!byId('shows').value || (byId('shows').value === 'some') === s.visible > 0) &&
       (!byId('background').value || s.background === byId('background').value) &&
       (!limited || (s.nearest !== null && s.nearest >= from && s.nearest <= to)));
     const order = byId('descending').checked ? -1 : 1;
