@@ -133,7 +133,10 @@ class Slurm(unittest.TestCase):
         """The words that a shell makes of the script's command are the ones that were given, and nothing else is run."""
         odd = "a'b\"c $(touch EVIL) `touch EVIL` ; touch EVIL # %a -x &"
         catalogue = write(odd + "/cat\nalogue.toml", SKY + RANDOM)
-        work, verify = self.scripts(odd + "/out", catalogue, "--background", "sky=" + write("v\n#SBATCH --x/video '1'.mp4", ""))
+        video = write("v\n#SBATCH --x/video '1'.mp4", "")
+        run("synth", "-o", path("plain.mp4"), "--width", "64", "--height", "48", "--frames", "2")
+        os.replace(path("plain.mp4"), video)
+        work, verify = self.scripts(odd + "/out", catalogue, "--background", "sky=" + video)
         for text, number in ((work, 2), (verify, 3)):
             directives = [line for line in text.split("exec ")[0].splitlines()]
             self.assertEqual(directives[0], "#!/bin/sh")
