@@ -134,7 +134,8 @@ class Slurm(unittest.TestCase):
         odd = "a'b\"c $(touch EVIL) `touch EVIL` ; touch EVIL # %a -x &"
         catalogue = write(odd + "/cat\nalogue.toml", SKY + RANDOM)
         video = write("v\n#SBATCH --x/video '1'.mp4", "")
-        run("synth", "-o", path("plain.mp4"), "--width", "64", "--height", "48", "--frames", "2")
+        made = run("synth", "-o", path("plain.mp4"), "--width", "160", "--height", "120", "--frames", "4")
+        self.assertEqual(made.returncode, 0, made.stderr)
         os.replace(path("plain.mp4"), video)
         work, verify = self.scripts(odd + "/out", catalogue, "--background", "sky=" + video)
         for text, number in ((work, 2), (verify, 3)):
