@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/console.h"
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -41,16 +42,30 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// Nobody can be told that standard error cannot be written.
+// A failure to write to standard error has nowhere to be reported.
 void to_standard_error(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
+std::string log_line(const char* level, const std::string& message, bool json) {
+  if (!json) return fmt::format("airtruth: {}: {}\n", level, one_line(message));
+  const nlohmann::ordered_json line = {{"level", level}, {"message", message}};
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+// An interrupt is reported once, by the main thread or by the thread that ends the process,
+// whichever comes first.
+std::atomic<bool> interrupt_reported{false};
+std::atomic<bool> interrupt_as_json{false};
+constexpr const char* kInterruptedWords = "interrupted; nothing half-made is left behind";
+
 }  // namespace
 
 Console::Console(const ConsoleOptions& options)
-    : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {
+  interrupt_as_json = options.json_log;
+}
 
 void Console::progress(const std::string& stage,
                        std::int64_t done,
@@ -93,16 +108,14 @@ void Console::end_progress() {
 
 void Console::log(const char* level, const std::string& message) {
   end_progress();
-  if (options_.json_log) {
-    const nlohmann::ordered_json line = {{"level", level}, {"message", message}};
-    to_standard_error(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  } else {
-    to_standard_error(fmt::format("airtruth: {}: {}\n", level, one_line(message)));
-  }
+  to_standard_error(log_line(level, message, options_.json_log));
 }
 
 void Console::warning(const std::string& message) { log("warning", message); }
 void Console::error(const std::string& message) { log("error", message); }
+void Console::interrupted() {
+  if (!interrupt_reported.exchange(true)) error(kInterruptedWords);
+}
 
 void Console::result(const std::string& message) {
   end_progress();
@@ -135,8 +148,11 @@ constexpr timespec kGrace{.tv_sec = 1, .tv_nsec = 300'000'000};
 
 [[noreturn]] void end_now() {
   undo_unfinished();
-  const std::string words = std::string("airtruth: error: ") + kInterruptedWords + "\n";
-  if (::write(STDERR_FILENO, words.data(), words.size()) < 0) std::_Exit(kInterrupted);
+  if (!interrupt_reported.exchange(true)) {
+    const std::string line = log_line("error", kInterruptedWords, interrupt_as_json);
+    // Not through stdio, whose lock another thread may hold for ever.
+    if (::write(STDERR_FILENO, line.data(), line.size()) < 0) std::_Exit(kInterrupted);
+  }
   std::_Exit(kInterrupted);
 }
 

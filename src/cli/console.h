@@ -28,6 +28,7 @@ class Console {
   void end_progress();
   void warning(const std::string& message);
   void error(const std::string& message);
+  void interrupted();  // the error of a run that was interrupted; once for the whole process
   void result(const std::string& message);  // what the run made; nothing when quiet
   // To standard output as it stands. Error where it cannot be written; but nothing where its reader
   // has left, who wants no more of it.
@@ -49,7 +50,6 @@ class Console {
 };
 
 inline constexpr int kInterrupted = 130;  // the exit code
-inline constexpr const char* kInterruptedWords = "interrupted; nothing half-made is left behind";
 
 // Opens /dev/null as standard input, output or error where the caller closed it, so that no file
 // that is opened later takes its number and is written over by messages; and makes a pipe that is

@@ -82,7 +82,8 @@ int run(CLI::App& app,
     say(std::string(error.what()) + " (see --help)");
     return kBadInput;
   } catch (const Interrupted&) {
-    say(cli::kInterruptedWords);
+    if (!console) console.emplace(options);
+    console->interrupted();
     return cli::kInterrupted;
   } catch (const Error& error) {
     say(error.what());

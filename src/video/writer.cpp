@@ -48,6 +48,21 @@ Colour stored_colour(const Colour& colour, Format format, const fs::path& path) 
   return stored;
 }
 
+// H.264 halves chroma in whole samples. libx264 refuses such a size too, but leaks memory where it
+// does.
+void check_size(const StreamInfo& info, Chroma chroma, Format format, const fs::path& path) {
+  const bool half_width = chroma == Chroma::k420 || chroma == Chroma::k422;
+  const bool half_height = chroma == Chroma::k420;
+  if (format != Format::kMp4 ||
+      ((!half_width || info.width % 2 == 0) && (!half_height || info.height % 2 == 0)))
+    return;
+  throw Error("H.264 cannot hold " + std::to_string(info.width) + "x" +
+                  std::to_string(info.height) +
+                  " with halved chroma (an odd size); expected output.video = \"mkv\", \"avi\" or "
+                  "\"png\"",
+              {path.string()});
+}
+
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
   const bool jpeg = format == Format::kAvi;
   if (colour.matrix == Matrix::kRgb) return AV_PIX_FMT_BGR0;
@@ -192,12 +207,7 @@ void Writer::State::open_codec() {
   set_codec_options(&settings);
   const int opened = avcodec_open2(codec.get(), encoder, &settings);
   av_dict_free(&settings);
-  if (opened >= 0) return;
-  if (options.format == Format::kMp4 && (info.width % 2 != 0 || info.height % 2 != 0) &&
-      stored.chroma != Chroma::k444)
-    fail("H.264 cannot hold " + std::to_string(info.width) + "x" + std::to_string(info.height) +
-         " with halved chroma (an odd size); expected output.video = \"mkv\", \"avi\" or \"png\"");
-  fail(std::string("cannot encode as ") + name + ": " + reason(opened));
+  if (opened < 0) fail(std::string("cannot encode as ") + name + ": " + reason(opened));
 }
 
 void Writer::State::open() {
@@ -258,6 +268,7 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->info = info;
   state_->options = options;
   state_->stored = stored_colour(info.colour, options.format, path);
+  check_size(info, state_->stored.chroma, options.format, path);
   state_->unfinished.emplace(Unfinished::path(state_->part));
   try {
     if (options.format == Format::kPng) {
