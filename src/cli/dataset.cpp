@@ -86,13 +86,13 @@ std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& 
                      aircraft.empty() ? "no intruder" : aircraft);
 }
 
-// "8 to 120 px, half of them below 31 px", of numbers in rising order.
-std::string spread_of(const std::vector<double>& values, const char* unit) {
+// "8 to 120 px, half of them below 31 px"
+std::string spread_words(const dataset::Spread& spread, const char* unit) {
   return fmt::format("{:.0f} to {:.0f} {}, half of them below {:.0f} {}",
-                     values.front(),
-                     values.back(),
+                     spread.low(),
+                     spread.high(),
                      unit,
-                     values[values.size() / 2],
+                     spread.median(),
                      unit);
 }
 
@@ -112,8 +112,8 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
   if (!types.empty())
     console.result(
         fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));
-  if (!plan.sizes_px.empty()) console.result("sizes: " + spread_of(plan.sizes_px, "px"));
-  if (!plan.ranges_m.empty()) console.result("ranges: " + spread_of(plan.ranges_m, "m"));
+  if (plan.sizes_px.count() > 0) console.result("sizes: " + spread_words(plan.sizes_px, "px"));
+  if (plan.ranges_m.count() > 0) console.result("ranges: " + spread_words(plan.ranges_m, "m"));
   if (plan.not_flyable == 0) return;
   for (const std::string& words : plan.not_flyable_words) console.warning(words);
   console.warning(fmt::format("{} of {} intruders have a path that their type cannot fly",

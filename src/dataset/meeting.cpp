@@ -22,6 +22,7 @@ constexpr double kPastClip_s = 1;
 constexpr double kTurnStepDeg = 4;
 constexpr double kTurnStep_s = 0.5;
 constexpr int kTurnMargin = 8;
+constexpr int kMostTurnSteps = 100'000;
 
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {
   const double azimuth = radians(encounter.azimuth_deg);
@@ -68,8 +69,17 @@ void lay_turn(scene::Intruder& intruder,
       kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
   const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
   const double begin_s = -kTurnMargin * step_s;
-  const auto steps =
-      static_cast<int>(std::ceil((clip_s + kPastClip_s - begin_s) / step_s)) + kTurnMargin;
+  const double span_s = clip_s + kPastClip_s - begin_s;
+  if (!(span_s / step_s < kMostTurnSteps))
+    throw Error(
+        fmt::format("bank_deg: a turn of {:.0f} degrees of bank at {:.1f} m/s over {:.0f} s "
+                    "is a path of more than {} points; expected a shorter clip",
+                    encounter.bank_deg,
+                    encounter.speed_mps,
+                    span_s,
+                    kMostTurnSteps),
+        intruder.where);
+  const auto steps = static_cast<int>(std::ceil(span_s / step_s)) + kTurnMargin;
   intruder.waypoints_ned_m.clear();
   for (int i = 0; i <= steps; ++i)
     intruder.waypoints_ned_m.push_back(

@@ -16,7 +16,7 @@ namespace {
 // What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
 constexpr double kCoreSecondsPerFrame = 0.034;
 constexpr double kCoreSecondsPerFlownFrame = 0.16;
-constexpr double kCoreSecondsPerCalibratedFrame = 0.037;
+constexpr double kCoreSecondsPerCalibratedFrame = 0.126;
 constexpr double kBytesPerFrame = 15'000;
 constexpr double kBytesPerSequence = 580'000;  // preview.jpg
 constexpr double kUsualPixels = 1280.0 * 960.0;
@@ -42,18 +42,14 @@ class Planner {
     for (const scene::Intruder& intruder : item.scene.intruders)
       ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
     for (const Encounter& encounter : item.drawn.encounters) {
-      if (encounter.size_px) plan_.sizes_px.push_back(*encounter.size_px);
-      if (encounter.range_m) plan_.ranges_m.push_back(*encounter.range_m);
+      if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
+      if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
     }
     const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
     fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
   }
 
-  Plan result() {
-    std::sort(plan_.sizes_px.begin(), plan_.sizes_px.end());
-    std::sort(plan_.ranges_m.begin(), plan_.ranges_m.end());
-    return std::move(plan_);
-  }
+  Plan result() { return std::move(plan_); }
 
  private:
   struct Facts {
@@ -112,6 +108,25 @@ class Planner {
 };
 
 }  // namespace
+
+void Spread::add(double value) {
+  constexpr std::size_t kMostKept = 65'536;
+  low_ = count_ == 0 ? value : std::min(low_, value);
+  high_ = count_ == 0 ? value : std::max(high_, value);
+  if (count_++ % every_ != 0) return;
+  kept_.push_back(value);
+  if (kept_.size() < kMostKept) return;
+  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+  kept_.resize(kMostKept / 2);
+  every_ *= 2;
+}
+
+double Spread::median() const {
+  std::vector<double> sorted = kept_;
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
 
 Plan plan_of(const Catalogue& catalogue,
              const std::function<void(const Item&)>& each,

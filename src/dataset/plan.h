@@ -12,6 +12,25 @@
 
 namespace airtruth::dataset {
 
+// Lowest, highest and middle of many numbers in bounded memory: of more than 65,536 the median is
+// that of every second, every fourth, ... of them.
+class Spread {
+ public:
+  void add(double value);
+  std::int64_t count() const { return count_; }
+  // Of at least one number.
+  double low() const { return low_; }
+  double high() const { return high_; }
+  double median() const;
+
+ private:
+  std::int64_t count_ = 0;
+  std::int64_t every_ = 1;
+  double low_ = 0;
+  double high_ = 0;
+  std::vector<double> kept_;
+};
+
 // What a catalogue would make. Nothing is rendered; of videos the head is read.
 struct Plan {
   std::int64_t sequences = 0;
@@ -22,8 +41,8 @@ struct Plan {
   // Intruders by type and by livery: "738" -> "738/738-Ryanair" -> 12. A model file is its own
   // type.
   std::map<std::string, std::map<std::string, std::int64_t>> aircraft;
-  std::vector<double> sizes_px;                // that were drawn, in rising order
-  std::vector<double> ranges_m;                // that were drawn, in rising order
+  Spread sizes_px;                             // that were drawn
+  Spread ranges_m;                             // that were drawn
   std::int64_t not_flyable = 0;                // intruders whose path their class cannot fly
   std::vector<std::string> not_flyable_words;  // of the first kMostNamed: "NAME: why"
   static constexpr std::size_t kMostNamed = 5;

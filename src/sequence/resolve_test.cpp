@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/resolve.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "base/files.h"
+#include "calibration/cache.h"
+#include "sequence/ambient.h"
+#include "sequence/motion_source.h"
+#include "sequence/world.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// A calibration that is in the cache, so that no video is read: the file holds its checksum alone.
+class Resolve : public testing::Test {
+ protected:
+  Resolve()
+      : root_(fs::temp_directory_path() / ("airtruth_resolve_" + std::to_string(::getpid()))) {
+    fs::create_directories(root_);
+    write_file(root_ / "clip.mkv", "no video");
+    scene_.background.video = root_ / "clip.mkv";
+    scene_.lens.vertical_fov_deg = 60;
+    scene_.camera_model.automatic = {"sensor.codec_step"};
+    info_.width = 640;
+    info_.height = 480;
+    options_.cache = root_;
+  }
+  ~Resolve() override { fs::remove_all(root_); }
+
+  void keep(const calibration::Calibration& calibration) const {
+    calibration::CacheKey key;
+    key.video_sha256 = sha256_of_file(scene_.background.video);
+    key.lens = words_of(lens_of(scene_.lens, {640, 480}));
+    key.altitude_m = 150;
+    key.tone = tone_of(scene_.camera_model);
+    calibration::store(root_ / "calibration", key, calibration);
+  }
+
+  fs::path root_;
+  scene::Scene scene_;
+  video::StreamInfo info_;
+  Options options_;
+};
+
+// The camera has turned by 30 degrees to the right when the scene begins, where it heads 10 degrees
+// from north: the sun, 100 degrees to the right of the clip's first frame, stands at 80 degrees.
+TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
+  calibration::Calibration found;
+  found.values["sensor.codec_step"] = {{7, 1}};
+  found.values["light.sun_azimuth_deg"] = {{100, 1}};
+  found.values["light.sun_elevation_deg"] = {{40, 1}};
+  found.yaw_from_first_deg = {0, 15, 30, 45};
+  keep(found);
+  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = 10;
+  scene_.background.first_frame = 2;
+  const scene::Scene second = resolved(scene_, info_, nullptr, options_);
+  EXPECT_NEAR(second.light.sun_azimuth_deg, 80, 1e-9);
+  EXPECT_DOUBLE_EQ(second.light.sun_elevation_deg, 40);
+  EXPECT_EQ(second.camera_model.codec_step, 7);
+  scene_.background.first_frame = 0;
+  EXPECT_NEAR(resolved(scene_, info_, nullptr, options_).light.sun_azimuth_deg, 110, 1e-9);
+  // From 0 to 360.
+  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = -150;
+  EXPECT_NEAR(resolved(scene_, info_, nullptr, options_).light.sun_azimuth_deg, 310, 1e-9);
+}
+
+// Whatever part of the clip a scene uses, it takes the one calibration.
+TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
+  calibration::Calibration found;
+  found.values["sensor.codec_step"] = {{1.0 / 3, 1}};
+  keep(found);
+  EXPECT_TRUE(needs_calibration(scene_));
+  for (const std::int64_t first : {0, 5, 100})
+    for (const std::int64_t count : {1, 90}) {
+      scene_.background.first_frame = first;
+      scene_.background.frame_count = count;
+      EXPECT_EQ(resolved(scene_, info_, nullptr, options_).camera_model.codec_step, 1.0 / 3);
+    }
+  scene_.camera_model.codec_step = 2;
+  EXPECT_FALSE(needs_calibration(scene_));
+}
+
+}  // namespace
+}  // namespace airtruth::sequence
