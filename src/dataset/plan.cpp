@@ -2,6 +2,8 @@
 #include "dataset/plan.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "base/error.h"
 #include "dataset/backgrounds.h"

@@ -38,6 +38,11 @@ class Resolve : public testing::Test {
     calibration::store(root_ / "calibration", key, calibration);
   }
 
+  scene::Scene resolve() const {
+    return resolved(stated(scene_, info_), {info_.width, info_.height}, nullptr, options_);
+  }
+  bool needs_calibration() const { return !stated(scene_, info_).to_measure.empty(); }
+
   fs::path root_;
   scene::Scene scene_;
   video::StreamInfo info_;
@@ -55,15 +60,15 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   keep(found);
   scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = 10;
   scene_.background.first_frame = 2;
-  const scene::Scene second = resolved(scene_, info_, nullptr, options_);
+  const scene::Scene second = resolve();
   EXPECT_NEAR(second.light.sun_azimuth_deg, 80, 1e-9);
   EXPECT_DOUBLE_EQ(second.light.sun_elevation_deg, 40);
   EXPECT_EQ(second.camera_model.codec_step, 7);
   scene_.background.first_frame = 0;
-  EXPECT_NEAR(resolved(scene_, info_, nullptr, options_).light.sun_azimuth_deg, 110, 1e-9);
+  EXPECT_NEAR(resolve().light.sun_azimuth_deg, 110, 1e-9);
   // From 0 to 360.
   scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = -150;
-  EXPECT_NEAR(resolved(scene_, info_, nullptr, options_).light.sun_azimuth_deg, 310, 1e-9);
+  EXPECT_NEAR(resolve().light.sun_azimuth_deg, 310, 1e-9);
 }
 
 // Whatever part of the clip a scene uses, it takes the one calibration.
@@ -71,15 +76,15 @@ TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
   calibration::Calibration found;
   found.values["sensor.codec_step"] = {{1.0 / 3, 1}};
   keep(found);
-  EXPECT_TRUE(needs_calibration(scene_));
+  EXPECT_TRUE(needs_calibration());
   for (const std::int64_t first : {0, 5, 100})
     for (const std::int64_t count : {1, 90}) {
       scene_.background.first_frame = first;
       scene_.background.frame_count = count;
-      EXPECT_EQ(resolved(scene_, info_, nullptr, options_).camera_model.codec_step, 1.0 / 3);
+      EXPECT_EQ(resolve().camera_model.codec_step, 1.0 / 3);
     }
   scene_.camera_model.codec_step = 2;
-  EXPECT_FALSE(needs_calibration(scene_));
+  EXPECT_FALSE(needs_calibration());
 }
 
 }  // namespace
