@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 from numbered_clip import HEIGHT, READ_NUMBER, WIDTH, box_of, write_otb
 
@@ -106,6 +107,8 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
 # Of a page on clips whose frames carry their numbers as pixels, and on sequences of which half have no intruder.
 PLAY = """
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+// The browser's virtual clock runs ahead of what decodes a video, but stands while an answer is awaited.
+const realPause = async () => { await fetch('/pause'); await wait(1); };
 """ + READ_NUMBER + """
 (async () => {
   const text = await (await fetch('PAGE')).text();
@@ -144,7 +147,7 @@ const wait = (ms) => new Promise((done) => setTimeout(done, ms));
     const film = file.closest('.film');
     file.click();
     const video = film.querySelector('video');
-    for (let k = 0; k < 60 && film.querySelector('video') && !video.videoWidth; ++k) await wait(100);
+    for (let k = 0; k < 300 && film.querySelector('video') && !video.videoWidth; ++k) await realPause();
     out.video = [video.videoWidth, video.videoHeight, film.querySelectorAll('video').length];
   }
   out.found = frame.contentWindow.found;
@@ -214,14 +217,28 @@ def played(airtruth, browser, root):
         sys.exit("report_page_test:\n  " + "\n  ".join(faults))
 
 
+class Handler(http.server.SimpleHTTPRequestHandler):
+    """Files of a folder, and /pause, which answers after a tenth of a second."""
+
+    def do_GET(self):
+        if self.path != "/pause":
+            super().do_GET()
+            return
+        time.sleep(0.1)
+        self.send_response(204)
+        self.end_headers()
+
+    def log_message(self, *_):
+        pass
+
+
 def looked_at(browser, folder, size, look=LOOK):
     """What the script `look` found in the page that it fetches from `folder`, in a frame of `size`."""
     width, height = size
     with open(os.path.join(folder, "look.html"), "w", encoding="utf-8") as page:
         page.write(f'<!DOCTYPE html><meta charset="utf-8"><pre id="result"></pre>'
                    f'<iframe id="frame" width="{width}" height="{height}"></iframe><script>{look}</script>')
-    quiet = type("Quiet", (http.server.SimpleHTTPRequestHandler,), {"log_message": lambda *_: None})
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(quiet, directory=folder))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=folder))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     command = [browser, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},{height}",
                f"--user-data-dir={os.path.join(folder, '.profile')}", "--virtual-time-budget=20000", "--dump-dom",
