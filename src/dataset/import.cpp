@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -77,6 +78,16 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
   return record;
 }
 
+void expect_rate(const exchange::Clip& clip, const fs::path& source) {
+  constexpr double kHighestRate_hz = 1e6;  // as in labels.jsonl
+  if (clip.frame_rate_hz && !(*clip.frame_rate_hz > 0 && *clip.frame_rate_hz <= kHighestRate_hz))
+    throw Error(fmt::format("{}: the frame rate is {} Hz; expected a number above 0, up to {}",
+                            clip.name,
+                            *clip.frame_rate_hz,
+                            kHighestRate_hz),
+                {source.string()});
+}
+
 // Names that are good for a folder, each once.
 std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   std::string name = wanted;
@@ -113,12 +124,11 @@ ImportSummary import_set(const fs::path& source,
     if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
     if (video != options.videos.end()) clip.media = video->second;
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
-    if (utf8_fault(clip.media.string()) != std::string::npos)
-      throw Error("is no UTF-8 name, which labels.jsonl cannot hold; rename it",
-                  {clip.media.string()});
+    require_utf8(clip.media);
     match_pictures(clip, options.warn);
     ask_video(clip, options.warn);
     clip.name = free_name(clip.name, taken);
+    expect_rate(clip, source);
   }
   // Nothing is written before everything is read.
   ImportSummary summary;

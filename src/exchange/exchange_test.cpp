@@ -560,6 +560,45 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
 }
 
+TEST(Labels, NumbersOutOfRangeAreOneLine) {
+  const Folder folder;
+  const std::string head = R"({"format":"airtruth labels 1","name":"s"})";
+  const auto error = [&](const std::string& text) {
+    try {
+      read_labels(folder.file("labels.jsonl", text));
+    } catch (const Error& found) {
+      return found.message() + " at " + std::to_string(found.where().line);
+    }
+    return std::string("no error");
+  };
+  const auto of_head = [&](const std::string& more) {
+    return error(head.substr(0, head.size() - 1) + "," + more + "}\n");
+  };
+  // 2^32 + 640 is 640 in 32 bits, and 2^64 - 1 is -1 in 64.
+  EXPECT_EQ(of_head(R"("width":4294967936)"),
+            "width is 4294967936; expected a whole number from 1 to 1000000 at 1");
+  EXPECT_EQ(of_head(R"("height":-4)"),
+            "height is -4; expected a whole number from 1 to 1000000 at 1");
+  EXPECT_EQ(of_head(R"("width":1e308)"),
+            "width is 1e+308; expected a whole number from 1 to 1000000 at 1");
+  EXPECT_EQ(of_head(R"("frame_rate_hz":0)"),
+            "frame_rate_hz is 0; expected a number above 0, up to 1000000 at 1");
+  EXPECT_EQ(of_head(R"("frame_rate_hz":"x")"), "frame_rate_hz is \"x\"; expected a number at 1");
+  EXPECT_EQ(error(head + "\n{\"frame\":18446744073709551615,\"labels\":[]}\n"),
+            "frame is 18446744073709551615; expected a whole number from 0 to 9007199254740992 at "
+            "2");
+  EXPECT_EQ(error(head + "\n{\"frame\":0.5,\"labels\":[]}\n"),
+            "frame is 0.5; expected a whole number from 0 to 9007199254740992 at 2");
+  EXPECT_EQ(error(head + R"(
+{"frame":0,"labels":[{"track":1e30,"category":"a","box_px":[1,2,3,4]}]})"),
+            "track is 1e+30; expected a whole number from -9007199254740992 to 9007199254740992 at "
+            "2");
+  EXPECT_EQ(error(head + R"(
+{"frame":0,"labels":[{"track":1,"category":"a","box_px":[1,2,3,1e999]}]})"),
+            "is no line of labels at 2");
+  EXPECT_EQ(of_head(R"("width":640,"height":480,"frame_rate_hz":29.97)"), "no error");
+}
+
 TEST(Format, IsKnownByNameAndNearMissesAreHelped) {
   for (const Format format : kWritten) EXPECT_EQ(format_from_name(name(format)), format);
   try {

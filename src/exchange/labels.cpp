@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exchange/labels.h"
 
+#include <array>
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -21,9 +23,44 @@ void put(Json& json, const char* key, const std::optional<T>& value) {
   if (value) json[key] = *value;
 }
 
+// Whole numbers that a double holds exactly, as all numbers of the formats that are imported.
+constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
+constexpr std::int64_t kLongestSide_px = 1'000'000;
+constexpr double kHighestRate_hz = 1e6;
+
 template <typename T>
 std::optional<T> get(const Json& json, const char* key) {
   return json.contains(key) ? std::optional(json.at(key).get<T>()) : std::nullopt;
+}
+
+[[noreturn]] void fail(const Json& value, const char* key, const std::string& expected) {
+  throw Error(fmt::format("{} is {}; expected {}", key, value.dump().substr(0, 40), expected));
+}
+
+// The text of a number is read as it stands: get<int>() would cut it to the type's width.
+std::int64_t whole(const Json& json, const char* key, std::int64_t least, std::int64_t most) {
+  const Json& value = json.at(key);
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(number >= double(least) && number <= double(most)) || number != std::floor(number))
+    fail(value, key, fmt::format("a whole number from {} to {}", least, most));
+  return static_cast<std::int64_t>(number);
+}
+
+std::optional<double> maybe_number(const Json& json, const char* key) {
+  if (!json.contains(key)) return std::nullopt;
+  if (!json.at(key).is_number()) fail(json.at(key), key, "a number");
+  return json.at(key).get<double>();
+}
+
+int side(const Json& json, const char* key) {
+  return json.contains(key) ? static_cast<int>(whole(json, key, 1, kLongestSide_px)) : 0;
+}
+
+std::optional<double> rate(const Json& json, const char* key) {
+  const auto found = maybe_number(json, key);
+  if (found && !(*found > 0 && *found <= kHighestRate_hz))
+    fail(json.at(key), key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
+  return found;
 }
 
 Json json_of(const Label& label) {
@@ -41,22 +78,22 @@ Json json_of(const Label& label) {
 
 Label label_of(const Json& json) {
   Label label;
-  label.track = json.at("track").get<std::int64_t>();
+  label.track = whole(json, "track", -kLargestWhole, kLargestWhole);
   label.category = json.at("category").get<std::string>();
   const auto box = json.at("box_px").get<std::array<double, 4>>();
   label.box_px = {box[0], box[1], box[2], box[3]};
-  label.visible = get<double>(json, "visible");
+  label.visible = maybe_number(json, "visible");
   label.occluded = get<bool>(json, "occluded");
   label.truncated = get<bool>(json, "truncated");
-  label.range_m = get<double>(json, "range_m");
+  label.range_m = maybe_number(json, "range_m");
   label.above_horizon = get<bool>(json, "above_horizon");
   return label;
 }
 
 LabelledFrame frame_of(const Json& json) {
   LabelledFrame frame;
-  frame.frame = json.at("frame").get<std::int64_t>();
-  frame.time_s = get<double>(json, "time_s");
+  frame.frame = whole(json, "frame", 0, kLargestWhole);
+  frame.time_s = maybe_number(json, "time_s");
   for (const Json& label : json.at("labels")) frame.labels.push_back(label_of(label));
   return frame;
 }
@@ -67,9 +104,9 @@ Clip clip_of(const Json& json) {
   Clip clip;
   clip.name = json.at("name").get<std::string>();
   clip.media = get<std::string>(json, "media").value_or("");
-  clip.width = get<int>(json, "width").value_or(0);
-  clip.height = get<int>(json, "height").value_or(0);
-  clip.frame_rate_hz = get<double>(json, "frame_rate_hz");
+  clip.width = side(json, "width");
+  clip.height = side(json, "height");
+  clip.frame_rate_hz = rate(json, "frame_rate_hz");
   return clip;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -19,6 +20,10 @@
 
 namespace airtruth::sequence {
 namespace {
+
+// Every frame up to the last that is labelled is held, and numbers in the names of pictures can be
+// anything: 9 hours at 30 frames/s.
+constexpr std::int64_t kMostFrames = 1'000'000;
 
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
   video::ReaderOptions options;
@@ -81,6 +86,10 @@ Finished open_labelled(const fs::path& folder) {
   finished.video = clip.media;
   if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
   for (const exchange::LabelledFrame& frame : clip.frames) {
+    if (frame.frame >= kMostFrames)
+      throw Error(
+          fmt::format("labels frame {}; expected frames below {}", frame.frame, kMostFrames),
+          {(folder / "labels.jsonl").string()});
     while (std::ssize(finished.truth.frames) < frame.frame) {
       finished.truth.frames.emplace_back();
       finished.truth.frames.back().frame = std::ssize(finished.truth.frames) - 1;
@@ -103,6 +112,10 @@ Finished open_finished(const fs::path& folder) {
   try {
     const auto record = nlohmann::json::parse(read_file(record_file));
     finished.name = record.at("name").get<std::string>();
+    // A record that was tampered with names no file elsewhere.
+    if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
+      throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
+                  {record_file.string()});
     finished.has_covered_boxes = record.contains("covered_alpha");
     finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
   } catch (const nlohmann::json::exception& error) {
