@@ -189,6 +189,7 @@ class Comparing {
             const fs::path& out,
             const Options& options)
       : real_(real), boxes_(boxes), options_(options), staged_(out, options.overwrite) {
+    require_utf8(fs::absolute(real));
     if (scene.intruders.empty()) throw Error("has no intruder to compare", {scene.file.string()});
     if (options.most_frames > 0)
       while (boxes_.rbegin()->first - boxes_.begin()->first + 1 > options.most_frames)

@@ -21,6 +21,15 @@ struct Clip {
   std::vector<int> real;
 };
 
+// What a float holds, with room for the sums of a classifier.
+double feature(const std::string& cell, const Where& where) {
+  constexpr double kLargest = 1e9;
+  const double value = finite_number(cell, where);
+  if (std::abs(value) > kLargest)
+    throw Error("'" + cell.substr(0, 40) + "' is no feature; expected a number within 1e9", where);
+  return value;
+}
+
 Clip read_clip(const fs::path& folder) {
   const fs::path file = folder / "patches.csv";
   if (!fs::is_regular_file(file))
@@ -33,12 +42,19 @@ Clip read_clip(const fs::path& folder) {
   for (int row = 2; std::getline(lines, line); ++row) {
     std::vector<float> values;
     for (const std::string& cell : cells_of(line))
-      values.push_back(static_cast<float>(finite_number(cell, {file.string(), row})));
+      values.push_back(static_cast<float>(feature(cell, {file.string(), row})));
     if (values.size() < 3) throw Error("has too few cells", {file.string(), row});
+    if (!clip.features.empty() && values.size() != clip.features[0].size() + 2)
+      throw Error(fmt::format("has {} cells; expected {}, as the line before",
+                              values.size(),
+                              clip.features[0].size() + 2),
+                  {file.string(), row});
     clip.real.push_back(values[0] > 0.5F ? 1 : 0);
     clip.features.emplace_back(values.begin() + 2, values.end());
   }
-  if (clip.features.size() < 4) throw Error("holds fewer than two pairs", {file.string()});
+  const auto real = std::count(clip.real.begin(), clip.real.end(), 1);
+  if (real < 2 || std::ssize(clip.real) - real < 2)
+    throw Error("holds fewer than two pairs", {file.string()});
   return clip;
 }
 
