@@ -178,6 +178,13 @@ std::size_t utf8_fault(std::string_view text) {
   return std::string_view::npos;
 }
 
+void require_utf8(const fs::path& path) {
+  if (utf8_fault(path.string()) != std::string_view::npos)
+    throw Error(
+        "is no UTF-8 name, which records and the files of other formats cannot hold; rename it",
+        {path.string()});
+}
+
 fs::path cache_folder() {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')
     return fs::path(xdg) / "airtruth";

@@ -38,6 +38,9 @@ std::string sha256_of(std::string_view bytes);
 // Is the text well-formed UTF-8? Returns the byte offset of the first fault, or npos.
 std::size_t utf8_fault(std::string_view text);
 
+// Error where a path is no UTF-8: records are JSON and TOML, which hold no other text.
+void require_utf8(const fs::path& path);
+
 // $XDG_CACHE_HOME/airtruth, else ~/.cache/airtruth, else a folder under the temporary directory.
 fs::path cache_folder();
 

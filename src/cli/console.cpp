@@ -86,7 +86,7 @@ void Console::progress(const std::string& stage,
   if (options_.json_log) {
     nlohmann::ordered_json line = {
         {"level", "progress"}, {"stage", stage}, {"done", done}, {"total", total}, {"per_s", rate}};
-    to_standard_error(line.dump() + "\n");
+    to_standard_error(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return;
   }
   std::string text =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <sstream>
@@ -87,6 +88,9 @@ int run(CLI::App& app,
     return cli::kInterrupted;
   } catch (const Error& error) {
     say(error.what());
+    return kBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    say(Error(error.code().message(), {error.path1().string()}).what());
     return kBadInput;
   } catch (const std::exception& error) {
     say(std::string(error.what()) +

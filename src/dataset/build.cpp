@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file_lock.h"
+#include "base/files.h"
 #include "base/pattern.h"
 #include "dataset/backgrounds.h"
 #include "dataset/check.h"
@@ -172,7 +173,10 @@ class Work {
 BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
   check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
   const sequence::Stopwatch watch;
+  // Records of sequences name their backgrounds in full: virtual flights lie in the data set.
+  require_utf8(fs::absolute(out));
   for (const auto& [name, video] : options.videos) {
+    require_utf8(fs::absolute(video));
     const bool known = std::any_of(catalogue.backgrounds.begin(),
                                    catalogue.backgrounds.end(),
                                    [&, n = name](const Background& b) { return b.name == n; });

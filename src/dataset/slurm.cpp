@@ -110,6 +110,7 @@ std::string first_line(const std::string& command) {
 
 Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options) {
   const fs::path root = fs::absolute(out).lexically_normal();
+  require_utf8(root);
   const auto odd = [](char c) {
     return !std::isalnum(static_cast<unsigned char>(c)) &&
            std::string_view("_-.,").find(c) == std::string_view::npos;

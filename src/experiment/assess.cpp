@@ -31,6 +31,7 @@ const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96}
 
 std::string name_of(const fs::path& folder) {
   const fs::path plain = fs::absolute(folder).lexically_normal();
+  require_utf8(plain);
   return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
 }
 

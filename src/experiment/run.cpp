@@ -119,6 +119,7 @@ const Box* truth_of(const exchange::LabelledFrame& frame) {
 class Running {
  public:
   Running(const fs::path& out, const RunOptions& options) : options_(options) {
+    require_utf8(options.tracker);
     try {
       const tracking::TrackerName name =
           tracking::named(options.tracker, tracker_options(options, options.seed));

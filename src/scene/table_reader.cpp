@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/files.h"
 #include "base/suggest.h"
 #include "scene/key_log.h"
 
@@ -258,7 +259,10 @@ std::optional<std::string> TableReader::choice(std::string_view key, Keys choice
 std::optional<std::filesystem::path> TableReader::path(std::string_view key) const {
   const auto name = text(key);
   if (!name) return std::nullopt;
-  return (std::filesystem::path(file_).parent_path() / *name).lexically_normal();
+  auto path = (std::filesystem::path(file_).parent_path() / *name).lexically_normal();
+  // The record of a sequence names it in full.
+  require_utf8(std::filesystem::absolute(path));
+  return path;
 }
 
 const toml::array& TableReader::array(std::string_view key, std::string_view expected) const {
