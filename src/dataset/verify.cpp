@@ -35,6 +35,13 @@ bool is_at_work(const Folder& folder) {
   }
 }
 
+// Records name files below their own folder alone, whatever links lie between.
+bool is_below(const fs::path& folder, const fs::path& name) {
+  const fs::path relative =
+      fs::weakly_canonical(folder / name).lexically_relative(fs::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 // Sequences of one data set, looked into one by one.
 class Check {
  public:
@@ -66,7 +73,9 @@ class Check {
       const std::string name = output.at("name");
       known.insert(name);
       const fs::path file = folder_.sequence(name_) / name;
-      if (!fs::exists(file))
+      if (!is_below(folder_.sequence(name_), name))
+        fault("'" + name.substr(0, 80) + "' is outside of this sequence");
+      else if (!fs::exists(file))
         fault(name + " is missing");
       else if (sha256_of_file(file) != output.at("sha256"))
         fault(name + " is not as it was written (its SHA-256 differs)");
@@ -161,8 +170,11 @@ void check_manifest(const Folder& folder, VerifyResult& result) {
     if (record.at("catalogue_sha256") != sha256_of_file(folder.catalogue()))
       result.faults.emplace_back("dataset.json was written for another catalogue");
     for (const nlohmann::json& file : record.at("manifest")) {
-      const fs::path path = folder.root / file.at("name").get<std::string>();
-      if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
+      const std::string name = file.at("name").get<std::string>();
+      const fs::path path = folder.root / name;
+      if (!is_below(folder.root, name))
+        result.faults.push_back("'" + name.substr(0, 80) + "' of dataset.json is outside of it");
+      else if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
         result.faults.push_back(path.filename().string() + " is not as it was written");
     }
   } catch (const nlohmann::json::exception&) {

@@ -52,6 +52,10 @@ std::optional<composite::AlphaMask> read_alpha_mask(const std::filesystem::path&
                                                     const annotation::LensFacts& lens,
                                                     const std::string& intruder_id,
                                                     std::int64_t frame) {
+  // A truth.jsonl that was tampered with names no file elsewhere.
+  if (intruder_id.find('/') != std::string::npos || intruder_id == "..")
+    throw Error("has an intruder '" + intruder_id.substr(0, 80) + "'; expected a plain file name",
+                {(folder / "truth.jsonl").string()});
   const std::filesystem::path file = folder / mask_name(intruder_id, frame);
   if (!std::filesystem::exists(file)) return std::nullopt;
   video::Grey grey = video::read_grey(file);

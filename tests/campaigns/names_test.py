@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that are commands, markup, options, paths or no text at all, wherever a name can stand: python3 names_test.py AIRTRUTH
+"""Names that are commands, markup, options, paths or no text at all, wherever a name can stand:
+python3 names_test.py AIRTRUTH [--short] [PART...]
 
-Each works, or is one line of error; nothing is run, and nothing outside the output is written or removed.
+--short: a few names and changes of each part. Each works, or is one line of error; nothing is run, and nothing outside the output is written or removed.
 """
 
+import hashlib
 import json
 import os
 import shutil
@@ -58,6 +60,12 @@ def filled(text, name):
 SCENE = common.SCENE.replace('name = "out"', "name = @NAME@").replace("aircraft =", "id = @NAME@\naircraft =")
 
 
+# All that a shell, a page and a plot can trip over in one; what is no UTF-8; what is too long; a path.
+NAMES["all"] = "-a'b\"c;$(touch pwned)`touch pwned`</script><b>x%s\n<script>document.title='pwned'</script>"
+SHORT = ("bytes", "long", "up", "all")
+SHORT_CHANGES = 6  # of the records, every n-th
+
+
 class Names:
     def __init__(self, airtruth, root):
         self.airtruth, self.root = airtruth, root
@@ -65,6 +73,7 @@ class Names:
         self.work = os.path.join(root, "work")
         self.environment = common.environment(os.path.join(root, "cache"))
         self.worked = self.refused = 0
+        self.step = 1
 
     def run(self, what, *words, codes=(0, 2)):
         done = common.run([self.airtruth, *words], what, codes, cwd=self.work, env=self.environment)
@@ -182,6 +191,8 @@ class Names:
         clip = os.path.join(self.work.encode(), raw + b".mkv")
         shutil.copy(f"{self.data}/clip.mkv", clip)
         self.run(f"the mask of a video named {label}", "mask", b"./" + raw + b".mkv", "-o", b"./" + raw + b".png")
+        self.run(f"the camera of a video named {label}", "calibrate", b"./" + raw + b".mkv", "-o", b"./" + raw + b".toml")
+        self.run(f"the motion of a video named {label}", "motion", b"./" + raw + b".mkv", "-o", b"./" + raw + b".csv", "--plot", b"./" + raw + b"-m.png")
         self.run(f"results on a video named {label}", "track", b"./" + raw + b".mkv", "-t", "opencv-mil", "--init", "5,5,12,12", "-o", "res")
         common.write(f"{self.work}/scene.toml", filled(common.SCENE.replace('"clip.mkv"', "@NAME@"), raw + b".mkv" if isinstance(name, bytes) else name + ".mkv"))
         self.run(f"a scene over a video named {label}", "render", "scene.toml", "--no-cache", "--out", "out")
@@ -210,7 +221,7 @@ class Tampered(Names):
                                   ("evaluate", "set", f"{self.data}/results/opencv-mil", "-o", "evaluation"),
                                   ("dataset", "build", f"{self.data}/set.toml", "--out", "set")):
             done = self.run(f"{what}: {' '.join(words[:2])}", *words, codes=(0, 1, 2))
-            if "secret" in done.out + done.err:
+            if "TOP-SECRET" in done.out + done.err:
                 raise Broken(f"{what}: read what lies outside")
             self.see_outside(what)
 
@@ -243,7 +254,7 @@ class Tampered(Names):
                 yield from self.walk(value, (*path, i))
 
     def records(self):
-        secret = common.write(f"{self.root}/secret/across/truth.jsonl", "secret\n")
+        secret = common.write(f"{self.root}/secret/across/truth.jsonl", "TOP-SECRET\n")
         self.outside = self.outside_now()
         values = ["../../secret/across", secret, f"{self.root}/secret", 10**18, -1, 1e308, None, [], {}, "", "..", "a" * 300, "a\nb", True]
         count = 0
@@ -253,7 +264,7 @@ class Tampered(Names):
                 continue
             with open(path) as opened:
                 record = json.load(opened)
-            for i, (keys, _) in enumerate(self.walk(record)):
+            for i, (keys, _) in list(enumerate(self.walk(record)))[:: self.step]:
                 # Two of the values for each place, all of them over the places.
                 for value in (values[i % len(values)], values[(i + 5) % len(values)]):
                     self.each(f"{file} {keys} = {value!r:.40}", lambda f=file, k=keys, v=value: self.json(f, k, v),
@@ -266,7 +277,37 @@ class Tampered(Names):
                  ("evaluate", "set", f"{self.data}/results/opencv-mil", "--no-page", "-o", "evaluation")]
         return [every[count % 4]]
 
+    def verified(self, what, change, words):
+        """verify says what is wrong, even where the file outside is as the record has it."""
+        self.fresh()
+        shutil.copytree(f"{self.data}/set", f"{self.work}/set")
+        change()
+        done = self.run(what, "dataset", "verify", "set", codes=(1,))
+        if words not in done.err:
+            raise Broken(f"{what}: expected '{words}', found: {done.err[-400:]}")
+
+    def leading_outside(self):
+        secret = common.write(f"{self.root}/secret/across/truth.jsonl", "TOP-SECRET\n")
+        found = {"name": "../../../../secret/across/truth.jsonl", "sha256": hashlib.sha256(b"TOP-SECRET\n").hexdigest()}
+        sequence = "sequences/across/sequence.json"
+        for name in (found["name"], secret):
+            self.verified(f"an output {name}", lambda n=name: self.json(sequence, ("outputs", 0), {**found, "name": n}),
+                          "is outside of this sequence")
+            self.verified(f"a manifest {name}", lambda n=name: self.json("dataset.json", ("manifest", 0), {**found, "name": n}),
+                          "of dataset.json is outside of it")
+        self.verified("a sequence named elsewhere", lambda: self.json(sequence, ("name",), "../../../secret/across/across"),
+                      "expected a plain file name")
+
+        def link():
+            path = f"{self.work}/set/sequences/across/truth.jsonl"
+            shutil.move(path, f"{self.root}/moved.jsonl")
+            os.symlink(f"{self.root}/moved.jsonl", path)
+
+        self.verified("truth that is a link", link, "is outside of this sequence")
+        os.unlink(f"{self.root}/moved.jsonl")
+
     def files(self):
+        self.leading_outside()
         self.outside = self.outside_now()
         manifest = [n for n in ("manifest/000000.txt", "manifest.txt", "manifest") if os.path.isfile(f"{self.data}/set/{n}")]
         for folder in ("manifest",):
@@ -292,19 +333,22 @@ class Tampered(Names):
 
 def body():
     airtruth = os.path.abspath(sys.argv[1])
+    is_short = "--short" in sys.argv
     with tempfile.TemporaryDirectory(prefix="airtruth_names_") as root:
         names = Names(airtruth, root)
         names.prepare()
-        parts = sys.argv[2:] or ["scene", "catalogue", "folder", "tracker", "records", "files"]
-        for part in parts:
+        chosen = {label: name for label, name in NAMES.items() if not is_short or label in SHORT}
+        parts = [word for word in sys.argv[2:] if word != "--short"]
+        for part in parts or ["scene", "catalogue", "folder", "tracker", "records", "files"]:
             if part in ("records", "files"):
                 tampered = Tampered(airtruth, root)
+                tampered.step = SHORT_CHANGES if is_short else 1
                 getattr(tampered, part)()
                 continue
-            for label, name in NAMES.items():
+            for label, name in chosen.items():
                 getattr(names, part)(label, name)
                 names.see_outside(f"{part} {label}")
-            print(f"{part}: {len(NAMES)} names, {names.worked} commands worked, {names.refused} were refused in one line", flush=True)
+            print(f"{part}: {len(chosen)} names, {names.worked} commands worked, {names.refused} were refused in one line", flush=True)
 
 
 if __name__ == "__main__":
