@@ -35,13 +35,6 @@ Images images_of(const ExportOptions& options) {
   return *options.images;
 }
 
-// XML, JSON and YAML hold the names of folders, as UTF-8.
-void require_utf8(const fs::path& path) {
-  if (utf8_fault(path.string()) != std::string::npos)
-    throw Error("is no UTF-8 name, which the files of other formats cannot hold; rename it",
-                {path.string()});
-}
-
 // What decides every byte of an export.
 Json options_json(const fs::path& set, const ExportOptions& options) {
   const char* split = options.split == Split::kNone           ? "none"
@@ -91,6 +84,7 @@ class Place {
         throw Error("holds an export made with other options; expected a new folder",
                     {root_.string()});
       complete_ = true;
+      fs::remove_all(root_ / ".export");  // of a run that ended between the two last steps
       return;
     }
     const bool begun = fs::exists(begun_file());
@@ -319,6 +313,8 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     throw Error(std::string("numbered classes are asked for, and ") +
                 exchange::name(options.format) + " holds its classes anyway; expected format mot");
   const LabelledSet labelled(set);
+  // XML, JSON and YAML hold the names of folders.
+  require_utf8(fs::absolute(set));
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
   if (options.boxes == Boxes::kCovered)
@@ -326,10 +322,14 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;
-    const Json record = Json::parse(read_file(place.record())).at("summary");
-    summary.sequences = record.at("sequences");
-    summary.frames = record.at("frames");
-    summary.frames_of_part = record.at("frames_of_part");
+    try {
+      const Json record = Json::parse(read_file(place.record())).at("summary");
+      summary.sequences = record.at("sequences");
+      summary.frames = record.at("frames");
+      summary.frames_of_part = record.at("frames_of_part");
+    } catch (const Json::exception&) {
+      throw Error("is not a record that airtruth wrote", {place.record().string()});
+    }
     summary.was_there = true;
     return summary;
   }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/unfinished.h"
 #include "exchange/json_file.h"
 #include "exchange/parts.h"
 #include "exchange/text.h"
@@ -64,10 +65,19 @@ class AotWriter : public Writer {
   AotWriter(fs::path root, const WriteOptions& options) : root_(std::move(root)) {
     for (const std::string& part : options.parts) {
       fs::create_directories(file_of(part).parent_path());
+      unfinished_.emplace(part, Unfinished::path(part_path(file_of(part))));
       files_[part].open(part_path(file_of(part)), std::ios::binary);
       files_[part] << "{\"metadata\":{\"description\":\"made by airtruth\"},\n\"samples\":{";
     }
   }
+
+  // Of a run that failed, nothing half-written stays.
+  ~AotWriter() override {
+    std::error_code ignored;
+    for (const auto& [part, file] : files_) fs::remove(part_path(file_of(part)), ignored);
+  }
+  AotWriter(const AotWriter&) = delete;
+  AotWriter& operator=(const AotWriter&) = delete;
 
   std::vector<fs::path> images(const Clip& clip, const std::string& part) const override {
     std::vector<fs::path> files;
@@ -102,7 +112,8 @@ class AotWriter : public Writer {
       file << "}}\n";
       file.close();
       if (!file) throw Error("cannot be written: is the disk full?", {file_of(part).string()});
-      fs::rename(part_path(file_of(part)), file_of(part));
+      const fs::path whole = file_of(part);
+      unfinished_.at(part).finish([&] { fs::rename(part_path(whole), whole); });
     }
   }
 
@@ -138,6 +149,7 @@ class AotWriter : public Writer {
 
   fs::path root_;
   std::map<std::string, std::ofstream> files_;
+  std::map<std::string, Unfinished> unfinished_;
   std::map<std::string, bool> any_;
 };
 

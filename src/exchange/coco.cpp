@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/unfinished.h"
 #include "exchange/json_file.h"
 #include "exchange/parts.h"
 #include "exchange/text.h"
@@ -51,10 +52,24 @@ class CocoWriter : public IndexedWriter {
     fs::create_directories(folder());
     for (const std::string& part : options.parts) {
       Lists& lists = lists_[part];
+      for (const char* what : {"images", "annotations"})
+        lists_on_disk_.push_back(Unfinished::path(list(part, what)));
       lists.images.open(list(part, "images"), std::ios::binary);
       lists.annotations.open(list(part, "annotations"), std::ios::binary);
     }
   }
+
+  // Of a run that failed too, nothing half-written stays.
+  ~CocoWriter() override {
+    std::error_code ignored;
+    for (const auto& [part, lists] : lists_) {
+      fs::remove(list(part, "images"), ignored);
+      fs::remove(list(part, "annotations"), ignored);
+      fs::remove(part_path(whole(part)), ignored);
+    }
+  }
+  CocoWriter(const CocoWriter&) = delete;
+  CocoWriter& operator=(const CocoWriter&) = delete;
 
   void add(const Clip& clip, const std::string& part) override {
     Lists& lists = lists_.at(part);
@@ -74,6 +89,8 @@ class CocoWriter : public IndexedWriter {
     for (auto& [part, lists] : lists_) {
       lists.images.close();
       lists.annotations.close();
+      if (!lists.images || !lists.annotations)
+        throw Error("cannot be written: is the disk full?", {folder().string()});
       write(part, lists);
     }
   }
@@ -84,6 +101,9 @@ class CocoWriter : public IndexedWriter {
   }
 
   fs::path folder() const { return root_ / "annotations"; }
+  fs::path whole(const std::string& part) const {
+    return folder() / ("instances_" + part + ".json");
+  }
   fs::path list(const std::string& part, const std::string& what) const {
     return folder() / ("." + part + "." + what + ".part");
   }
@@ -133,7 +153,8 @@ class CocoWriter : public IndexedWriter {
     for (const std::string& category : options_.categories)
       categories.push_back(
           {{"id", category_id(category)}, {"name", category}, {"supercategory", "aircraft"}});
-    const fs::path file = folder() / ("instances_" + part + ".json");
+    const fs::path file = whole(part);
+    Unfinished unfinished = Unfinished::path(part_path(file));
     {
       std::ofstream out(part_path(file), std::ios::binary);
       out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
@@ -147,9 +168,7 @@ class CocoWriter : public IndexedWriter {
       out << "]}\n";
       if (!out.flush()) throw Error("cannot be written: is the disk full?", {file.string()});
     }
-    fs::rename(part_path(file), file);
-    fs::remove(list(part, "images"));
-    fs::remove(list(part, "annotations"));
+    unfinished.finish([&] { fs::rename(part_path(file), file); });
   }
 
   static const char* segmentations(const Lists& lists) {
@@ -168,6 +187,7 @@ class CocoWriter : public IndexedWriter {
   fs::path root_;
   WriteOptions options_;
   std::map<std::string, Lists> lists_;
+  std::vector<Unfinished> lists_on_disk_;
 };
 
 // One annotation file.

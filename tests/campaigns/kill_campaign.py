@@ -74,12 +74,14 @@ class Killing:
 
     def run(self, kills, dice):
         self.fresh()
-        began = time.monotonic()
         self.expected = self.finish("undisturbed")
-        whole_s = time.monotonic() - began
         self.fresh()
-        if self.finish("undisturbed again") != self.expected:
-            raise Broken(f"{self.name}: two undisturbed runs differ in {common.difference(self.expected, self.finish('again'))}")
+        # The second run is timed: the first one also fills caches.
+        began = time.monotonic()
+        again = self.finish("undisturbed again")
+        whole_s = time.monotonic() - began
+        if again != self.expected:
+            raise Broken(f"{self.name}: two undisturbed runs differ in {common.difference(self.expected, again)}")
         if "overwrite" not in self.name:
             self.fresh()
         over = 0

@@ -135,7 +135,7 @@ def full_disk(airtruth, root, data):
                 if done.code != 0 and "No space left" not in done.err:
                     raise Broken(f"{words[1:3]} on a full disk: {done.err}")
                 refused += done.code != 0
-                if common.halves(place) and words[1:3] not in (["dataset", "build"], ["dataset", "export"]):
+                if common.halves(place):
                     raise Broken(f"{words[1:3]} on a full disk leaves {common.halves(place)}")
                 for name in os.listdir(place):
                     path = os.path.join(place, name)
