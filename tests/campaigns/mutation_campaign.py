@@ -13,6 +13,7 @@ import os
 import random
 import re
 import shutil
+import struct
 import sys
 import tempfile
 import time
@@ -92,7 +93,7 @@ def render(airtruth):
 
 
 def is_text(name):
-    return not name.endswith((".mkv", ".mp4", ".avi", ".png", ".jpg", ".3ds", ".rgb", ".tga"))
+    return not name.endswith((".mkv", ".mp4", ".avi", ".png", ".jpg", ".3ds", ".rgb", ".tga", ".bin"))
 
 
 def how_for(name):
@@ -187,6 +188,13 @@ sun_elevation_deg = 30.0
 PATH = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n0,30,-3,-150,90,1,2\n0.5,31,4,-151,91,2,3\n3,32,9,-150,92,1,2\n"
 
 
+# Regions of VOT's binary results: a byte of type, then little-endian numbers.
+BEGUN = struct.pack("<BI", 0, 1)
+RECTANGLE = struct.pack("<B4f", 1, 20.5, 30.25, 12, 9)
+POLYGON = struct.pack("<BH8f", 2, 4, 20, 30, 33, 31, 32, 40, 21, 39)
+MASK = struct.pack("<B2h3H", 3, 20, 30, 4, 3, 5) + struct.pack("<5H", 1, 2, 1, 4, 4)
+
+
 def prepare(airtruth, data):
     """The good files, each kind's in a folder of its own."""
 
@@ -222,6 +230,9 @@ def prepare(airtruth, data):
         run("dataset", "export", f"{data}/labels/set", "-f", form, "-o", f"{data}/labels/{form}", "--images", "png")
     run("track", f"{data}/labels/set", "-t", "opencv-mil", "-o", f"{data}/results/results")
     shutil.copytree(f"{data}/labels/set", f"{data}/results/set")
+    shutil.copytree(f"{data}/labels/set", f"{data}/vot/set")
+    for name, regions in (("across", (BEGUN, RECTANGLE, POLYGON)), ("away", (BEGUN, MASK, RECTANGLE))):
+        common.write(f"{data}/vot/results/opencv-mil/baseline/{name}/{name}_001.bin", struct.pack("<hI", 1, 3) + b"".join(regions))
 
 
 def label_files(data):
@@ -271,6 +282,7 @@ def kinds(airtruth, data):
         Kind("model", ["m.ac", "m.obj", "m.mtl", "w.xml", "skin.png"], model),
         Kind("labels", label_files(data), labels),
         Kind("results", result_files(data), results),
+        Kind("vot", ["results/opencv-mil/baseline/across/across_001.bin", "results/opencv-mil/baseline/away/away_001.bin"], results),
     ]
 
 
