@@ -169,6 +169,9 @@ class CocoWriter : public IndexedWriter {
       if (!out.flush()) throw Error("cannot be written: is the disk full?", {file.string()});
     }
     unfinished.finish([&] { fs::rename(part_path(file), file); });
+    // Now: an export is complete before its writer ends, and a killed one is not cleared again.
+    fs::remove(list(part, "images"));
+    fs::remove(list(part, "annotations"));
   }
 
   static const char* segmentations(const Lists& lists) {
