@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "dataset/count_in.h"
 #include "dataset/in_parallel.h"
 #include "video/reader.h"
 #include "video/still.h"
@@ -324,9 +325,11 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     ExportSummary summary;
     try {
       const Json record = Json::parse(read_file(place.record())).at("summary");
-      summary.sequences = record.at("sequences");
-      summary.frames = record.at("frames");
-      summary.frames_of_part = record.at("frames_of_part");
+      summary.sequences = count_in(record, "sequences", place.record());
+      summary.frames = count_in(record, "frames", place.record());
+      for (const auto& [part, frames] : record.at("frames_of_part").items())
+        summary.frames_of_part[part] =
+            count_in(record.at("frames_of_part"), part.c_str(), place.record());
     } catch (const Json::exception&) {
       throw Error("is not a record that airtruth wrote", {place.record().string()});
     }

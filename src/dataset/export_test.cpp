@@ -172,6 +172,43 @@ TEST_F(Made, AnExportOverSomethingElseIsRefused) {
   EXPECT_THAT(error(fresh() / "x", {.jobs = 1}), "no error");
 }
 
+TEST_F(Made, CountsOfRecordsThatWereChangedAreOneLine) {
+  const auto changed = [](const fs::path& file, const std::string& from, const std::string& to) {
+    std::string text = read_file(file);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << file;
+    write_file(file, text.replace(at, from.size(), to));
+  };
+  const fs::path out = fresh();
+  ExportOptions options;
+  options.images = Images::kNone;
+  export_set(set(), out, options);
+  fs::create_directories(out / ".export" / "done");  // of a run that was killed at its last step
+  EXPECT_TRUE(export_set(set(), out, options).was_there);
+  EXPECT_FALSE(fs::exists(out / ".export"));
+  changed(out / "export.json", "\"frames\": 32", "\"frames\": 1e308");
+  try {
+    export_set(set(), out, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message(), "frames is 1e+308; expected a whole number from 0");
+  }
+  const fs::path copy = fresh();
+  fs::copy(set(), copy, fs::copy_options::recursive);
+  const LabelledSet labelled(copy);
+  const std::string first = labelled.names().front();
+  // 2^64 - 1 is -1 in 64 bits.
+  changed(labelled.folder(first) / "sequence.json",
+          "\"frames\": 8",
+          "\"frames\": 18446744073709551615");
+  try {
+    labelled.facts(first);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message(), "frames is 18446744073709551615; expected a whole number from 0");
+  }
+}
+
 TEST_F(Made, ABackgroundIsInOnePartAloneUnlessAskedFor) {
   std::vector<std::string> warnings;
   ExportOptions options;

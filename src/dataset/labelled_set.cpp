@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "composite/cover.h"
+#include "dataset/count_in.h"
 #include "dataset/expand.h"
 #include "dataset/folder.h"
 #include "exchange/pixel_mask.h"
@@ -210,12 +211,12 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
       const scene::Scene scene =
           scene::parse_scene(record.at("scene_toml").get<std::string>(), file);
       facts.background = scene.background.video.string();
-      facts.frames = record.at("summary").at("frames").get<std::int64_t>();
+      facts.frames = count_in(record.at("summary"), "frames", file);
       for (const scene::Intruder& intruder : scene.intruders)
         categories.insert(category_of(intruder.aircraft));
     } else {
       facts.background = record.value("media", name);
-      facts.frames = record.at("frames").get<std::int64_t>();
+      facts.frames = count_in(record, "frames", file);
       for (const nlohmann::json& category : record.at("categories")) categories.insert(category);
     }
   } catch (const nlohmann::json::exception&) {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/version.h"
+#include "dataset/count_in.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -15,24 +16,21 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kLinesInAFile = 10'000;
 
-Json record_of(const Folder& folder, const std::string& name) {
-  const fs::path file = folder.sequence(name) / "sequence.json";
+Json line_of(const Folder& folder, const Item& item) {
+  const fs::path file = folder.sequence(item.name) / "sequence.json";
   try {
-    return Json::parse(read_file(file));
+    const Json record = Json::parse(read_file(file));
+    const Json& summary = record.at("summary");
+    return {{"index", item.index},
+            {"name", item.name},
+            {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
+            {"frames", count_in(summary, "frames", file)},
+            {"frames_with_an_intruder_visible",
+             count_in(summary, "frames_with_an_intruder_visible", file)},
+            {"outputs", record.at("outputs")}};
   } catch (const Json::exception&) {
     throw Error("is not a record that airtruth wrote", {file.string()});
   }
-}
-
-Json line_of(const Folder& folder, const Item& item) {
-  const Json record = record_of(folder, item.name);
-  return {{"index", item.index},
-          {"name", item.name},
-          {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
-          {"frames", record.at("summary").at("frames")},
-          {"frames_with_an_intruder_visible",
-           record.at("summary").at("frames_with_an_intruder_visible")},
-          {"outputs", record.at("outputs")}};
 }
 
 }  // namespace
