@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "render/openness.h"
 
 namespace airtruth::render {
 namespace {
@@ -174,6 +175,7 @@ Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
     }
   }
   impl_->radius_m = impl_->radius_m * 1.01 + 0.01;
+  impl_->openness = openness_of(*impl_);
 }
 Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;

@@ -20,6 +20,12 @@ struct ReleaseScene {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
 
+// See openness.h.
+struct TriangleOpenness {
+  std::array<float, 3> front = {1, 1, 1};  // the side that the triangle's own normal is on
+  std::array<float, 3> back = {1, 1, 1};
+};
+
 struct Model::Impl {
   aircraft::Mesh mesh;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
@@ -28,6 +34,7 @@ struct Model::Impl {
   std::vector<std::vector<float>> texels_per_m;  // [part][triangle], 0 without a texture
   std::vector<std::vector<std::uint8_t>>
       opaque;  // [part][triangle]: 1 where nothing shines through
+  std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
   Eigen::Vector3d centre_in_body{0, 0, 0};
   double radius_m = 0;  // of a sphere about the centre that holds every part at any turn
 };

@@ -13,6 +13,7 @@
 #include "geometry/within_frame.h"
 #include "image/layer.h"
 #include "lens/lens.h"
+#include "render/environment.h"
 
 // Rays over exactly the pixels that an intruder can touch (design: docs/architecture.md):
 //
@@ -28,6 +29,10 @@ struct Light {
   std::array<float, 3> sun = {1, 1, 1};  // linear; irradiance/pi on a surface facing the sun
   std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};     // linear; from straight above
   std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};  // linear; from straight below
+  // In place of sky and ground: light by direction, of which the aircraft hides a part from itself,
+  // and paint with a clear coat that mirrors it. Empty: sky and ground as the OpenGL of `backdrop`
+  // has them.
+  std::optional<Environment> surroundings = {};
 };
 
 // to_sun_in_world from azimuth (north towards east) and elevation.

@@ -95,55 +95,125 @@ float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
   return alpha >= aircraft::kOpaque ? 1.0f : alpha;
 }
 
+namespace {
+
+// A point of the surface as light meets it, in body coordinates.
+struct Surface {
+  Eigen::Vector3f face;    // unit, towards the viewer
+  Eigen::Vector3f normal;  // unit, smooth, on the face's side
+  float openness = 1;      // 0..1
+};
+
+Surface surface_at(const Placed& placed, const BodyRay& ray, const Hit& hit) {
+  const aircraft::Mesh& mesh = placed.model->mesh;
+  const auto part = static_cast<std::size_t>(hit.part);
+  const auto& [a, b, c] = mesh.parts[part].triangles[hit.triangle].vertex;
+  const auto linear = placed.body_from_part[part].linear();
+  const std::array<float, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
+  Surface surface;
+  surface.face =
+      linear * (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
+  surface.face.normalize();
+  const bool is_back = surface.face.dot(ray.direction) > 0;
+  if (is_back) surface.face = -surface.face;
+  surface.normal = linear * (weights[0] * mesh.normals[a] + weights[1] * mesh.normals[b] +
+                             weights[2] * mesh.normals[c]);
+  if (!(surface.normal.norm() > 1e-6f)) surface.normal = surface.face;
+  surface.normal.normalize();
+  if (surface.normal.dot(surface.face) < 0) surface.normal = -surface.normal;
+  const TriangleOpenness& openness = placed.model->openness[part][hit.triangle];
+  const auto& side = is_back ? openness.back : openness.front;
+  surface.openness = weights[0] * side[0] + weights[1] * side[1] + weights[2] * side[2];
+  return surface;
+}
+
+Texel albedo_texel(const Placed& placed, const Hit& hit, float footprint_m) {
+  Texel texel = texel_at(placed, hit, footprint_m);
+  // A coarse level mixes in the holes beside an opaque triangle's own texels.
+  const bool is_opaque =
+      placed.model->opaque[static_cast<std::size_t>(hit.part)][hit.triangle] != 0;
+  if (is_opaque && texel[3] > 0 && texel[3] < 1) {
+    const float alpha = texel[3];
+    for (float& channel : texel) channel = std::min(1.0f, channel / alpha);
+  }
+  return texel;
+}
+
+// Blinn-Phong, normalised so that a shinier surface is smaller and brighter, not brighter alone.
+float glint_of(const Surface& surface,
+               const Eigen::Vector3f& to_sun,
+               const Eigen::Vector3f& view,
+               float shininess) {
+  if (!(shininess > 0)) return 0;
+  const Eigen::Vector3f half = (to_sun - view).normalized();
+  const float exponent = std::clamp(shininess, 4.0f, 128.0f);
+  return (exponent + 8) / 25.0f * std::pow(std::max(0.0f, surface.normal.dot(half)), exponent);
+}
+
+// Light from all around: what reaches the paint (over pi), and what its clear coat mirrors.
+struct Around {
+  Rgb diffuse{};
+  Rgb mirrored{};
+  float mirror_share = 0;
+};
+
+Around light_around(const Placed& placed,
+                    const Surface& surface,
+                    const Eigen::Vector3f& view,
+                    const Light& light) {
+  Around around;
+  if (!light.surroundings) {
+    const float upward = 0.5f * (1 + surface.normal.dot(placed.up_in_body));
+    for (std::size_t i = 0; i < 3; ++i)
+      around.diffuse[i] = light.ground[i] + upward * (light.sky[i] - light.ground[i]);
+    return around;
+  }
+  // Of what the aircraft hides, its own paint gives back some: a light paint (0.6), half of it lit.
+  constexpr float kBounced = 0.3f;
+  constexpr float kCoatAtNormal = 0.04f;  // a dielectric of refractive index 1.5
+  const float lit = surface.openness + kBounced * (1 - surface.openness);
+  around.diffuse = light.surroundings->irradiance_over_pi(placed.world_from_body * surface.normal);
+  const float cosine = std::clamp(-surface.normal.dot(view), 0.0f, 1.0f);
+  const Eigen::Vector3f mirror = view + 2 * cosine * surface.normal;
+  const float off = 1 - cosine;
+  around.mirror_share = kCoatAtNormal + (1 - kCoatAtNormal) * off * off * off * off * off;
+  around.mirrored = light.surroundings->radiance(placed.world_from_body * mirror.normalized());
+  for (std::size_t i = 0; i < 3; ++i) around.diffuse[i] *= lit, around.mirrored[i] *= lit;
+  return around;
+}
+
+}  // namespace
+
 std::array<float, 3> shade(const Placed& placed,
                            const BodyRay& ray,
                            const Hit& hit,
                            const Light& light,
                            float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
-  const auto part = static_cast<std::size_t>(hit.part);
-  const aircraft::Triangle& triangle = mesh.parts[part].triangles[hit.triangle];
+  const auto& triangle = mesh.parts[static_cast<std::size_t>(hit.part)].triangles[hit.triangle];
   const aircraft::Material& material = mesh.materials[triangle.material];
-  const auto& [a, b, c] = triangle.vertex;
-  const auto linear = placed.body_from_part[part].linear();
-  Eigen::Vector3f face =
-      linear * (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
-  face.normalize();
-  if (face.dot(ray.direction) > 0) face = -face;
-  Eigen::Vector3f normal = linear * ((1 - hit.u - hit.v) * mesh.normals[a] +
-                                     hit.u * mesh.normals[b] + hit.v * mesh.normals[c]);
-  if (!(normal.norm() > 1e-6f)) normal = face;
-  normal.normalize();
-  if (normal.dot(face) < 0) normal = -normal;
-
+  const Surface surface = surface_at(placed, ray, hit);
   const Eigen::Vector3f point = ray.origin + hit.t * ray.direction;
   const Eigen::Vector3f& to_sun = placed.to_sun_in_body;
   float sun = 0;
-  const float cosine = normal.dot(to_sun);
-  if (cosine > 0 && face.dot(to_sun) > 0 && !in_shadow(placed, point + 0.01f * face)) sun = cosine;
-  const float upward = 0.5f * (1 + normal.dot(placed.up_in_body));
-  float glint = 0;
-  if (sun > 0 && material.shininess > 0) {
-    const Eigen::Vector3f half = (to_sun - ray.direction).normalized();
-    const float exponent = std::clamp(material.shininess, 4.0f, 128.0f);
-    // Normalised so that a shinier surface is smaller and brighter, not brighter alone.
-    glint = (exponent + 8) / 25.0f * std::pow(std::max(0.0f, normal.dot(half)), exponent) * sun;
-  }
-  Texel texel = texel_at(placed, hit, footprint_m);
-  // A coarse level mixes in the holes beside an opaque triangle's own texels.
-  if (placed.model->opaque[part][hit.triangle] != 0 && texel[3] > 0 && texel[3] < 1) {
-    const float alpha = texel[3];
-    for (float& channel : texel) channel = std::min(1.0f, channel / alpha);
-  }
+  const float cosine = surface.normal.dot(to_sun);
+  if (cosine > 0 && surface.face.dot(to_sun) > 0 &&
+      !in_shadow(placed, point + 0.01f * surface.face))
+    sun = cosine;
+  const float glint =
+      sun > 0 ? sun * glint_of(surface, to_sun, ray.direction, material.shininess) : 0;
+  const Around around = light_around(placed, surface, ray.direction, light);
+  const Texel texel = albedo_texel(placed, hit, footprint_m);
   std::array<float, 3> rgb{};
   constexpr float kGlossShare =
       0.08f;  // painted metal; the files' own specular colours are the game's taste
   for (std::size_t i = 0; i < 3; ++i) {
-    const float ambient = light.ground[i] + upward * (light.sky[i] - light.ground[i]);
     const float albedo = material.diffuse[i] * texel[i];
+    const float paint = albedo * (sun * light.sun[i] + around.diffuse[i]);
     rgb[i] =
-        material.opacity * (albedo * (sun * light.sun[i] + ambient) +
-                            texel[3] * kGlossShare * material.specular[i] * glint * light.sun[i]);
+        material.opacity * ((1 - around.mirror_share) * paint +
+                            texel[3] * (around.mirror_share * around.mirrored[i] +
+                                        kGlossShare * material.specular[i] * glint * light.sun[i]));
   }
   return rgb;
 }

@@ -96,6 +96,7 @@ Actor place(const Instance& instance,
   actor.placed.to_sun_in_body =
       (actor.body_from_world * light.to_sun_in_world).normalized().cast<float>();
   actor.placed.up_in_body = (actor.body_from_world * Vector3(0, 0, -1)).cast<float>();
+  actor.placed.world_from_body = actor.body_from_world.transpose().cast<float>();
   actor.placed.time_s = instance.time_s;
   const double turned_at_s = instance.time_s + (actor.moves ? 0 : span.begin_s);
   for (const aircraft::Part& part : model.mesh.parts) {

@@ -7,6 +7,7 @@
 
 #include "base/median.h"
 #include "image/colour.h"
+#include "render/renderer.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -19,25 +20,36 @@ constexpr float kSmoothing =
 constexpr Rgb kSunColour = {
     1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
 
-// A white surface square to the sun over a blue sky: about 30,000 cd/m2 over 4,000 to 8,000. Under
-// an even cloud next to nothing comes from one direction.
-constexpr float kSunlitOverSky = 3.5f;
-constexpr float kVeiledSun = 0.12f;
-constexpr float kBrightestSun = 2.5f;
+constexpr float kVeiledSun = 0.12f;    // of a cloud's brightness: next to nothing has a direction
+constexpr float kBrightestSun = 6.0f;  // of the brightest sample: a sky that is nearly black
+constexpr float kGroundAlbedo = 0.2f;  // of fields and woods: 0.15 to 0.25 (Oke 1987, table 1.1)
 
 struct Block {
   Rgb linear{};
   float brightness = 0;
   float weight = 1;
+  bool is_below = false;  // below the horizon, as the camera's pose has it
 };
 
 float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
+bool is_below_horizon(const annotation::Sight& sight,
+                      const Homography& nominal_from_frame,
+                      int x,
+                      int y) {
+  const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
+  if (!(nominal.z() > 0)) return false;
+  const auto ray =
+      sight.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
+  return ray && (sight.cam_from_world.rotation.conjugate() * *ray).z() > 0;
+}
+
 std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
+                             const annotation::Sight& sight,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
   const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
@@ -47,6 +59,7 @@ std::vector<Block> blocks_of(const image::Picture& picture,
     around = PixelBox{
         near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
   }
+  const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
   std::vector<Block> blocks;
   for (int y = step / 2; y < picture.height; y += step) {
     for (int x = step / 2; x < picture.width; x += step) {
@@ -55,6 +68,7 @@ std::vector<Block> blocks_of(const image::Picture& picture,
       block.linear = image::linear_at(picture, code, x, y, tone);
       block.brightness = brightness(block.linear);
       block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
+      block.is_below = is_below_horizon(sight, nominal_from_frame, x, y);
       blocks.push_back(block);
     }
   }
@@ -105,38 +119,101 @@ Rgb mean(const std::vector<Block>& blocks, float from, float to) {
   return sum;
 }
 
-// Does the sun shine? 1 where some of the brighter half is blue, 0 where all of it is grey.
-float clearness(const std::vector<Block>& blocks) {
-  std::vector<float> blueness;
-  for (std::size_t i = blocks.size() / 2; i < blocks.size(); ++i) {
-    const Rgb& rgb = blocks[i].linear;
-    if (rgb[2] > 0.04f && rgb[2] < 0.95f) blueness.push_back(1 - rgb[0] / rgb[2]);
-  }
-  if (blueness.size() < 8) return 0;
-  const auto high = blueness.begin() + static_cast<std::ptrdiff_t>(blueness.size() * 9 / 10);
-  std::nth_element(blueness.begin(), high, blueness.end());
-  constexpr float kGrey = 0.12f;
-  constexpr float kBlue = 0.35f;
-  const float t = std::clamp((*high - kGrey) / (kBlue - kGrey), 0.0f, 1.0f);
+float smoothstep(float low, float high, float value) {
+  const float t = std::clamp((value - low) / (high - low), 0.0f, 1.0f);
   return t * t * (3 - 2 * t);
 }
 
-Ambient measure(const std::vector<Block>& blocks) {
+// How blue: 0 grey (cloud), 1 clear sky. Neither where a channel clips or all is dark.
+std::optional<float> blueness(const Rgb& rgb) {
+  constexpr float kDarkest = 0.02f;
+  constexpr float kBrightest = 0.95f;
+  constexpr float kGrey = 0.12f;
+  constexpr float kBlue = 0.35f;
+  if (!(rgb[2] > kDarkest)) return std::nullopt;
+  if (rgb[2] >= kBrightest) return rgb[0] < kBrightest ? std::nullopt : std::optional(0.0f);
+  return smoothstep(kGrey, kBlue, 1 - rgb[0] / rgb[2]);
+}
+
+struct Sums {
+  Rgb colour{};
+  float weight = 0;
+
+  void add(const Rgb& linear, float by) {
+    for (std::size_t c = 0; c < 3; ++c) colour[c] += by * linear[c];
+    weight += by;
+  }
+  Rgb mean() const {
+    Rgb result{};
+    for (std::size_t c = 0; c < 3; ++c) result[c] = weight > 0 ? colour[c] / weight : 0.0f;
+    return result;
+  }
+};
+
+// What is seen of the sky and of the ground.
+struct Seen {
+  Sums blue;
+  Sums cloud;
+  Sums ground;
+  float clearness = 0;  // does the sun shine? 1 where some of the sky is blue
+  float all = 0;        // weight of all blocks
+};
+
+Seen seen_in(const std::vector<Block>& blocks) {
+  constexpr float kGroundOverSky = 0.6f;  // brightness: darker than any cloud's base
+  constexpr std::size_t kFewest = 8;
+  Seen seen;
+  const float sky = brightness(mean(blocks, 0.5f, 1.01f));
+  std::vector<float> clear;
+  for (const Block& block : blocks) {
+    seen.all += block.weight;
+    if (block.is_below && block.brightness < kGroundOverSky * sky) {
+      seen.ground.add(block.linear, block.weight);
+      continue;
+    }
+    if (block.brightness < 0.25f * sky) continue;  // an aircraft, a tree, a rim: no sky
+    const auto blue = blueness(block.linear);
+    if (!blue) continue;
+    seen.blue.add(block.linear, block.weight * *blue);
+    seen.cloud.add(block.linear, block.weight * (1 - *blue));
+    clear.push_back(*blue);
+  }
+  if (clear.size() < kFewest) return seen;
+  const auto high = clear.begin() + static_cast<std::ptrdiff_t>(clear.size() * 9 / 10);
+  std::nth_element(clear.begin(), high, clear.end());
+  seen.clearness = *high;
+  return seen;
+}
+
+Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double sun_elevation_deg) {
+  const Seen seen = seen_in(blocks);
   Ambient ambient;
-  ambient.sky = mean(blocks, 0.5f, 1.01f);
-  ambient.ground = mean(blocks, 0.0f, 0.25f);
+  const float sky_weight = seen.blue.weight + seen.cloud.weight;
+  const float blue_share = sky_weight > 0 ? seen.blue.weight / sky_weight : 0.0f;
+  const Rgb blue = seen.blue.mean();
+  const Rgb cloud = seen.cloud.mean();
+  for (std::size_t c = 0; c < 3; ++c) {
+    ambient.blue[c] = blue_share * blue[c] / static_cast<float>(skies.clear_seen);
+    ambient.cloud[c] = (1 - blue_share) * cloud[c] / static_cast<float>(skies.overcast_seen);
+  }
+  const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(sun_elevation_deg) /
+                                               clear_sky_illuminance_klx(sun_elevation_deg));
+  const float direct =
+      seen.clearness * sun_over_sky * brightness(blue) / static_cast<float>(skies.clear_seen) +
+      (1 - seen.clearness) * kVeiledSun * brightness(cloud);
+  for (std::size_t c = 0; c < 3; ++c)
+    ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
+  constexpr float kLeastGround = 0.05f;  // of the picture: less may be anything
+  const auto height = static_cast<float>(std::sin(radians(std::max(0.0, sun_elevation_deg))));
+  const bool is_ground_seen = seen.ground.weight > kLeastGround * seen.all;
+  const Rgb ground = seen.ground.mean();
+  for (std::size_t c = 0; c < 3; ++c)
+    ambient.ground[c] =
+        is_ground_seen ? ground[c] : kGroundAlbedo * (height * ambient.sun[c] + ambient.sky()[c]);
   std::vector<Block> around;
   for (const Block& block : blocks)
     if (block.weight > 1) around.push_back(block);
-  ambient.airlight = around.empty() ? ambient.sky : mean(around, 0.3f, 1.01f);
-  const std::size_t last = blocks.empty() ? 0 : blocks.size() * 98 / 100;
-  const float white =
-      blocks.empty() ? 0.7f
-                     : std::clamp(blocks[std::min(last, blocks.size() - 1)].brightness, 0.1f, 1.0f);
-  const float clear = clearness(blocks);
-  const float sunlit = std::max(white, kSunlitOverSky * brightness(ambient.sky));
-  const float direct = std::min(clear * sunlit + (1 - clear) * kVeiledSun * white, kBrightestSun);
-  for (std::size_t c = 0; c < 3; ++c) ambient.sun[c] = direct * kSunColour[c];
+  ambient.airlight = around.empty() ? mean(blocks, 0.5f, 1.01f) : mean(around, 0.3f, 1.01f);
   return ambient;
 }
 
@@ -150,18 +227,29 @@ std::array<float, 3> floats(const std::array<double, 3>& v) {
 
 }  // namespace
 
-Ambient AmbientEstimator::next(const image::Picture& picture, const std::optional<PixelBox>& near) {
+AmbientEstimator::AmbientEstimator(const scene::Light& light,
+                                   const image::ToneCurve& tone,
+                                   const image::Mask* own_aircraft)
+    : light_(light),
+      tone_(tone),
+      own_aircraft_(own_aircraft),
+      skies_(skies(render::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg))) {}
+
+Ambient AmbientEstimator::next(const image::Picture& picture,
+                               const annotation::Sight& sight,
+                               const std::optional<PixelBox>& near) {
   const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
   if (all_stated) return with_scene({});
-  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, near);
+  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, near);
   std::vector<Rgb> colours;
   for (const Block& block : blocks) colours.push_back(block.linear);
   follow_exposure(colours);
   sort_by_brightness(blocks);
-  const Ambient now = measure(blocks);
+  const Ambient now = measure(blocks, skies_, light_.sun_elevation_deg);
   if (!smooth_) smooth_ = now;
   blend(smooth_->sun, now.sun);
-  blend(smooth_->sky, now.sky);
+  blend(smooth_->blue, now.blue);
+  blend(smooth_->cloud, now.cloud);
   blend(smooth_->ground, now.ground);
   blend(smooth_->airlight, now.airlight);
   return with_scene(*smooth_);
@@ -174,7 +262,8 @@ void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
   if (!smooth_) return;
   for (std::size_t c = 0; c < 3; ++c) {
     if (std::abs(std::log(change[c])) < kJump) continue;
-    for (auto* light : {&smooth_->sun, &smooth_->sky, &smooth_->ground, &smooth_->airlight})
+    for (auto* light :
+         {&smooth_->sun, &smooth_->blue, &smooth_->cloud, &smooth_->ground, &smooth_->airlight})
       (*light)[c] *= change[c];
   }
 }
@@ -184,8 +273,12 @@ Ambient AmbientEstimator::with_scene(Ambient measured) const {
     for (std::size_t c = 0; c < 3; ++c)
       measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
   }
-  if (light_.sky_colour) measured.sky = floats(*light_.sky_colour);
+  // A stated sky is even, as an overcast one nearly is.
+  if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
+  measured.surroundings = skies_.clear.scaled(measured.blue);
+  measured.surroundings += skies_.overcast.scaled(measured.cloud);
+  measured.surroundings += skies_.ground.scaled(measured.ground);
   return measured;
 }
 

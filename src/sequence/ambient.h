@@ -5,28 +5,38 @@
 #include <optional>
 #include <vector>
 
+#include "annotation/exact_box.h"
 #include "image/layer.h"
 #include "image/picture.h"
 #include "image/tone_curve.h"
 #include "scene/scene.h"
+#include "sequence/sky.h"
 
 // What light falls on the intruder, taken from the background where the scene does not state it.
 //
-// The picture is read as a grid of small blocks in linear light, without the own aircraft. Its
-// brighter half stands for the sky and its darkest quarter for the ground, whatever the bank of the
-// camera; the 98th percentile of brightness is what this exposure makes of a bright white thing
-// (cloud, haze). Where some of the sky is blue the sun shines, and a white surface square to it is
-// given that much or 3.5 times the sky's, whichever is more; under an even grey sky a little.
+// The picture is read as a grid of small blocks in linear light, without the own aircraft. Blocks
+// are ground where they lie below the horizon and are much darker than the brighter half, else sky;
+// sky is blue, cloud, or between. How bright the sky is there says how bright this exposure makes a
+// sky of known luminance (sky.h), and with it the sun: by day the sun, the blue sky and clouds have
+// ratios that depend on the sun's elevation alone. Where no ground is seen, a level ground under
+// that very light stands for it. One unknown, the exposure, and two shares (how clear the sky is,
+// how much of it is cloud) are measured; a sky that clips makes all of it too dark.
 // Blocks near the intruder count four times. Smoothed over time; a jump of the camera's exposure or
 // white balance (the median over the blocks of what each becomes from one frame to the next) is
 // followed at once.
 namespace airtruth::sequence {
 
 struct Ambient {
-  std::array<float, 3> sun{};
-  std::array<float, 3> sky{};
-  std::array<float, 3> ground{};
-  std::array<float, 3> airlight{};  // the background around the intruder: where haze leads to
+  std::array<float, 3> sun{};        // irradiance over pi on a surface square to it
+  std::array<float, 3> blue{};       // the clear part of the sky: the same on a level surface
+  std::array<float, 3> cloud{};      // its cloudy part
+  std::array<float, 3> ground{};     // radiance from below
+  std::array<float, 3> airlight{};   // the background around the intruder: where haze leads to
+  render::Environment surroundings;  // sky and ground by direction
+
+  std::array<float, 3> sky() const {
+    return {blue[0] + cloud[0], blue[1] + cloud[1], blue[2] + cloud[2]};
+  }
 };
 
 inline image::ToneCurve tone_of(const scene::CameraModel& model) {
@@ -37,11 +47,12 @@ class AmbientEstimator {
  public:
   AmbientEstimator(const scene::Light& light,
                    const image::ToneCurve& tone,
-                   const image::Mask* own_aircraft)
-      : light_(light), tone_(tone), own_aircraft_(own_aircraft) {}
+                   const image::Mask* own_aircraft);
 
   // Frames in order. `near`: the intruders' box, where one is in view.
-  Ambient next(const image::Picture& picture, const std::optional<PixelBox>& near);
+  Ambient next(const image::Picture& picture,
+               const annotation::Sight& sight,
+               const std::optional<PixelBox>& near);
 
  private:
   Ambient with_scene(Ambient measured) const;
@@ -50,6 +61,7 @@ class AmbientEstimator {
   scene::Light light_;
   image::ToneCurve tone_;
   const image::Mask* own_aircraft_;
+  Skies skies_;
   std::optional<Ambient> smooth_;
   std::vector<std::array<float, 3>> blocks_before_;
 };

@@ -109,7 +109,7 @@ class ChromaKey : public Painter {
     const backdrop::Light light{
         render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
         ambient.sun,
-        ambient.sky,
+        ambient.sky(),
         ambient.ground};
     const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
                                                         pinhole.principal_point_px,
@@ -201,8 +201,9 @@ image::Layer render_layer(const scene::Scene& scene,
   const render::Light light{
       render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg),
       ambient.sun,
-      ambient.sky,
-      ambient.ground};
+      ambient.sky(),
+      ambient.ground,
+      scene.composite.method == "chroma-key" ? std::nullopt : std::optional(ambient.surroundings)};
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {

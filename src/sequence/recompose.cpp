@@ -120,7 +120,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
       break;
     }
     const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
-    const Ambient light = ambient.next(before->picture, search_bounds(moment));
+    const Ambient light = ambient.next(before->picture, moment.sight, search_bounds(moment));
     if (truth.frame % every != 0) continue;
     annotation::Frame again = truth;
     again.time_s = before->time_s;

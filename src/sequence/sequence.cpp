@@ -149,7 +149,8 @@ class Run {
     work.motion = measured.motion;
     work.truth.shake = measured.shake;
     work.moment = moment_at(world_, work.frame.index, work.frame.time_s, measured.shake);
-    work.ambient = ambient_->next(work.frame.picture, search_bounds(work.moment));
+    work.ambient =
+        ambient_->next(work.frame.picture, work.moment.sight, search_bounds(work.moment));
   }
 
   void paint(Work& work) {

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "render/renderer.h"
+
+// Scenes of light that have an answer.
+namespace airtruth::render {
+namespace {
+
+constexpr int kSide = 120;
+const Box kWhole{0, 0, kSide, kSide};
+constexpr float kCoat = 0.04f;  // what a clear coat mirrors along the normal
+
+struct Stage {
+  lens::Lens lens{lens::Pinhole{{300, 300}, {kSide / 2.0, kSide / 2.0}}, {kSide, kSide}};
+  View view{&lens,
+            Rigid{cam_from_body().conjugate(), Vector3::Zero()},  // looks north from the origin
+            Homography::Identity(),
+            kSide,
+            kSide};
+
+  image::LayerPixel middle(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
+    const image::Layer layer = whole(mesh, light, body);
+    return layer.pixels[layer.index(kSide / 2, kSide / 2)];
+  }
+  image::Layer whole(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
+    const Model model(mesh);
+    return render(view, light, {{&model, body, 0}}, {kWhole});
+  }
+};
+
+void add_triangles(aircraft::Mesh& mesh, const std::vector<std::array<Eigen::Vector3f, 3>>& all) {
+  if (mesh.parts.empty()) mesh.parts.push_back({.name = "all"});
+  if (mesh.materials.empty()) mesh.materials.emplace_back();
+  for (const auto& corners : all) {
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    const Eigen::Vector3f normal =
+        (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    for (const auto& corner : corners) {
+      mesh.positions.push_back(corner);
+      mesh.normals.push_back(normal);
+      mesh.uvs.emplace_back(0, 0);
+    }
+    mesh.parts[0].triangles.push_back({{base, base + 1, base + 2}, 0});
+  }
+}
+
+// A square about the origin across x, of half-side h, its front to the south.
+aircraft::Mesh plate(float h) {
+  aircraft::Mesh mesh;
+  add_triangles(
+      mesh,
+      {{Eigen::Vector3f(0, -h, -h), Eigen::Vector3f(0, h, h), Eigen::Vector3f(0, h, -h)},
+       {Eigen::Vector3f(0, -h, -h), Eigen::Vector3f(0, -h, h), Eigen::Vector3f(0, h, h)}});
+  return mesh;
+}
+
+// By longitude and latitude, with the sphere's own normals.
+aircraft::Mesh sphere(float radius) {
+  aircraft::Mesh mesh;
+  constexpr int kSteps = 48;
+  const auto at = [&](int i, int k) {
+    const auto u = static_cast<float>(2 * kPi * i / (2 * kSteps));
+    const auto v = static_cast<float>(kPi * k / kSteps);
+    return Eigen::Vector3f(radius * std::sin(v) * std::cos(u),
+                           radius * std::sin(v) * std::sin(u),
+                           radius * std::cos(v));
+  };
+  for (int i = 0; i < 2 * kSteps; ++i)
+    for (int k = 0; k < kSteps; ++k)
+      add_triangles(
+          mesh,
+          {{at(i, k), at(i, k + 1), at(i + 1, k + 1)}, {at(i, k), at(i + 1, k + 1), at(i + 1, k)}});
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.normals[i] = mesh.positions[i].normalized();
+  return mesh;
+}
+
+Rigid at_distance(double north_m, double pitch_deg = 0) {
+  return {world_from_body({0, pitch_deg, 0}), Vector3(north_m, 0, 0)};
+}
+
+Light only(const Environment& surroundings) {
+  Light light;
+  light.sun = {0, 0, 0};
+  light.surroundings = surroundings;
+  return light;
+}
+
+Environment even(float radiance) {
+  return Environment::of([=](const Vector3&) { return Rgb{radiance, radiance, radiance}; });
+}
+
+// White in a white furnace: every ray that meets it finds what it would have found behind it.
+TEST(LightAround, AWhiteSphereInAFurnaceIsInvisible) {
+  const Stage stage;
+  const image::Layer layer = stage.whole(sphere(4), only(even(1)), at_distance(100));
+  double covered = 0;
+  for (const image::LayerPixel& pixel : layer.pixels) {
+    EXPECT_NEAR(pixel.red, pixel.alpha, 0.02);
+    covered += static_cast<double>(pixel.alpha);
+  }
+  EXPECT_GT(covered, 400);
+}
+
+// A black one mirrors (Schlick): 0.04 in its middle, nearly all at its rim.
+TEST(LightAround, ABlackSphereHasABrightRim) {
+  aircraft::Mesh black = sphere(4);
+  black.materials[0].diffuse = {0, 0, 0};
+  const Stage stage;
+  EXPECT_NEAR(stage.middle(black, only(even(1)), at_distance(100)).green, kCoat, 0.002);
+  const image::Layer layer = stage.whole(black, only(even(1)), at_distance(100));
+  const image::LayerPixel rim = layer.pixels[layer.index(kSide / 2 + 9, kSide / 2)];  // of 12 px
+  const double cosine = std::sqrt(1 - std::pow(9.5 / 12, 2));
+  EXPECT_NEAR(rim.green / rim.alpha, 0.04 + 0.96 * std::pow(1 - cosine, 5), 0.02);
+}
+
+// Light from below alone, radiance 1. A plate that looks down gets all of it, one that stands
+// half, one that looks up none; tilted by t from standing, (1 + sin t) / 2.
+TEST(LightAround, APlateOverBrightGroundGetsWhatItFaces) {
+  const Environment below = Environment::of([](const Vector3& d) {
+    return d.z() > 0 ? Rgb{1, 1, 1} : Rgb{0, 0, 0};
+  });
+  const Stage stage;
+  for (const double pitch_deg : {0.0, 30.0, 60.0, -30.0}) {
+    // Nose up turns the side that looks south upon the ground.
+    const double expected = (1 + std::sin(radians(pitch_deg))) / 2;
+    const float got = stage.middle(plate(10), only(below), at_distance(100, pitch_deg)).blue;
+    EXPECT_NEAR(static_cast<double>(got), expected, 0.06) << pitch_deg;
+  }
+}
+
+TEST(LightAround, APlateSquareToTheSunGivesItsLightBack) {
+  const Stage stage;
+  Light light = only(even(0));
+  light.to_sun_in_world = {-1, 0, 0};
+  light.sun = {0.8f, 0.7f, 0.6f};
+  const image::LayerPixel pixel = stage.middle(plate(10), light, at_distance(100));
+  EXPECT_NEAR(pixel.red, (1 - kCoat) * 0.8f, 0.002);
+  EXPECT_NEAR(pixel.blue, (1 - kCoat) * 0.6f, 0.002);
+}
+
+// At the foot of a wall that is far longer than it, a plate sees half of the light; what the wall
+// hides it gives back in part.
+TEST(LightAround, AWallHidesHalfOfTheLight) {
+  aircraft::Mesh mesh = plate(0.5f);
+  add_triangles(mesh,
+                {{Eigen::Vector3f(0, -50, 0.5f),
+                  Eigen::Vector3f(-50, -50, 0.5f),
+                  Eigen::Vector3f(-50, 50, 0.5f)},
+                 {Eigen::Vector3f(0, -50, 0.5f),
+                  Eigen::Vector3f(-50, 50, 0.5f),
+                  Eigen::Vector3f(0, 50, 0.5f)}});
+  const Stage stage;
+  const image::LayerPixel alone = stage.middle(plate(0.5f), only(even(1)), at_distance(40));
+  const image::LayerPixel pixel = stage.middle(mesh, only(even(1)), at_distance(40));
+  EXPECT_NEAR(alone.red, 1, 0.01);
+  EXPECT_GT(pixel.red, 0.5);   // hidden, with nothing given back
+  EXPECT_LT(pixel.red, 0.75);  // half of it given back by a wall as light as the plate
+}
+
+// Light of one direction on a Lambert surface: order 2 keeps the cosine within 9 % of its height
+// (Ramamoorthi and Hanrahan 2001).
+TEST(Environment, IrradianceOfOneDirectionIsNearlyTheCosine) {
+  const Vector3 from = Vector3(1, 2, -3).normalized();
+  constexpr double kHalfDeg = 8;
+  const double solid_sr = 2 * kPi * (1 - std::cos(radians(kHalfDeg)));
+  const auto radiance = static_cast<float>(kPi / solid_sr);
+  const Environment light = Environment::of([&](const Vector3& d) {
+    return d.dot(from) > std::cos(radians(kHalfDeg)) ? Rgb{radiance, 0, 0} : Rgb{0, 0, 0};
+  });
+  for (const Vector3& n :
+       {from, Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, -1), Vector3(0, 0, 1)}) {
+    EXPECT_NEAR(static_cast<double>(light.irradiance_over_pi(n.cast<float>())[0]),
+                std::max(0.0, n.dot(from)),
+                0.09);
+    EXPECT_EQ(light.irradiance_over_pi(n.cast<float>())[1], 0);
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::render

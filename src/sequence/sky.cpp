@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::sequence {
+namespace {
+
+using render::Environment;
+using render::Rgb;
+
+constexpr double kLowestSunDeg = 1;
+
+double sine(double elevation_deg) {
+  return std::sin(radians(std::clamp(elevation_deg, kLowestSunDeg, 90.0)));
+}
+
+double elevation_deg(const Vector3& direction) {
+  return degrees(std::asin(std::clamp(-direction.z(), -1.0, 1.0)));
+}
+
+double angle_deg(const Vector3& a, const Vector3& b) {
+  return degrees(std::acos(std::clamp(a.dot(b), -1.0, 1.0)));
+}
+
+Environment grey(const std::function<double(const Vector3&)>& radiance) {
+  return Environment::of([&](const Vector3& d) {
+    const auto value = static_cast<float>(radiance(d));
+    return Rgb{value, value, value};
+  });
+}
+
+// The luminance by direction, its irradiance over pi on a level surface, and its mean over what is
+// usually seen.
+struct Measured {
+  double level = 0;
+  double seen = 0;
+};
+
+Measured measured(const std::function<double(const Vector3&)>& luminance, const Vector3& to_sun) {
+  constexpr int kElevations = 90;
+  constexpr int kAzimuths = 180;
+  constexpr double kLowestSeenDeg = 3;
+  constexpr double kHighestSeenDeg = 45;
+  constexpr double kFromSunDeg = 40;
+  Measured result;
+  double weights = 0;
+  for (int i = 0; i < kElevations; ++i) {
+    const double up = (i + 0.5) / kElevations;  // sine: bands of equal solid angle
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2 * kPi * (k + 0.5) / kAzimuths;
+      const double level = std::sqrt(1 - up * up);
+      const Vector3 d(level * std::cos(azimuth), level * std::sin(azimuth), -up);
+      const double here = luminance(d);
+      result.level += 2 * here * up / (kElevations * kAzimuths);
+      const double elevation = elevation_deg(d);
+      if (elevation < kLowestSeenDeg || elevation > kHighestSeenDeg ||
+          angle_deg(d, to_sun) < kFromSunDeg)
+        continue;
+      result.seen += here, weights += 1;
+    }
+  }
+  if (weights > 0) result.seen /= weights;
+  return result;
+}
+
+}  // namespace
+
+double sun_illuminance_klx(double elevation_deg) {
+  return 127.5 * std::exp(-0.21 / sine(elevation_deg));
+}
+
+double clear_sky_illuminance_klx(double elevation_deg) {
+  return 0.8 + 15.5 * std::sqrt(sine(elevation_deg));
+}
+
+double overcast_illuminance_klx(double elevation_deg) { return 0.3 + 21 * sine(elevation_deg); }
+
+double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
+  // Preetham et al. 1999, table 2, at turbidity 2.5.
+  constexpr double a = -1.0163, b = -0.4610, c = 5.2684, d = -2.2756, e = 0.2028;
+  const auto f = [&](double cosine, double gamma) {
+    const double cosine_gamma = std::cos(gamma);
+    return (1 + a * std::exp(b / cosine)) *
+           (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
+  };
+  // The horizon itself has no cosine to divide by.
+  constexpr double kLeastCosine = 0.01;
+  const double cosine = std::max(kLeastCosine, std::sin(radians(elevation_deg)));
+  const double sun_from_zenith = radians(90 - std::max(sun_elevation_deg, kLowestSunDeg));
+  return f(cosine, radians(from_sun_deg)) / f(1, sun_from_zenith);
+}
+
+double overcast_over_zenith(double elevation_deg) {
+  return (1 + 2 * std::sin(radians(elevation_deg))) / 3;
+}
+
+Skies skies(const Vector3& to_sun_in_world) {
+  const double sun_deg = elevation_deg(to_sun_in_world);
+  const auto clear = [&](const Vector3& d) {
+    if (d.z() > 0) return 0.0;
+    return clear_sky_over_zenith(elevation_deg(d), angle_deg(d, to_sun_in_world), sun_deg);
+  };
+  const auto overcast = [](const Vector3& d) {
+    return d.z() > 0 ? 0.0 : overcast_over_zenith(elevation_deg(d));
+  };
+  const Measured of_clear = measured(clear, to_sun_in_world);
+  const Measured of_overcast = measured(overcast, to_sun_in_world);
+  Skies result;
+  result.clear = grey([&](const Vector3& d) { return clear(d) / of_clear.level; });
+  result.overcast = grey([&](const Vector3& d) { return overcast(d) / of_overcast.level; });
+  result.ground = grey([](const Vector3& d) { return d.z() > 0 ? 1.0 : 0.0; });
+  result.clear_seen = of_clear.seen / of_clear.level;
+  result.overcast_seen = of_overcast.seen / of_overcast.level;
+  return result;
+}
+
+}  // namespace airtruth::sequence
