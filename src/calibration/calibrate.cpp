@@ -260,17 +260,14 @@ class Session {
       put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
       return;
     }
-    // A stated prior: the "standard clear" meteorological range of 23 km (Koschmieder's 3.912 over
-    // it at 550 nm), falling with wavelength as haze does (Angstrom 1929, exponent 1.3).
-    constexpr double kRangeKm = 23;
-    std::vector<Estimate> prior;
-    for (const double wavelength_nm : {610.0, 550.0, 465.0}) {
-      const double value = 3.912 / kRangeKm * std::pow(550 / wavelength_nm, 1.3);
-      prior.push_back({value, value});
-    }
-    put("air.extinction_per_km", prior);
+    // Nothing unmeasured is applied as if it were known: air that may be clear is drawn clear. The
+    // error is that of a visibility of 50 km, beyond which the international visibility code calls
+    // it exceptionally clear (Koschmieder's 3.912 over it).
+    constexpr double kRangeKm = 50;
+    const Estimate clear{0, 3.912 / kRangeKm};
+    put("air.extinction_per_km", {clear, clear, clear});
     result_.notes["air.extinction_per_km"] =
-        "a prior, not measured (standard clear air, visibility 23 km): " + air.why_no_extinction;
+        "not measured, and drawn as clear air: " + air.why_no_extinction;
   }
 
   void take_sun(const AirMeter& air, bool level_known) {

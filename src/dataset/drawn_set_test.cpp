@@ -147,7 +147,7 @@ TEST_F(DrawnSet, ABackgroundIsCalibratedOnceForAllItsSequences) {
                           sha256_of_file(out / "sequences" / name / (name + ".mkv"));
     }
     EXPECT_EQ(cameras.size(), 1u);
-    EXPECT_THAT(*cameras.begin(), HasSubstr("codec_step"));
+    EXPECT_THAT(*cameras.begin(), HasSubstr("extinction_per_km"));
   }
   EXPECT_EQ(bytes[1], bytes[2]);
 }

