@@ -76,6 +76,25 @@ TEST_F(Models, AnObjFileTakesStatedAxesAndScale) {
   EXPECT_THAT(error_of((folder_ / "a.obj").string(), options), testing::HasSubstr("the same axis"));
 }
 
+// A disc that stands for a turning propeller lets nine tenths of the light through and is dark,
+// whatever the file makes of it; a jet engine's fan is a disc of its own.
+TEST_F(Models, APropellersDiscIsFaintAndDark) {
+  const auto named = [&](const std::string& name) {
+    std::string text = asymmetric_ac();
+    text.replace(text.find("body"), 4, name);
+    write_file(folder_ / "a.ac", text);
+    return load_aircraft((folder_ / "a.ac").string()).mesh.materials.at(0);
+  };
+  for (const char* disc :
+       {"Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk.noshadow", "dh4_blur"}) {
+    EXPECT_FLOAT_EQ(named(disc).opacity, 0.1f) << disc;
+    EXPECT_LT(named(disc).diffuse[0], 0.1f) << disc;
+  }
+  for (const char* other :
+       {"body", "right_fan_disk", "no2engdisks", "Propeller", "ArCanopy-doublure"})
+    EXPECT_EQ(named(other).opacity, 1) << other;
+}
+
 TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   fs::create_directories(folder_ / "AI/Aircraft/t");
   write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());

@@ -17,8 +17,9 @@ namespace airtruth::aircraft {
 struct PartChoice {
   bool hidden = false;
   Eigen::Affine3d body_from_file = Eigen::Affine3d::Identity();
-  int part = 0;         // index into mesh.parts
-  float opacity = 1;    // times the material's own
+  int part = 0;                    // index into mesh.parts
+  float opacity = 1;               // times the material's own
+  bool is_propeller_disc = false;  // stands for blades that turn too fast to be seen
   std::string texture;  // below the files' folder; in place of the part's own; empty: its own
 };
 using ChoosePart = std::function<PartChoice(const std::vector<std::string>& names)>;

@@ -77,6 +77,26 @@ bool has_effect(const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), is_effect);
 }
 
+bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return text.find(word) != std::string::npos;
+  });
+}
+
+// Of a propeller or a rotor that turns fast; not of a jet engine's fan. FlightGear's models know
+// them by their names alone ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk").
+bool is_propeller_disc(const std::vector<std::string>& names) {
+  if (names.empty()) return false;
+  std::string name = names.back();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (contains_any(name, {"fan", "eng"})) return false;
+  if (contains_any(name, {"_blur", "-blur"}) || name.starts_with("disk") ||
+      name.starts_with("disc"))
+    return true;
+  return contains_any(name, {"prop", "prplr", "rotor"}) &&
+         contains_any(name, {"disk", "disc", "blur", "fast"});
+}
+
 // What the loader has no need to understand: lamps, and what shows in a cockpit
 // or by night alone.
 bool is_known(const std::string& type) {
@@ -129,6 +149,7 @@ class Loader {
       if (choice.hidden) return choice;
       choice.body_from_file = animated.body_from_model * model_from_file;
       choice.opacity = animated.opacity;
+      choice.is_propeller_disc = is_propeller_disc(names);
       if (!animated.texture.empty())
         choice.texture = find_texture(assembly_.files(), animated.texture, folders).string();
       if (animated.spin) choice.part = part_of(*animated.spin);
@@ -217,6 +238,7 @@ void read_bare(const fs::path& file,
   append(assembly, file, {file.parent_path()}, [&](const std::vector<std::string>& names) {
     PartChoice choice;
     choice.hidden = has_effect(names);
+    choice.is_propeller_disc = is_propeller_disc(names);
     choice.body_from_file = body_from_file;
     return choice;
   });
