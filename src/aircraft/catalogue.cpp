@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "aircraft/left_out.h"
 #include "aircraft/model_files.h"
 #include "aircraft/reader.h"
 #include "aircraft/wrapper.h"
@@ -138,8 +139,10 @@ void list_folder(const fs::path& root, std::vector<Entry>& entries) {
   for (const auto& folder : fs::directory_iterator(root)) {
     if (!folder.is_directory()) continue;
     const Sketches sketches = sketches_in(folder.path());
-    for (const Sketch* sketch : aircraft_among(sketches))
-      entries.push_back({name_of(sketch->file, root), sketch->file, root});
+    for (const Sketch* sketch : aircraft_among(sketches)) {
+      const std::string name = name_of(sketch->file, root);
+      if (!left_out().contains(name)) entries.push_back({name, sketch->file, root});
+    }
   }
 }
 
@@ -229,7 +232,8 @@ std::vector<std::string> liveries(const std::string& name) {
     if (known == sketches.end()) continue;
     const std::string model = model_of(sketches, known->second);
     for (const Sketch* sketch : aircraft_among(sketches))
-      if (!model.empty() && sketch != &known->second && model_of(sketches, *sketch) == model)
+      if (!model.empty() && sketch != &known->second && model_of(sketches, *sketch) == model &&
+          !left_out().contains(name_of(sketch->file, root)))
         result.push_back(name_of(sketch->file, root));
     break;
   }

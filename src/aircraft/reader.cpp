@@ -68,6 +68,9 @@ bool is_effect(const std::string& object) {
   static const std::array<const char*, 3> kLamps = {"light", "beacon", "strobe"};
   std::string name = object;
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // "Disk.noshadow" casts none.
+  if (const auto casts_none = name.find("noshadow"); casts_none != std::string::npos)
+    name.erase(casts_none, std::string("noshadow").size());
   const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
   if (std::any_of(kWords.begin(), kWords.end(), has)) return true;
   return object.ends_with("On") && std::any_of(kLamps.begin(), kLamps.end(), has);

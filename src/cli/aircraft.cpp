@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "aircraft/catalogue.h"
+#include "aircraft/left_out.h"
 #include "aircraft/scale.h"
 #include "base/error.h"
 #include "base/pattern.h"
@@ -22,6 +23,13 @@ std::string published_words(const std::string& name) {
   if (!size->is_known()) return size->type;
   return fmt::format(
       "{}: span {:.2f} m, length {:.2f} m", size->type, size->span_m, size->length_m);
+}
+
+void list_left_out(const std::string& filter, Context& context) {
+  for (const auto& [name, reason] : aircraft::left_out())
+    if (is_pattern(filter) ? matches(filter, name, LetterCase::kIgnored)
+                           : contains_ignoring_case(name, filter))
+      context.console().print(fmt::format("{:<40} {}\n", name, reason));
 }
 
 void list(const std::string& filter, bool sizes, Context& context) {
@@ -103,7 +111,16 @@ void add_aircraft(CLI::App& app, Context& context) {
                            "letter case does not matter");
   auto sizes = std::make_shared<bool>(false);
   list_command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
-  list_command->callback([filter, sizes, &context] { list(*filter, *sizes, context); });
+  auto is_left_out = std::make_shared<bool>(false);
+  list_command->add_flag("--left-out",
+                         *is_left_out,
+                         "In their place: the names of the package that are not offered, and why");
+  list_command->callback([filter, sizes, is_left_out, &context] {
+    if (*is_left_out)
+      list_left_out(*filter, context);
+    else
+      list(*filter, *sizes, context);
+  });
   auto* show_command = command->add_subcommand(
       "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
   auto arguments = std::make_shared<ShowArguments>();
