@@ -60,8 +60,8 @@ def filled(text, name):
 SCENE = common.SCENE.replace('name = "out"', "name = @NAME@").replace("aircraft =", "id = @NAME@\naircraft =")
 
 
-# All that a shell, a page and a plot can trip over in one; what is no UTF-8; what is too long; a path.
-NAMES["all"] = "-a'b\"c;$(touch pwned)`touch pwned`</script><b>x%s\n<script>document.title='pwned'</script>"
+# All that a shell, a page and a plot can trip over in one that a file can have.
+NAMES["all"] = "-a'b\"c;$(touch pwned)`touch pwned`%s<script>document.title='pwned'<b>x\\n{0}[a]*"
 SHORT = ("bytes", "long", "up", "all")
 SHORT_CHANGES = 6  # of the records, every n-th
 
@@ -274,8 +274,8 @@ class Tampered(Names):
 
     def light_commands(self, count):
         every = [("dataset", "verify", "set"), ("dataset", "report", "set", "-o", "r.html"), ("dataset", "export", "set", "-f", "yolo", "-o", "y"),
-                 ("evaluate", "set", f"{self.data}/results/opencv-mil", "--no-page", "-o", "evaluation")]
-        return [every[count % 4]]
+                 ("evaluate", "set", f"{self.data}/results/opencv-mil", "--no-page", "-o", "evaluation"), ("dataset", "build", f"{self.data}/set.toml", "--out", "set")]
+        return [every[count % len(every)]]
 
     def verified(self, what, change, words):
         """verify says what is wrong, even where the file outside is as the record has it."""
