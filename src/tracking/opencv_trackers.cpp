@@ -2,8 +2,14 @@
 #include "tracking/opencv_trackers.h"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -189,6 +195,55 @@ class Legacy : public Tracker {
   bool broken_ = false;
 };
 
+// OpenCV's Haar features, boosting and TLD draw from the C library's rand(), one sequence for the
+// whole process: what a tracker answers would depend on those that ran before it and beside it.
+// Here each has a sequence of its own, from its seed, and they take turns.
+class WithOwnRand : public Tracker {
+ public:
+  WithOwnRand(std::unique_ptr<Tracker> tracker, std::uint64_t seed)
+      : tracker_(std::move(tracker)), seed_(static_cast<unsigned>(seed)) {
+    const std::lock_guard lock(mutex());
+    setstate(initstate(seed_, numbers_.data(), numbers_.size()));
+  }
+  void load(const image::Picture& picture) override { tracker_->load(picture); }
+  void init(const Box& box) override {
+    const Turn turn(numbers_.data());
+    srandom(seed_);
+    tracker_->init(box);
+  }
+  Answer update() override {
+    const Turn turn(numbers_.data());
+    const auto began = std::chrono::steady_clock::now();
+    Answer answer = tracker_->update();
+    // Waiting for the turn is not the tracker's time.
+    answer.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return answer;
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  // rand() draws from `numbers` as long as this lives.
+  class Turn {
+   public:
+    explicit Turn(char* numbers) : lock_(mutex()), before_(setstate(numbers)) {}
+    ~Turn() { setstate(before_); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    std::lock_guard<std::mutex> lock_;
+    char* before_;
+  };
+
+  std::unique_ptr<Tracker> tracker_;
+  unsigned seed_;
+  std::array<char, 128> numbers_{};  // a size that initstate(3) knows
+};
+
 }  // namespace
 
 std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed) {
@@ -201,13 +256,17 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   const auto old = [&](auto make, double least_px = 0) {
     return std::make_unique<Legacy>(make, state, least_px);
   };
-  if (name == "opencv-mil") return modern([] { return cv::TrackerMIL::create(); }, kLeastHaarPx);
+  const auto with_own_rand = [&](std::unique_ptr<Tracker> tracker) {
+    return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own
+  };
+  if (name == "opencv-mil")
+    return with_own_rand(modern([] { return cv::TrackerMIL::create(); }, kLeastHaarPx));
   if (name == "opencv-kcf") return modern([] { return cv::TrackerKCF::create(); });
   if (name == "opencv-csrt") return modern([] { return cv::TrackerCSRT::create(); });
   if (name == "opencv-boosting")
-    return old([] { return legacy::TrackerBoosting::create(); }, kLeastHaarPx);
+    return with_own_rand(old([] { return legacy::TrackerBoosting::create(); }, kLeastHaarPx));
   if (name == "opencv-medianflow") return old([] { return legacy::TrackerMedianFlow::create(); });
-  if (name == "opencv-tld") return old([] { return legacy::TrackerTLD::create(); });
+  if (name == "opencv-tld") return with_own_rand(old([] { return legacy::TrackerTLD::create(); }));
   if (name == "opencv-mosse") return old([] { return legacy::TrackerMOSSE::create(); });
   return nullptr;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstdlib>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -152,9 +154,42 @@ TEST(Trackers, CanBeBegunAgain) {
       const Box found = tracker->update().box_px;
       if (name == "opencv-tld" || name == "opencv-mosse" || name == "opencv-boosting")
         continue;  // they must answer
-      EXPECT_NEAR(found.x + found.width / 2, 60 + size / 2.0, 6) << name << size;
-      EXPECT_NEAR(found.y + found.height / 2, 60 + size / 4.0, 6) << name << size;
+      // OpenCV's MIL draws its features at random, and finds 16 x 8 px to within their width.
+      const double near_px = name == "opencv-mil" ? 12 : 6;
+      EXPECT_NEAR(found.x + found.width / 2, 60 + size / 2.0, near_px) << name << size;
+      EXPECT_NEAR(found.y + found.height / 2, 60 + size / 4.0, near_px) << name << size;
     }
+  }
+}
+
+std::vector<Box> answers_of(Tracker& tracker, const std::function<void()>& between) {
+  const auto frame = [](int k) { return scene(60 + 3 * k, 60 + k, 30, 18, 1); };
+  const image::Picture first = frame(0);
+  tracker.load(first);
+  tracker.init({60, 60, 30, 18});
+  std::vector<Box> answers;
+  for (int k = 1; k < 8; ++k) {
+    between();
+    const image::Picture picture = frame(k);
+    tracker.load(picture);
+    answers.push_back(tracker.update().box_px);
+  }
+  return answers;
+}
+
+// Whatever ran before in the process, and runs beside it.
+TEST(Trackers, OneSeedIsOneResult) {
+  for (const std::string& name : tracker_names()) {
+    const auto alone = answers_of(*make_tracker(name, {}), [] {});
+    std::rand();
+    const auto after = answers_of(*make_tracker(name, {}), [] {});
+    EXPECT_EQ(alone, after) << name;
+    const auto other = make_tracker(name, {});
+    const image::Picture picture = scene(80, 40, 24, 20, 1);
+    other->load(picture);
+    other->init({80, 40, 24, 20});
+    const auto beside = answers_of(*make_tracker(name, {}), [&] { other->update(); });
+    EXPECT_EQ(alone, beside) << name;
   }
 }
 

@@ -345,6 +345,7 @@ def body():
                 tampered.step = SHORT_CHANGES if is_short else 1
                 getattr(tampered, part)()
                 continue
+            names.outside = names.outside_now()
             for label, name in chosen.items():
                 getattr(names, part)(label, name)
                 names.see_outside(f"{part} {label}")
