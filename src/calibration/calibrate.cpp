@@ -201,16 +201,24 @@ class Session {
     const motion::HorizonFinder finder(lens, options_.own_aircraft);
     std::vector<std::optional<motion::HorizonFinder::Found>> found;
     std::vector<Vector3> ups;  // in the first frame's camera
+    std::size_t parted = 0;
     for (const Sampled& sampled : sampled_) {
       if (options_.stop.stop_requested()) throw Interrupted();
       found.push_back(finder.find(sampled.picture));
       if (!found.back()) continue;
+      if (!found.back()->is_sharp()) {
+        // Two colours part here, but not along a line: a shore, a ridge or the edge of a wood.
+        ++parted;
+        found.back().reset();
+        continue;
+      }
       const YawPitchRoll attitude = motion::attitude_from_up(found.back()->up_in_cam);
       result_.horizons.push_back(
           {sampled.frame, attitude.pitch_deg, attitude.roll_deg, found.back()->separation});
       if (sampled.turn_known && found.back()->is_sharp())
         ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
     }
+    if (result_.horizons.empty()) lack("horizon", why_no_horizon(parted));
     tint_sky(lens, found);
     AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
     const auto first_from_level = levelled(ups);
@@ -283,6 +291,15 @@ class Session {
       lack("light.sun_azimuth_deg", why);
       lack("light.sun_elevation_deg", why);
     }
+  }
+
+  std::string why_no_horizon(std::size_t parted_frames) const {
+    if (parted_frames == 0) return "no frame has a sky that differs from its ground";
+    return fmt::format(
+        "{} of {} frames part into two colours, but in none along a line that is "
+        "sharp from side to side: what hides the horizon is taken for no horizon",
+        parted_frames,
+        sampled_.size());
   }
 
   // The sampled frame in the middle of those with a horizon, sky tinted.
