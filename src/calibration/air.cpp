@@ -60,7 +60,7 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
   const SkyCurves sky = sky_curves(sky_light(Quaternion::Identity()));
   air.airlight = airlight_of(sky, 0);
   if (!air.airlight) {
-    air.why = "the horizon is not seen, and so not the sky just above it";
+    air.why = "no horizon is found, and so no sky just above it";
     air.why_no_extinction = ground_.altitude_m ? air.why : air.why + "; and " + ground_.why_unknown;
   } else if (!ground_.altitude_m) {
     air.why_no_extinction = ground_.why_unknown;

@@ -199,26 +199,16 @@ class Session {
     const lens::Lens lens =
         options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
     const motion::HorizonFinder finder(lens, options_.own_aircraft);
-    std::vector<std::optional<motion::HorizonFinder::Found>> found;
+    const auto found = horizons_of(finder);
     std::vector<Vector3> ups;  // in the first frame's camera
-    std::size_t parted = 0;
-    for (const Sampled& sampled : sampled_) {
-      if (options_.stop.stop_requested()) throw Interrupted();
-      found.push_back(finder.find(sampled.picture));
-      if (!found.back()) continue;
-      if (!found.back()->is_sharp()) {
-        // Two colours part here, but not along a line: a shore, a ridge or the edge of a wood.
-        ++parted;
-        found.back().reset();
-        continue;
-      }
-      const YawPitchRoll attitude = motion::attitude_from_up(found.back()->up_in_cam);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!found[i]) continue;
+      const YawPitchRoll attitude = motion::attitude_from_up(found[i]->up_in_cam);
       result_.horizons.push_back(
-          {sampled.frame, attitude.pitch_deg, attitude.roll_deg, found.back()->separation});
-      if (sampled.turn_known && found.back()->is_sharp())
-        ups.push_back(sampled.cam_from_first.conjugate() * found.back()->up_in_cam);
+          {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found[i]->separation});
+      if (sampled_[i].turn_known)
+        ups.push_back(sampled_[i].cam_from_first.conjugate() * found[i]->up_in_cam);
     }
-    if (result_.horizons.empty()) lack("horizon", why_no_horizon(parted));
     tint_sky(lens, found);
     AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
     const auto first_from_level = levelled(ups);
@@ -293,13 +283,40 @@ class Session {
     }
   }
 
-  std::string why_no_horizon(std::size_t parted_frames) const {
-    if (parted_frames == 0) return "no frame has a sky that differs from its ground";
-    return fmt::format(
-        "{} of {} frames part into two colours, but in none along a line that is "
-        "sharp from side to side: what hides the horizon is taken for no horizon",
-        parted_frames,
-        sampled_.size());
+  // The horizons that are trusted. Where most frames have a sky that parts from something without a
+  // sharp line, the line of the others is a chance one too, and none is taken.
+  std::vector<std::optional<motion::HorizonFinder::Found>> horizons_of(
+      const motion::HorizonFinder& finder) {
+    std::vector<std::optional<motion::HorizonFinder::Found>> found;
+    std::size_t parted = 0, sharp = 0;
+    for (const Sampled& sampled : sampled_) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      found.push_back(finder.find(sampled.picture));
+      if (!found.back()) continue;
+      ++(found.back()->is_sharp() ? sharp : parted);
+      if (!found.back()->is_sharp()) found.back().reset();
+    }
+    if (sharp == 0 && parted == 0) {
+      lack("horizon",
+           fmt::format("in none of {} frames do a sky and a ground part", sampled_.size()));
+    } else if (sharp < parted) {
+      lack("horizon",
+           fmt::format("a line that is sharp from side to side parts sky and ground in {} of {} "
+                       "frames; in {} they part without one, as at a coast, hills, haze or "
+                       "clouds: no pitch, roll or sky is taken from it",
+                       sharp,
+                       sampled_.size(),
+                       parted));
+      for (auto& horizon : found) horizon.reset();
+    } else if (parted > 0) {
+      result_.notes["horizon"] = fmt::format(
+          "measured in {} of {} frames; in {} sky and ground part without a line that "
+          "is sharp from side to side, and these are left out",
+          sharp,
+          sampled_.size(),
+          parted);
+    }
+    return found;
   }
 
   // The sampled frame in the middle of those with a horizon, sky tinted.

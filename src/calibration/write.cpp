@@ -43,6 +43,15 @@ constexpr std::array<Key, 13> kKeys = {{
     {"light", "sun_elevation_deg", "above the horizon"},
 }};
 
+// Where the horizon is not had from every frame: why not.
+std::string horizon_line(const Calibration& c) {
+  if (const auto why = c.missing.find("horizon"); why != c.missing.end())
+    return "# horizon: not to be had: " + why->second + "\n";
+  if (const auto note = c.notes.find("horizon"); note != c.notes.end())
+    return "# horizon: " + note->second + "\n";
+  return "";
+}
+
 }  // namespace
 
 std::string toml_from(const Calibration& c) {
@@ -58,6 +67,7 @@ std::string toml_from(const Calibration& c) {
                       c.frames);
   if (!c.lens.empty()) text += fmt::format("lens = \"{}\"\n", c.lens);
   if (c.tone.gamma != 0) text += fmt::format("gamma = {}\n", c.tone.gamma);
+  text += horizon_line(c);
   std::string table;
   for (const Key& key : kKeys) {
     const std::string name = std::string(key.table) + "." + key.key;

@@ -54,8 +54,9 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   write_file(arguments.out, calibration::toml_from(found));
   if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
   for (const auto& [key, why] : found.missing) console.warning(key + " cannot be had: " + why);
-  if (const auto note = found.notes.find("air.extinction_per_km"); note != found.notes.end())
-    console.warning(note->first + " is " + note->second);
+  for (const char* key : {"horizon", "air.extinction_per_km"})
+    if (const auto note = found.notes.find(key); note != found.notes.end())
+      console.warning(note->first + " is " + note->second);
   console.result(fmt::format(
       "{}: {} values from {} frames", arguments.out, found.values.size(), found.frames));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace airtruth::motion {
@@ -23,6 +24,10 @@ struct Sweep {
 // Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
 constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
 constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
+// The line itself, and the sky above it.
+constexpr Sweep kAbove{0, 1.3, 0.04, 0.2, 0};
+constexpr double kSkyFromDeg = 0.5;   // over the line, where an edge's own softness has ended
+constexpr float kLeastStepCodes = 1;  // across the line, beyond the slope of the sky
 
 // Bilinear; not a number outside, and on the own aircraft.
 float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
@@ -88,7 +93,6 @@ Unrolled unroll(const image::Picture& picture,
 struct Line {
   double pitch_deg = 0, roll_deg = 0;  // elevation = pitch cos(azimuth) + roll sin(azimuth)
   float sum = 0;
-  double sharpness = 0;
 };
 
 Line best_line(const Unrolled& picture, const Sweep& sweep) {
@@ -97,7 +101,7 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
   for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
     for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
       float sum = 0;
-      int up = 0, down = 0;
+      int seen = 0;
       for (std::size_t i = 0; i < columns; ++i) {
         const double e =
             pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
@@ -108,33 +112,73 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
                 .step[i * static_cast<std::size_t>(picture.rows) + static_cast<std::size_t>(row)];
         if (std::isnan(step)) continue;
         sum += step;
-        up += step > 0 ? 1 : 0;
-        down += step < 0 ? 1 : 0;
+        ++seen;
       }
-      if (up + down < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
-      best = {pitch, roll, sum, double(std::max(up, down)) / (up + down)};
+      if (seen < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
+      best = {pitch, roll, sum};
     }
   return best;
 }
 
-HorizonEdge swept(const image::Picture& picture,
-                  const lens::Lens& lens,
-                  const image::Mask* own_aircraft,
-                  const Vector3& up_in_cam,
-                  const Sweep& sweep) {
-  // Level axes: ahead is the optical axis laid level.
+// The mean slope of the sky above the line in a column, as the step that it makes across
+// `across_deg` on either side. Not a number where no sky is seen.
+float sky_slope(const float* step, const Sweep& sweep) {
+  const auto row = [&](double deg) { return static_cast<int>(std::lround(deg / sweep.step_deg)); };
+  float sum = 0;
+  int seen = 0;
+  for (int r = row(kSkyFromDeg); r <= row(sweep.high_deg) - 1; ++r) {
+    if (std::isnan(step[r])) continue;
+    sum += step[r];
+    ++seen;
+  }
+  return seen > 0 ? sum / static_cast<float>(seen) : kNothing;
+}
+
+double sharpness_of(const Unrolled& picture) {
+  int seen = 0, up = 0, down = 0;
+  for (std::size_t i = 0; i < picture.azimuth_rad.size(); ++i) {
+    const float* step = &picture.step[i * static_cast<std::size_t>(picture.rows)];
+    const float sky = sky_slope(step, kAbove);
+    if (std::isnan(step[0]) || std::isnan(sky)) continue;
+    ++seen;
+    up += step[0] > std::abs(sky) + kLeastStepCodes ? 1 : 0;
+    down += step[0] < -std::abs(sky) - kLeastStepCodes ? 1 : 0;
+  }
+  return seen < kFewestColumns ? 0 : double(std::max(up, down)) / seen;
+}
+
+// Level axes: ahead is the optical axis laid level. Empty where it looks straight up or down.
+std::optional<Quaternion> cam_from_level_axes(const Vector3& up_in_cam) {
   const Vector3 down = -up_in_cam.normalized();
   Vector3 ahead = Vector3::UnitZ() - down * down.z();
-  if (ahead.norm() < 0.1) return {up_in_cam, 0};  // looking straight up or down
+  if (ahead.norm() < 0.1) return std::nullopt;
   ahead.normalize();
   Matrix3 axes;
   axes << ahead, down.cross(ahead), down;
-  const Quaternion cam_from_level(axes);
-  const Line line = best_line(unroll(picture, lens, own_aircraft, cam_from_level, sweep), sweep);
+  return Quaternion(axes);
+}
+
+Vector3 swept(const image::Picture& picture,
+              const lens::Lens& lens,
+              const image::Mask* own_aircraft,
+              const Vector3& up_in_cam,
+              const Sweep& sweep) {
+  const auto cam_from_level = cam_from_level_axes(up_in_cam);
+  if (!cam_from_level) return up_in_cam;
+  const Line line = best_line(unroll(picture, lens, own_aircraft, *cam_from_level, sweep), sweep);
   // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
   const Vector3 up =
       Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1);
-  return {cam_from_level * up.normalized(), line.sharpness};
+  return *cam_from_level * up.normalized();
+}
+
+HorizonEdge weighed(const image::Picture& picture,
+                    const lens::Lens& lens,
+                    const image::Mask* own_aircraft,
+                    const Vector3& up_in_cam) {
+  const auto cam_from_level = cam_from_level_axes(up_in_cam);
+  if (!cam_from_level) return {up_in_cam, 0};
+  return {up_in_cam, sharpness_of(unroll(picture, lens, own_aircraft, *cam_from_level, kAbove))};
 }
 
 }  // namespace
@@ -143,15 +187,16 @@ HorizonEdge horizon_edge(const image::Picture& picture,
                          const lens::Lens& lens,
                          const image::Mask* own_aircraft,
                          const Vector3& guess_up_in_cam) {
-  const HorizonEdge edge = swept(picture, lens, own_aircraft, guess_up_in_cam, kWide);
-  return swept(picture, lens, own_aircraft, edge.up_in_cam, kNarrow);
+  const Vector3 up = swept(picture, lens, own_aircraft, guess_up_in_cam, kWide);
+  return horizon_edge_beside(picture, lens, own_aircraft, up);
 }
 
 HorizonEdge horizon_edge_beside(const image::Picture& picture,
                                 const lens::Lens& lens,
                                 const image::Mask* own_aircraft,
                                 const Vector3& guess_up_in_cam) {
-  return swept(picture, lens, own_aircraft, guess_up_in_cam, kNarrow);
+  return weighed(
+      picture, lens, own_aircraft, swept(picture, lens, own_aircraft, guess_up_in_cam, kNarrow));
 }
 
 }  // namespace airtruth::motion

@@ -10,7 +10,9 @@ namespace airtruth::motion {
 
 struct HorizonEdge {
   Vector3 up_in_cam{0, -1, 0};
-  double sharpness = 0;  // share of the line across which the picture steps the same way, 0..1
+  // Share of the line, 0..1, across which luma steps by a code value more than the slope of the sky
+  // above makes it step, the same way all along. A slope alone, however steep, is no edge.
+  double sharpness = 0;
 };
 
 // The plane near a first guess of it along which luma steps most: the picture is unrolled into

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -153,8 +154,10 @@ void take_measured(scene::Scene& scene,
         if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
         value = seen;
         if (value) return;
-        const std::string what =
-            fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
+        std::string what = fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
+        const auto horizon = found.missing.find("horizon");
+        if (key == std::string_view("air.airlight") && horizon != found.missing.end())
+          what += " (" + horizon->second + ")";
         if (!stated.realism.fallback)
           throw Error(
               what + "; state it, or set fallback = true in [realism] to leave it out",
