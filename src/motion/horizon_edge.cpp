@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kColumns = 180;  // of azimuth, where the picture is seen
 constexpr int kFewestColumns = 30;
-constexpr float kLargestStep = 6;  // code values: what is more counts no more
+constexpr float kLargestStep = 6;  // code values
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 struct Sweep {
@@ -24,9 +24,11 @@ struct Sweep {
 // Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
 constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
 constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
-// The line itself, and the sky above it.
-constexpr Sweep kAbove{0, 1.3, 0.04, 0.2, 0};
-constexpr double kSkyFromDeg = 0.5;   // over the line, where an edge's own softness has ended
+// The line alone.
+constexpr Sweep kLine{0, 0, 0.04, 0.2, 0};
+// The sky whose slope is taken from a step: beyond what is compared, where an edge's own softness
+// has ended.
+constexpr double kSkyFromDeg = 0.3, kSkyToDeg = 1.1;
 constexpr float kLeastStepCodes = 1;  // across the line, beyond the slope of the sky
 
 // Bilinear; not a number outside, and on the own aircraft.
@@ -46,12 +48,47 @@ float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, co
   return a * (1 - fy) + b * fy;
 }
 
-// The step of luma from below to above, by azimuth and elevation.
+// The step of luma from below to above, by azimuth and elevation, and the step that the slope of
+// the sky above makes over the same angle: 0 where that is not seen.
 struct Unrolled {
   std::vector<double> azimuth_rad;
-  std::vector<float> step;  // [column][row]
+  std::vector<float> step, sky;  // [column][row]
   int rows = 0;
+  std::size_t at(std::size_t column, int row) const {
+    return column * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
+  }
 };
+
+// The mean over so many rows on either side of luma above less luma below.
+float step_at(const std::vector<float>& luma, int row, int across) {
+  float sum = 0;
+  for (int k = 1; k <= across; ++k)
+    sum += luma[static_cast<std::size_t>(row + k)] - luma[static_cast<std::size_t>(row - k)];
+  return sum / static_cast<float>(across);
+}
+
+struct Rows {
+  int across, sky_from, sky_to;
+};
+
+float sky_at(const std::vector<float>& luma, int row, const Rows& rows) {
+  float sum = 0;
+  int seen = 0;
+  for (int r = row + rows.sky_from; r <= row + rows.sky_to; ++r) {
+    const float step = step_at(luma, r, rows.across);
+    if (std::isnan(step)) continue;
+    sum += step;
+    ++seen;
+  }
+  return seen > 0 ? sum / static_cast<float>(seen) : 0;
+}
+
+Rows rows_of(const Sweep& sweep) {
+  const auto rows = [&](double deg) { return static_cast<int>(std::lround(deg / sweep.step_deg)); };
+  return {std::max(1, rows(sweep.across_deg)),
+          rows(sweep.across_deg + kSkyFromDeg),
+          rows(sweep.across_deg + kSkyToDeg)};
+}
 
 // Level: x ahead along the camera's own axis as far as it is level, y right, z down.
 Unrolled unroll(const image::Picture& picture,
@@ -60,31 +97,29 @@ Unrolled unroll(const image::Picture& picture,
                 const Quaternion& cam_from_level,
                 const Sweep& sweep) {
   Unrolled result;
-  const int across = std::max(1, static_cast<int>(std::lround(sweep.across_deg / sweep.step_deg)));
-  result.rows = static_cast<int>((sweep.high_deg - sweep.low_deg) / sweep.step_deg) + 1;
+  const Rows rows = rows_of(sweep);
+  result.rows =
+      static_cast<int>(std::lround((sweep.high_deg - sweep.low_deg) / sweep.step_deg)) + 1;
   const double half_rad = std::min(
       kPi, radians(std::max(lens.horizontal_fov_deg(), lens.vertical_fov_deg())) / 2 * 1.1);
-  const int rows = result.rows + 2 * across;
-  std::vector<float> luma(static_cast<std::size_t>(rows));
+  std::vector<float> luma(static_cast<std::size_t>(result.rows + 2 * rows.across + rows.sky_to));
   for (int i = 0; i < kColumns; ++i) {
     const double azimuth = half_rad * (2.0 * (i + 0.5) / kColumns - 1);
     bool any = false;
-    for (int r = 0; r < rows; ++r) {
-      const double e = radians(sweep.low_deg + (r - across) * sweep.step_deg);
+    for (std::size_t r = 0; r < luma.size(); ++r) {
+      const double e =
+          radians(sweep.low_deg + (static_cast<int>(r) - rows.across) * sweep.step_deg);
       const Vector3 direction(
           std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), -std::sin(e));
       const auto pixel = lens.pixel_from_cam(cam_from_level * direction);
-      luma[static_cast<std::size_t>(r)] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
-      any = any || !std::isnan(luma[static_cast<std::size_t>(r)]);
+      luma[r] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
+      any = any || !std::isnan(luma[r]);
     }
     if (!any) continue;
     result.azimuth_rad.push_back(azimuth);
-    for (int r = across; r < across + result.rows; ++r) {
-      float sum = 0;
-      for (int k = 1; k <= across; ++k)
-        sum += luma[static_cast<std::size_t>(r + k)] - luma[static_cast<std::size_t>(r - k)];
-      result.step.push_back(
-          std::clamp(sum / static_cast<float>(across), -kLargestStep, kLargestStep));
+    for (int r = rows.across; r < rows.across + result.rows; ++r) {
+      result.step.push_back(step_at(luma, r, rows.across));
+      result.sky.push_back(sky_at(luma, r, rows));
     }
   }
   return result;
@@ -95,8 +130,22 @@ struct Line {
   float sum = 0;
 };
 
+// A step less what the slope of the sky makes of it; never of the other sign, or a strong edge
+// would cast one below itself. What is more than kLargestStep counts for little, which puts the
+// line of a strong edge into its middle.
+float edge_of(float step, float sky) {
+  constexpr float kShareOfMore = 0.02f;
+  if (std::isnan(step)) return kNothing;
+  const float size = std::max(0.0f, std::abs(step) - std::abs(sky));
+  const float more = std::max(0.0f, size - kLargestStep);
+  return std::copysign(size - more + kShareOfMore * more, step);
+}
+
 Line best_line(const Unrolled& picture, const Sweep& sweep) {
   Line best;
+  std::vector<float> edges;
+  for (std::size_t i = 0; i < picture.step.size(); ++i)
+    edges.push_back(edge_of(picture.step[i], picture.sky[i]));
   const std::size_t columns = picture.azimuth_rad.size();
   for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
     for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
@@ -107,11 +156,9 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
             pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
         const int row = static_cast<int>(std::lround((e - sweep.low_deg) / sweep.step_deg));
         if (row < 0 || row >= picture.rows) continue;
-        const float step =
-            picture
-                .step[i * static_cast<std::size_t>(picture.rows) + static_cast<std::size_t>(row)];
-        if (std::isnan(step)) continue;
-        sum += step;
+        const float edge = edges[picture.at(i, row)];
+        if (std::isnan(edge)) continue;
+        sum += edge;
         ++seen;
       }
       if (seen < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
@@ -120,29 +167,14 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
   return best;
 }
 
-// The mean slope of the sky above the line in a column, as the step that it makes across
-// `across_deg` on either side. Not a number where no sky is seen.
-float sky_slope(const float* step, const Sweep& sweep) {
-  const auto row = [&](double deg) { return static_cast<int>(std::lround(deg / sweep.step_deg)); };
-  float sum = 0;
-  int seen = 0;
-  for (int r = row(kSkyFromDeg); r <= row(sweep.high_deg) - 1; ++r) {
-    if (std::isnan(step[r])) continue;
-    sum += step[r];
-    ++seen;
-  }
-  return seen > 0 ? sum / static_cast<float>(seen) : kNothing;
-}
-
-double sharpness_of(const Unrolled& picture) {
+double sharpness_of(const Unrolled& line) {
   int seen = 0, up = 0, down = 0;
-  for (std::size_t i = 0; i < picture.azimuth_rad.size(); ++i) {
-    const float* step = &picture.step[i * static_cast<std::size_t>(picture.rows)];
-    const float sky = sky_slope(step, kAbove);
-    if (std::isnan(step[0]) || std::isnan(sky)) continue;
+  for (std::size_t i = 0; i < line.azimuth_rad.size(); ++i) {
+    if (std::isnan(line.step[i])) continue;
+    const float least = std::abs(line.sky[i]) + kLeastStepCodes;
     ++seen;
-    up += step[0] > std::abs(sky) + kLeastStepCodes ? 1 : 0;
-    down += step[0] < -std::abs(sky) - kLeastStepCodes ? 1 : 0;
+    up += line.step[i] > least ? 1 : 0;
+    down += line.step[i] < -least ? 1 : 0;
   }
   return seen < kFewestColumns ? 0 : double(std::max(up, down)) / seen;
 }
@@ -178,7 +210,7 @@ HorizonEdge weighed(const image::Picture& picture,
                     const Vector3& up_in_cam) {
   const auto cam_from_level = cam_from_level_axes(up_in_cam);
   if (!cam_from_level) return {up_in_cam, 0};
-  return {up_in_cam, sharpness_of(unroll(picture, lens, own_aircraft, *cam_from_level, kAbove))};
+  return {up_in_cam, sharpness_of(unroll(picture, lens, own_aircraft, *cam_from_level, kLine))};
 }
 
 }  // namespace

@@ -15,10 +15,11 @@ struct HorizonEdge {
   double sharpness = 0;
 };
 
-// The plane near a first guess of it along which luma steps most: the picture is unrolled into
-// elevation over azimuth about the guess, where planes near it are sines, and the step is summed
-// along each, cut off at a few code values so that a weak step all along counts more than strong
-// ones here and there. Coarse first, then about what was found.
+// The plane near a first guess of it along which luma steps most, less what the slope of the sky
+// above makes it step: the picture is unrolled into elevation over azimuth about the guess, where
+// planes near it are sines, and the step is summed along each, cut off at a few code values so that
+// a weak step all along counts more than strong ones here and there. Coarse first, then about what
+// was found.
 HorizonEdge horizon_edge(const image::Picture& picture,
                          const lens::Lens& lens,
                          const image::Mask* own_aircraft,
