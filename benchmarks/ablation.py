@@ -4,28 +4,33 @@
 
 Needs clips of real aircraft with boxes (AIRTRUTH_SHARED/footage; their provenance stands there). For each clip: its camera
 is calibrated, an aircraft is put beside the real one with each stage added to those before, and a judge is trained on the
-other clips. Prints Markdown tables. What is there already is not made again.
+other clips, and within each. Prints Markdown tables; leaves those of each stage and a picture of its pairs in OUT/NUMBER.md,
+.json and .png. What is there already is not made again. A clip that `compare` refuses is named and left out.
 """
 
 import argparse
+import json
 import os
 import subprocess
 import sys
+import time
 import tomllib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-# clip, boxes' origin, aircraft, yaw (0: seen from behind), vertical view, sun azimuth and elevation
-CLIPS = {
-    "cumulus_a4": ("fixed-wing", 0, "c172/news", 5, 41, 150, 50),
-    "overcast_b4": ("fixed-wing", 0, "c172/news", 175, 41, 0, 60),
-    "V_AIRPLANE_001": ("ground-real", 1, "738/738-Delta", -60, 12, 0, 50),
-    "V_AIRPLANE_002": ("ground-real", 1, "738/738-Delta", -75, 12, 0, 50),
-    "V_AIRPLANE_003": ("ground-real", 1, "738/738-JAL", -80, 12, 0, 50),
-    "V_AIRPLANE_008": ("ground-real", 1, "738/738-Belavia", 110, 12, 180, 30),
-    "V_AIRPLANE_018": ("ground-real", 1, "738/738-Belavia", 120, 12, 180, 30),
-    "V_AIRPLANE_035": ("ground-real", 1, "738/738-Belavia", 120, 12, 180, 30),
-    "V_AIRPLANE_049": ("ground-real", 1, "c172/news", 150, 12, 180, 30),
-}
+# The clips are split once, by name. Whoever works on light, optics or noise looks at these alone ...
+LOOKED_AT = (["cumulus_a4", "overcast_b4"] + [f"V_AIRPLANE_{n:03}" for n in (1, 2, 3, 4, 6, 8, 9, 13, 15, 18, 35, 49)]
+             + [f"V_HELICOPTER_{n:03}" for n in (1, 2, 3, 4)])
+# ... and measures on these once, when it is done.
+HELD_BACK = ([f"V_AIRPLANE_{n:03}" for n in (5, 7, 10, 11, 12, 14, 16, 17)]
+             + [f"V_HELICOPTER_{n:03}" for n in (5, 6, 7, 8, 9, 10, 11)])
+# What stands where the pose search finds none: aircraft, yaw (0: seen from behind).
+POSE = {"V_AIRPLANE_001": ("738/738-Delta", -60), "V_AIRPLANE_002": ("738/738-Delta", -75), "V_AIRPLANE_003": ("738/738-JAL", -80),
+        "V_AIRPLANE_008": ("738/738-Belavia", 110), "V_AIRPLANE_018": ("738/738-Belavia", 120),
+        "V_AIRPLANE_035": ("738/738-Belavia", 120), "V_AIRPLANE_049": ("c172/news", 150),
+        "cumulus_a4": ("c172/news", 5), "overcast_b4": ("c172/news", 175)}
+SUN = {"cumulus_a4": (150, 50), "overcast_b4": (0, 60), "V_AIRPLANE_008": (180, 30), "V_AIRPLANE_018": (180, 30),
+       "V_AIRPLANE_035": (180, 30), "V_AIRPLANE_049": (180, 30)}  # azimuth, elevation
+OTHER_SUN = (0, 50)
 # Each stage has the tables of those before it; None: another method.
 STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ air", ["air"]), ("+ optics", ["optics"]),
           ("+ noise", ["noise"]), ("+ codec (all)", ["codec"])]
@@ -37,6 +42,18 @@ def run(command):
     if process.returncode != 0:
         sys.exit(f"ablation: {' '.join(command)} failed:\n{process.stderr}")
     return process.stdout
+
+
+def place_of(shared, clip):
+    """Video, boxes and the origin of the boxes."""
+    if not clip.startswith("V_"):
+        return (os.path.join(shared, "footage", "fixed-wing", clip + ".mp4"),
+                os.path.join(HERE, "..", "data", "real-aircraft", clip + ".csv"), 0)
+    for folder in ("ground-real", os.path.join("ground-real", "more")):
+        video = os.path.join(shared, "footage", folder, clip + ".mp4")
+        if os.path.exists(video):
+            return video, os.path.splitext(video)[0] + ".csv", 1
+    sys.exit(f"ablation: {clip}.mp4 is in no folder of {shared}/footage/ground-real")
 
 
 def toml_table(name, values):
@@ -61,58 +78,106 @@ def tables_of(camera, parts):
 
 
 def scene_text(clip, method, tables):
-    _, _, aircraft, yaw, view, azimuth, elevation = CLIPS[clip]
+    aircraft, yaw = POSE.get(clip, ("seahawk/Models/seahawk-3d-model" if "HELI" in clip else "738/738-Delta", 90))
+    azimuth, elevation = SUN.get(clip, OTHER_SUN)
+    view = 12 if clip.startswith("V_") else 41
     return (f'name = "s"\n[background]\nvideo = "unused.mp4"\n[lens]\nmodel = "pinhole"\nvertical_fov_deg = {view}\n'
             f"[light]\nsun_azimuth_deg = {azimuth}\nsun_elevation_deg = {elevation}\n"
             f'[[intruder]]\naircraft = "{aircraft}"\nyaw_deg = {yaw}\nwaypoints_ned_m = [[100, 0, 0], [200, 0, 0]]\n'
             f'speed_mps = 50\n[composite]\nmethod = "{method}"\n' + tables)
 
 
+def camera_of(program, video, camera_file):
+    if not os.path.exists(camera_file):
+        run([program, "--quiet", "calibrate", video, "-o", camera_file])
+    with open(camera_file, "rb") as file:
+        return tomllib.load(file)
+
+
+def compare(arguments, shared, clip, number, stage, parts):
+    """The comparison's folder; None where the clip is refused."""
+    video, boxes, origin = place_of(shared, clip)
+    camera = camera_of(arguments.program, video, os.path.join(arguments.out, clip + ".camera.toml")) if parts else {}
+    base = os.path.join(arguments.out, f"{number}")
+    os.makedirs(base, exist_ok=True)
+    scene = os.path.join(base, clip + ".toml")
+    with open(scene, "w") as file:
+        file.write(scene_text(clip, "chroma-key" if stage == "chroma-key" else "matte", tables_of(camera, parts)))
+    comparison = os.path.join(base, clip)
+    if os.path.exists(os.path.join(comparison, "patches.csv")):
+        return comparison
+    print(f"{stage}: {clip}", file=sys.stderr, flush=True)
+    process = subprocess.run([arguments.program, "--quiet", "compare", "--real", video, "--boxes", boxes, "--origin", str(origin),
+                              "--scene", scene, "-o", comparison, "--frames", str(arguments.frames), "--overwrite"],
+                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if process.returncode == 2:  # the clip cannot be compared; anything else is a fault of the program
+        print(f"ablation: {clip} is left out: {process.stderr.strip()}", file=sys.stderr, flush=True)
+        return None
+    if process.returncode != 0:
+        sys.exit(f"ablation: compare failed on {clip}:\n{process.stderr}")
+    return comparison
+
+
+def shown(interval):
+    return f"{interval['value']:.3f} ({interval['low']:.3f} to {interval['high']:.3f})"
+
+
+def print_tables(verdicts):
+    print("| stage | clips | folded area, from other clips (95 % over clips) | within clips | what alone tells most |")
+    print("|---|---:|---|---|---|")
+    for stage, verdict in verdicts:
+        telling = ", ".join(f"{one['name']} {one['area']:.2f}" for one in verdict["telling"][:3])
+        print(f"| {stage} | {len(verdict['clips'])} | {shown(verdict['across'])} | {shown(verdict['within'])} | {telling} |")
+    stages = " | ".join(stage for stage, _ in verdicts)
+    for key, words in (("across", "from other clips, not folded"), ("within", "within, folded")):
+        print(f"\n| clip, {words} | {stages} |\n|---|" + "---:|" * len(verdicts))
+        for clip in dict.fromkeys(one["name"] for _, verdict in verdicts for one in verdict["clips"]):
+            cells = [next((f"{one[key]:.3f}" for one in verdict["clips"] if one["name"] == clip), "-") for _, verdict in verdicts]
+            print(f"| {clip} | " + " | ".join(cells) + " |")
+    print(f"\n| inserted - real, median over clips (95 %) | real | {stages} |\n|---|---:|" + "---|" * len(verdicts))
+    for gap in verdicts[0][1]["gaps"]:
+        cells = [next((one for one in verdict["gaps"] if one["name"] == gap["name"]), None) for _, verdict in verdicts]
+        cells = ["-" if one is None or one["clips"] == 0 else "{value:+.3g} ({low:+.3g} to {high:+.3g})".format(**one["difference"])
+                 for one in cells]
+        print(f"| {gap['name']} | {gap['real']:.3g} | " + " | ".join(cells) + " |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("out")
-    parser.add_argument("--frames", type=int, default=120, help="of each clip, from its first box on")
+    parser.add_argument("--frames", type=int, default=120, help="of each clip, from the first box of its longest shot on")
+    parser.add_argument("--held-back", action="store_true",
+                        help="run the clips that nobody has looked at, and only those: once, when all else is done")
+    parser.add_argument("--stages", nargs="+", metavar="STAGE", choices=[stage for stage, _ in STAGES],
+                        help="only these of: " + ", ".join(f'"{stage}"' for stage, _ in STAGES))
+    parser.add_argument("--clips", nargs="+", metavar="CLIP", help="only these of the list")
     arguments = parser.parse_args()
     shared = os.environ.get("AIRTRUTH_SHARED")
     if not shared:
         sys.exit("ablation: AIRTRUTH_SHARED is not set; expected the folder that holds footage/")
+    clips = HELD_BACK if arguments.held_back else LOOKED_AT
+    for clip in arguments.clips or []:
+        if clip not in clips:
+            sys.exit(f"ablation: {clip} is not in the list that is run")
+    clips = [clip for clip in clips if not arguments.clips or clip in arguments.clips]
     os.makedirs(arguments.out, exist_ok=True)
-    program = arguments.program
+    began = time.monotonic()
     verdicts = []
     for number, (stage, _) in enumerate(STAGES):
+        if arguments.stages and stage not in arguments.stages:
+            continue
         parts = [part for _, more in STAGES[1:number + 1] if more for part in more]
-        folders = []
-        for clip, (folder, origin, *_) in CLIPS.items():
-            video = os.path.join(shared, "footage", folder, clip + ".mp4")
-            boxes = (os.path.join(HERE, "..", "data", "real-aircraft", clip + ".csv") if folder == "fixed-wing"
-                     else os.path.splitext(video)[0] + ".csv")
-            camera_file = os.path.join(arguments.out, clip + ".camera.toml")
-            if not os.path.exists(camera_file):
-                run([program, "--quiet", "calibrate", video, "-o", camera_file])
-            with open(camera_file, "rb") as file:
-                camera = tomllib.load(file)
-            base = os.path.join(arguments.out, f"{number}")
-            os.makedirs(base, exist_ok=True)
-            scene = os.path.join(base, clip + ".toml")
-            with open(scene, "w") as file:
-                file.write(scene_text(clip, "chroma-key" if stage == "chroma-key" else "matte", tables_of(camera, parts)))
-            comparison = os.path.join(base, clip)
-            if not os.path.exists(os.path.join(comparison, "patches.csv")):
-                print(f"{stage}: {clip}", file=sys.stderr)
-                run([program, "--quiet", "compare", "--real", video, "--boxes", boxes, "--origin", str(origin), "--scene", scene,
-                     "-o", comparison, "--frames", str(arguments.frames), "--overwrite"])
-            folders.append(comparison)
-        verdicts.append((stage, run([program, "judge", *folders]).splitlines()))
-    print("| stage | area under the curve | what alone tells most |\n|---|---|---|")
-    for stage, lines in verdicts:
-        telling = lines[lines.index("what alone tells most:") + 1:][:3]
-        print(f"| {stage} | {lines[0].split(' curve ')[1].split(';')[0]} | "
-              + ", ".join(" ".join(line.split()[:-1]) + " " + line.split()[-1] for line in telling) + " |")
-    print("\n| clip | " + " | ".join(stage for stage, _ in verdicts) + " |\n|---|" + "---:|" * len(verdicts))
-    for clip in CLIPS:
-        cells = [next(line.split()[-1] for line in lines if line.split()[:1] == [clip]) for _, lines in verdicts]
-        print(f"| {clip} | " + " | ".join(cells) + " |")
+        made = [compare(arguments, shared, clip, number, stage, parts) for clip in clips]
+        base = os.path.join(arguments.out, f"{number}")
+        text = run([arguments.program, "judge", *[folder for folder in made if folder], "--figure", base + ".png", "--json",
+                    base + ".json", "--overwrite"])
+        with open(base + ".md", "w") as file:
+            file.write(f"{stage}\n\n{text}")
+        with open(base + ".json") as file:
+            verdicts.append((stage, json.load(file)))
+    print_tables(verdicts)
+    print(f"\n{time.monotonic() - began:.0f} s")
 
 
 if __name__ == "__main__":

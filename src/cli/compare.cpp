@@ -5,8 +5,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/output_check.h"
 #include "cli/commands.h"
 #include "comparison/comparison.h"
+#include "video/still.h"
 
 namespace airtruth::cli {
 namespace {
@@ -48,22 +50,21 @@ void compare(const CompareArguments& arguments, Context& context) {
 
 struct JudgeArguments {
   std::vector<std::string> comparisons;
+  std::string figure;
+  std::string json;
   std::uint64_t seed = 1;
+  bool overwrite = false;
 };
 
 void judge(const JudgeArguments& arguments, Context& context) {
-  const comparison::Verdict verdict = comparison::judge(
-      {arguments.comparisons.begin(), arguments.comparisons.end()}, arguments.seed);
-  std::string text = fmt::format("area under the curve {:.3f} ({:.3f} to {:.3f}); 0.5 is chance",
-                                 verdict.auc,
-                                 verdict.low,
-                                 verdict.high);
-  for (const auto& [name, area] : verdict.by_clip)
-    text += fmt::format("\n  {:<32} {:.3f}", name, area);
-  text += "\nwhat alone tells most:";
-  for (std::size_t i = 0; i < std::min<std::size_t>(5, verdict.telling.size()); ++i)
-    text += fmt::format("\n  {:<32} {:.3f}", verdict.telling[i].first, verdict.telling[i].second);
-  context.console().result(text);
+  video::check_still_output(arguments.figure, arguments.overwrite);
+  check_output_file(arguments.json, arguments.overwrite);
+  const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
+                                                   arguments.comparisons.end());
+  const comparison::Verdict verdict = comparison::judge(folders, arguments.seed);
+  if (!arguments.figure.empty()) comparison::write_figure(folders, arguments.figure);
+  if (!arguments.json.empty()) write_file(arguments.json, comparison::json_of(verdict));
+  context.console().result(comparison::text_of(verdict));
 }
 
 }  // namespace
@@ -96,13 +97,19 @@ void add_compare(CLI::App& app, Context& context) {
 }
 
 void add_judge(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "judge", "Can a classifier tell the real aircraft of comparisons from the inserted ones?");
+  auto* command = app.add_subcommand("judge",
+                                     "Can a classifier tell the real aircraft of comparisons from "
+                                     "the inserted ones, and by what do "
+                                     "they differ?");
   auto arguments = std::make_shared<JudgeArguments>();
   command
       ->add_option("COMPARISON", arguments->comparisons, "Folders that `compare` made, one a clip")
       ->required()
       ->expected(1, 1000);
+  command->add_option(
+      "--figure", arguments->figure, "Picture of the pairs of all comparisons (.png, .jpg)");
+  command->add_option("--json", arguments->json, "The tables as JSON");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
   command->add_option("--seed", arguments->seed, "Of the interval's resampling")
       ->capture_default_str();
   command->callback([arguments, &context] { judge(*arguments, context); });

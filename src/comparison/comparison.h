@@ -62,15 +62,44 @@ Comparison compare(const fs::path& real,
                    const fs::path& out,
                    const Options& options);
 
-// The judge: boosted trees (OpenCV's ml) on the patches of all clips but one, asked about that one;
-// each clip in turn. Area under the curve with a 95 % interval by bootstrap over the clips. 0.5: it
-// cannot tell.
+// An interval of 95 % by bootstrap over the clips.
+struct Interval {
+  double value = 0, low = 0, high = 0;
+};
+
+// A measure over all clips: the medians of what each clip has, and of the differences, inserted
+// less real. Clips that do not have it are left out.
+struct Gap {
+  std::string name;
+  std::size_t clips = 0;
+  double real = 0, made = 0;
+  Interval difference;
+};
+
+// The judge: boosted trees (OpenCV's ml) on gradient orientations, noise, edges and spectrum of
+// patches. Areas under the curve are folded, max(area, 1 - area): a judge that is always wrong
+// tells the two apart as well as one that is always right. 0.5: it cannot tell; where a clip has
+// few pairs, chance alone lifts a folded area above that.
 struct Verdict {
-  double auc = 0.5;
-  double low = 0, high = 1;
-  std::vector<std::pair<std::string, double>> by_clip;
+  Interval across;  // asked about each clip in turn, trained on the others
+  Interval within;  // trained and asked within a clip, in stretches of time
+  struct Clip {
+    std::string name;
+    std::size_t pairs = 0;
+    double across = 0.5;  // not folded
+    double within = 0.5;  // folded
+  };
+  std::vector<Clip> clips;
   std::vector<std::pair<std::string, double>> telling;  // features, by how much each alone tells
+  std::vector<Gap> gaps;
 };
 Verdict judge(const std::vector<fs::path>& comparisons, std::uint64_t seed);
+
+// The verdict as Markdown tables and as JSON.
+std::string text_of(const Verdict& verdict);
+std::string json_of(const Verdict& verdict);
+
+// A picture (.png, .jpg) of the pairs of all comparisons.
+void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file);
 
 }  // namespace airtruth::comparison

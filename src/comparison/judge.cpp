@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
-#include <opencv2/ml.hpp>
+#include <nlohmann/json.hpp>
 
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "base/seed.h"
+#include "comparison/areas.h"
 #include "comparison/comparison.h"
+#include "comparison/figure.h"
+#include "video/still.h"
 
 namespace airtruth::comparison {
 namespace {
 
-struct Clip {
-  std::string name;
-  std::vector<std::vector<float>> features;
-  std::vector<int> real;
-};
+constexpr int kFolds = 4;  // stretches of time of a clip, for what a judge makes of it by itself
+
+std::string name_of(const fs::path& folder) {
+  return fs::absolute(folder).lexically_normal().filename().string();
+}
 
 // What a float holds, with room for the sums of a classifier.
 double feature(const std::string& cell, const Where& where) {
@@ -30,78 +34,34 @@ double feature(const std::string& cell, const Where& where) {
   return value;
 }
 
-Clip read_clip(const fs::path& folder) {
+Patches read_patches(const fs::path& folder) {
   const fs::path file = folder / "patches.csv";
   if (!fs::is_regular_file(file))
     throw Error("is no comparison: it has no patches.csv", {folder.string()});
-  Clip clip;
-  clip.name = fs::absolute(folder).lexically_normal().filename().string();
+  Patches clip;
+  clip.name = name_of(folder);
   std::istringstream lines(read_file(file));
   std::string line;
   std::getline(lines, line);
   for (int row = 2; std::getline(lines, line); ++row) {
-    std::vector<float> values;
+    std::vector<double> values;
     for (const std::string& cell : cells_of(line))
-      values.push_back(static_cast<float>(feature(cell, {file.string(), row})));
+      values.push_back(feature(cell, {file.string(), row}));
     if (values.size() < 3) throw Error("has too few cells", {file.string(), row});
-    if (!clip.features.empty() && values.size() != clip.features[0].size() + 2)
+    if (!(values[1] >= 0)) throw Error("has no frame in its second cell", {file.string(), row});
+    clip.real.push_back(values[0] > 0.5 ? 1 : 0);
+    clip.frame.push_back(static_cast<std::int64_t>(values[1]));
+    clip.features.emplace_back(values.begin() + 2, values.end());
+    if (clip.features.back().size() != clip.features[0].size())
       throw Error(fmt::format("has {} cells; expected {}, as the line before",
                               values.size(),
                               clip.features[0].size() + 2),
                   {file.string(), row});
-    clip.real.push_back(values[0] > 0.5F ? 1 : 0);
-    clip.features.emplace_back(values.begin() + 2, values.end());
   }
   const auto real = std::count(clip.real.begin(), clip.real.end(), 1);
   if (real < 2 || std::ssize(clip.real) - real < 2)
     throw Error("holds fewer than two pairs", {file.string()});
   return clip;
-}
-
-// The probability that a real one is held more real than an inserted one (Mann and Whitney 1947).
-double auc(const std::vector<double>& scores, const std::vector<int>& real) {
-  double wins = 0, pairs = 0;
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    if (real[i] == 0) continue;
-    for (std::size_t j = 0; j < scores.size(); ++j) {
-      if (real[j] != 0) continue;
-      pairs += 1;
-      wins += scores[i] > scores[j] ? 1 : scores[i] == scores[j] ? 0.5 : 0;
-    }
-  }
-  return pairs > 0 ? wins / pairs : 0.5;
-}
-
-cv::Mat rows_of(const Clip& clip) {
-  cv::Mat rows(
-      static_cast<int>(clip.features.size()), static_cast<int>(clip.features[0].size()), CV_32F);
-  for (int i = 0; i < rows.rows; ++i)
-    std::copy(clip.features[static_cast<std::size_t>(i)].begin(),
-              clip.features[static_cast<std::size_t>(i)].end(),
-              rows.ptr<float>(i));
-  return rows;
-}
-
-// Trained on all clips but one, asked about that one.
-double auc_of(const std::vector<Clip>& clips, std::size_t left_out) {
-  cv::Mat samples, answers;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    if (i == left_out) continue;
-    samples.push_back(rows_of(clips[i]));
-    for (const int real : clips[i].real) answers.push_back(real);
-  }
-  const auto boost = cv::ml::Boost::create();
-  boost->setBoostType(cv::ml::Boost::GENTLE);
-  boost->setWeakCount(80);
-  boost->setMaxDepth(2);
-  boost->setWeightTrimRate(0);
-  boost->train(samples, cv::ml::ROW_SAMPLE, answers);
-  cv::Mat raw;
-  boost->predict(
-      rows_of(clips[left_out]), raw, cv::ml::StatModel::RAW_OUTPUT | cv::ml::DTrees::PREDICT_SUM);
-  std::vector<double> scores;
-  for (int i = 0; i < raw.rows; ++i) scores.push_back(double(raw.at<float>(i, 0)));
-  return auc(scores, clips[left_out].real);
 }
 
 std::vector<std::string> feature_names() {
@@ -122,23 +82,68 @@ std::vector<std::string> feature_names() {
 }
 
 // What each feature alone tells: its mean area under the curve over the clips, whichever way round.
-std::vector<std::pair<std::string, double>> telling_of(const std::vector<Clip>& clips) {
+std::vector<std::pair<std::string, double>> telling_of(const std::vector<Patches>& clips) {
   const std::vector<std::string> names = feature_names();
   std::vector<std::pair<std::string, double>> telling;
   for (std::size_t f = 0; f < clips[0].features[0].size() && f < names.size(); ++f) {
     double sum = 0;
-    for (const Clip& clip : clips) {
+    for (const Patches& clip : clips) {
       std::vector<double> scores;
       for (const auto& row : clip.features) scores.push_back(double(row[f]));
-      sum += auc(scores, clip.real);
+      sum += area_under_curve(scores, clip.real);
     }
-    const double mean = sum / double(clips.size());
-    telling.push_back({names[f], std::max(mean, 1 - mean)});
+    telling.push_back({names[f], folded(sum / double(clips.size()))});
   }
   std::sort(telling.begin(), telling.end(), [](const auto& a, const auto& b) {
     return a.second > b.second;
   });
   return telling;
+}
+
+// Measures of all comparisons by name, in the order in which the first one has them.
+struct Measured {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::pair<double, double>>> values;  // real, inserted; a clip
+};
+
+void add_measures(const fs::path& folder, Measured& measured) {
+  const fs::path file = folder / "comparison.json";
+  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto measures = json.is_object() ? json.find("measures") : json.end();
+  if (json.is_discarded() || measures == json.end() || !measures->is_array())
+    throw Error("is no comparison: it has no measures", {file.string()});
+  for (const auto& one : *measures) {
+    if (!one.is_object() || !one.contains("name") || !one["name"].is_string() ||
+        !one.contains("real") || !one.contains("inserted"))
+      throw Error("has a measure without name, real and inserted", {file.string()});
+    const std::string name = one["name"];
+    auto& values = measured.values[name];
+    if (std::find(measured.names.begin(), measured.names.end(), name) == measured.names.end())
+      measured.names.push_back(name);
+    if (one["real"].is_number() && one["inserted"].is_number())
+      values.push_back({one["real"].get<double>(), one["inserted"].get<double>()});
+  }
+}
+
+std::vector<Gap> gaps_of(const std::vector<fs::path>& comparisons, std::uint64_t seed) {
+  Measured measured;
+  for (const fs::path& folder : comparisons) add_measures(folder, measured);
+  std::vector<Gap> gaps;
+  for (const std::string& name : measured.names) {
+    std::vector<double> real, made, difference;
+    for (const auto& [r, m] : measured.values[name])
+      real.push_back(r), made.push_back(m), difference.push_back(m - r);
+    gaps.push_back({name,
+                    real.size(),
+                    median_over_clips(real, seed).value,
+                    median_over_clips(made, seed).value,
+                    median_over_clips(difference, seed)});
+  }
+  return gaps;
+}
+
+nlohmann::ordered_json json_of_interval(const Interval& interval) {
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
 }  // namespace
@@ -148,37 +153,93 @@ Verdict judge(const std::vector<fs::path>& comparisons, std::uint64_t seed) {
     throw Error(
         "a judge is trained on other clips than it is asked about; expected three or more "
         "comparisons");
-  std::vector<Clip> clips;
+  std::vector<Patches> clips;
   for (const fs::path& folder : comparisons) {
-    clips.push_back(read_clip(folder));
+    clips.push_back(read_patches(folder));
     if (clips.back().features[0].size() != clips[0].features[0].size())
       throw Error("has patches of another kind than the first comparison", {folder.string()});
   }
   Verdict verdict;
-  std::vector<double> areas;
+  std::vector<double> across, within;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    areas.push_back(auc_of(clips, i));
-    verdict.by_clip.push_back({clips[i].name, areas.back()});
+    std::vector<Patches> others = clips;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const double area = area_of_judge(others, clips[i]);
+    across.push_back(folded(area));
+    within.push_back(area_within(clips[i], kFolds));
+    verdict.clips.push_back({clips[i].name, clips[i].real.size() / 2, area, within.back()});
   }
-  const auto mean = [](const std::vector<double>& values) {
-    double sum = 0;
-    for (const double v : values) sum += v;
-    return sum / double(values.size());
-  };
-  verdict.auc = mean(areas);
-  Random random = Seed(seed).stream("judge");
-  std::vector<double> means;
-  for (int round = 0; round < 2000; ++round) {
-    std::vector<double> drawn;
-    for (std::size_t i = 0; i < areas.size(); ++i)
-      drawn.push_back(areas[static_cast<std::size_t>(random.uniform() * double(areas.size()))]);
-    means.push_back(mean(drawn));
-  }
-  std::sort(means.begin(), means.end());
-  verdict.low = means[means.size() * 25 / 1000];
-  verdict.high = means[means.size() * 975 / 1000];
+  verdict.across = mean_over_clips(across, seed);
+  verdict.within = mean_over_clips(within, seed);
   verdict.telling = telling_of(clips);
+  verdict.gaps = gaps_of(comparisons, seed);
   return verdict;
+}
+
+std::string text_of(const Verdict& v) {
+  const auto interval = [](const Interval& i) {
+    return fmt::format("{:.3f} ({:.3f} to {:.3f})", i.value, i.low, i.high);
+  };
+  std::string text = fmt::format(
+      "folded area under the curve, mean of max(A, 1 - A) over {} clips; 0.5 is chance\n"
+      "| | mean (95 % interval over clips) |\n|---|---|\n"
+      "| trained on the other clips | {} |\n| trained and asked within each clip | {} |\n\n",
+      v.clips.size(),
+      interval(v.across),
+      interval(v.within));
+  text +=
+      "| clip | pairs | from other clips, not folded | within, folded |\n|---|---:|---:|---:|\n";
+  for (const Verdict::Clip& clip : v.clips)
+    text += fmt::format(
+        "| {} | {} | {:.3f} | {:.3f} |\n", clip.name, clip.pairs, clip.across, clip.within);
+  text += "\n| what alone tells | folded area |\n|---|---:|\n";
+  for (std::size_t i = 0; i < std::min<std::size_t>(6, v.telling.size()); ++i)
+    text += fmt::format("| {} | {:.3f} |\n", v.telling[i].first, v.telling[i].second);
+  text +=
+      "\n| medians over clips | clips | real | inserted | inserted - real (95 %) |\n"
+      "|---|---:|---:|---:|---|\n";
+  for (const Gap& gap : v.gaps) {
+    if (gap.clips == 0) continue;
+    text += fmt::format("| {} | {} | {:.3g} | {:.3g} | {:+.3g} ({:+.3g} to {:+.3g}) |\n",
+                        gap.name,
+                        gap.clips,
+                        gap.real,
+                        gap.made,
+                        gap.difference.value,
+                        gap.difference.low,
+                        gap.difference.high);
+  }
+  return text;
+}
+
+std::string json_of(const Verdict& v) {
+  nlohmann::ordered_json json;
+  json["across"] = json_of_interval(v.across);
+  json["within"] = json_of_interval(v.within);
+  for (const Verdict::Clip& clip : v.clips)
+    json["clips"].push_back({{"name", clip.name},
+                             {"pairs", clip.pairs},
+                             {"across", clip.across},
+                             {"within", clip.within}});
+  for (const auto& [name, area] : v.telling)
+    json["telling"].push_back({{"name", name}, {"area", area}});
+  for (const Gap& gap : v.gaps)
+    json["gaps"].push_back({{"name", gap.name},
+                            {"clips", gap.clips},
+                            {"real", gap.real},
+                            {"inserted", gap.made},
+                            {"difference", json_of_interval(gap.difference)}});
+  return json.dump(1) + "\n";
+}
+
+void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file) {
+  std::vector<NamedStrip> strips;
+  for (const fs::path& folder : comparisons) {
+    if (!fs::is_regular_file(folder / "pairs.png"))
+      throw Error("is no comparison: it has no pairs.png", {folder.string()});
+    strips.push_back({name_of(folder), video::read_still(folder / "pairs.png")});
+  }
+  video::write_still(file, figure_of_all(strips));
 }
 
 }  // namespace airtruth::comparison

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/median.h"
+#include "comparison/outline.h"
+#include "comparison/segment.h"
 #include "geometry/transform.h"
 #include "geometry/whole_pixels.h"
 #include "image/colour.h"
@@ -14,91 +16,14 @@
 namespace airtruth::comparison {
 namespace {
 
+constexpr double kReach = 0.35;  // of a patch's side: how far its aircraft may lie from its middle
+
 std::vector<double> values_where(const cv::Mat& values, const cv::Mat& mask) {
   std::vector<double> result;
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
       if (mask.at<unsigned char>(y, x) != 0) result.push_back(double(values.at<float>(y, x)));
   return result;
-}
-
-// What differs from the median of the patch's rim by more than its noise; the part nearest the
-// middle.
-cv::Mat silhouette_of(const cv::Mat& grey) {
-  const int rim = std::max(2, grey.cols / 8);
-  std::vector<double> around;
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (x < rim || y < rim || x >= grey.cols - rim || y >= grey.rows - rim)
-        around.push_back(double(grey.at<float>(y, x)));
-  const double level = median_or_0(around);
-  std::vector<double> off;
-  for (const double v : around) off.push_back(std::abs(v - level));
-  const double limit = std::max(5.0, 3.5 * 1.4826 * median_or_0(std::move(off)));
-  cv::Mat mask(grey.size(), CV_8UC1, cv::Scalar(0));
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (std::abs(double(grey.at<float>(y, x)) - level) > limit)
-        mask.at<unsigned char>(y, x) = 255;
-  cv::Mat labels, statistics, centres;
-  const int count = cv::connectedComponentsWithStats(mask, labels, statistics, centres, 8);
-  int best = 0;
-  double least = 1e300;
-  const double reach = 0.35 * grey.cols;
-  for (int i = 1; i < count; ++i) {
-    const double away = std::hypot(centres.at<double>(i, 0) - grey.cols / 2.0,
-                                   centres.at<double>(i, 1) - grey.rows / 2.0);
-    const int area = statistics.at<int>(i, cv::CC_STAT_AREA);
-    if (area < 4 || away > reach) continue;
-    const double cost = away - 0.02 * area;
-    if (cost < least) least = cost, best = i;
-  }
-  cv::Mat silhouette = labels == best;
-  if (best == 0) silhouette.setTo(0);
-  return silhouette;
-}
-
-float at(const cv::Mat& grey, double x, double y) {
-  cv::Mat sample;
-  cv::getRectSubPix(grey, {1, 1}, {static_cast<float>(x), static_cast<float>(y)}, sample);
-  return sample.at<float>(0, 0);
-}
-
-// From 10 to 90 % of the step along the outline's own direction, where the step is clear.
-double edge_width(const cv::Mat& grey, const cv::Mat& silhouette) {
-  cv::Mat soft, gx, gy, rim;
-  cv::GaussianBlur(grey, soft, {}, 0.7);
-  cv::Sobel(soft, gx, CV_32F, 1, 0);
-  cv::Sobel(soft, gy, CV_32F, 0, 1);
-  cv::morphologyEx(
-      silhouette, rim, cv::MORPH_GRADIENT, cv::getStructuringElement(cv::MORPH_CROSS, {3, 3}));
-  std::vector<double> widths;
-  constexpr double kReach = 4;
-  constexpr double kStep = 0.25;
-  for (int y = 5; y + 5 < grey.rows; ++y)
-    for (int x = 5; x + 5 < grey.cols; ++x) {
-      if (rim.at<unsigned char>(y, x) == 0) continue;
-      const double dx = double(gx.at<float>(y, x)), dy = double(gy.at<float>(y, x));
-      const double slope = std::hypot(dx, dy);
-      if (slope < 24) continue;
-      std::vector<double> profile;
-      for (double p = -kReach; p <= kReach; p += kStep)
-        profile.push_back(double(at(grey, x + p * dx / slope, y + p * dy / slope)));
-      // The rise through the middle, up to its own turning points.
-      std::size_t low = profile.size() / 2, high = low;
-      while (low > 0 && profile[low - 1] < profile[low]) --low;
-      while (high + 1 < profile.size() && profile[high + 1] > profile[high]) ++high;
-      const double step = profile[high] - profile[low];
-      if (step < 12) continue;
-      const auto crossing = [&](double share) {
-        const double level = profile[low] + share * step;
-        std::size_t i = low;
-        while (i < high && profile[i + 1] < level) ++i;
-        return double(i) + (level - profile[i]) / std::max(1e-9, profile[i + 1] - profile[i]);
-      };
-      widths.push_back(kStep * (crossing(0.9) - crossing(0.1)));
-    }
-  return median_or_0(std::move(widths));
 }
 
 double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
@@ -110,7 +35,8 @@ double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
   return 1.4826 * median_or_0(std::move(values)) / 6;  // of unit white noise: 1 (Immerkaer 1996)
 }
 
-double fine_share(const cv::Mat& grey) {
+// How much of the spectrum lies above a frequency, in cycles a pixel.
+double share_above(const cv::Mat& grey, double frequency) {
   const int side = std::min(grey.rows, grey.cols) / 2 * 2;
   cv::Mat window, spectrum;
   cv::createHanningWindow(window, {side, side}, CV_32F);
@@ -125,7 +51,7 @@ double fine_share(const cv::Mat& grey) {
       const auto v = spectrum.at<cv::Vec2f>(y, x);
       const double power = double(v[0]) * double(v[0]) + double(v[1]) * double(v[1]);
       all += power;
-      if (std::hypot(fx, fy) > 0.25) fine += power;
+      if (std::hypot(fx, fy) > frequency) fine += power;
     }
   return fine / all;
 }
@@ -158,12 +84,27 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   patch.x = x;
   patch.y = y;
   patch.rgb = cv::Mat(side, side, CV_8UC3, crop.samples.get()).clone();
-  patch.grey.create(side, side, CV_32F);
-  for (int j = 0; j < side; ++j)
-    for (int i = 0; i < side; ++i) patch.grey.at<float>(j, i) = picture.luma().row(y + j)[x + i];
-  patch.silhouette = silhouette_of(patch.grey);
+  patch.grey = luma_of(picture, {x, y, side, side});
+  patch.silhouette = silhouette_of(patch.grey, kReach * side);
   return patch;
 }
+
+namespace {
+
+// Grey less its surroundings, over the silhouette: what is brighter and what is darker, each by
+// itself.
+void add_contrast(const cv::Mat& difference, const cv::Mat& silhouette, Looks& looks) {
+  const std::vector<double> values = values_where(difference, silhouette);
+  if (values.empty()) return;
+  for (const double v : values) {
+    looks.peak_above = std::max(looks.peak_above, v);
+    looks.peak_below = std::min(looks.peak_below, v);
+    looks.mean_above += std::max(0.0, v) / double(values.size());
+    looks.mean_below += std::min(0.0, v) / double(values.size());
+  }
+}
+
+}  // namespace
 
 Looks looks_of(const Patch& patch) {
   Looks looks;
@@ -175,11 +116,20 @@ Looks looks_of(const Patch& patch) {
   cv::bitwise_not(wide, around);
   looks.contrast = median_or_0(values_where(patch.grey, patch.silhouette)) -
                    median_or_0(values_where(patch.grey, around));
-  looks.edge_width_px = edge_width(patch.grey, patch.silhouette);
+  const cv::Mat level = surroundings_of(patch.grey, around);
+  add_contrast(patch.grey - level, patch.silhouette, looks);
+  const Outline outline = outline_of(patch.grey, patch.silhouette, level);
+  looks.edge_width_px = outline.edge_width_px;
+  looks.halo = outline.halo;
   looks.noise = laplacian_deviation(patch.grey, inside);
   looks.background_noise = laplacian_deviation(patch.grey, around);
-  looks.fine_share = fine_share(patch.grey);
+  looks.fine_share = share_above(patch.grey, 0.25);
+  looks.middle_share = share_above(patch.grey, 0.125) - looks.fine_share;
   looks.blockiness = blockiness(patch.grey, patch.x);
+  const cv::Moments moments = cv::moments(patch.silhouette, true);
+  if (moments.m00 > 0)
+    looks.centre_px = {patch.x + moments.m10 / moments.m00 + 0.5,
+                       patch.y + moments.m01 / moments.m00 + 0.5};
   double count = 0;
   for (int j = 0; j < patch.rgb.rows; ++j)
     for (int i = 0; i < patch.rgb.cols; ++i) {

@@ -11,6 +11,10 @@
 namespace airtruth::comparison {
 namespace {
 
+// Share of the range that it moves from frame to frame at least: far below a pixel.
+constexpr double kStandsStill = 1e-7;
+constexpr double kAway = 1.15;  // patches from the real one's middle: the two do not overlap
+
 struct Spot {
   std::int64_t frame = 0;
   Pixel centre;
@@ -58,11 +62,11 @@ std::vector<Spot> spots_of(const RealBoxes& boxes) {
 Pixel side_of(const std::vector<Spot>& spots, const lens::ImageSize& size) {
   Pixel best(0, 0);
   std::size_t most = 0;
-  for (const Pixel& side : {Pixel(1.5, 0), Pixel(-1.5, 0), Pixel(0, -1.5), Pixel(0, 1.5)}) {
+  for (const Pixel& side : {Pixel(1, 0), Pixel(-1, 0), Pixel(0, -1), Pixel(0, 1)}) {
     std::size_t inside = 0;
     for (const Spot& s : spots) {
       const double patch = 2 * std::max(8.0, s.size_px);
-      const Pixel p = s.centre + patch * side;
+      const Pixel p = s.centre + kAway * patch * side;
       const double half = patch / 2 + 2;
       inside +=
           p.x() > half && p.y() > half && p.x() < size.width - half && p.y() < size.height - half
@@ -80,7 +84,8 @@ Beside path_beside(const RealBoxes& boxes,
                    const aircraft::Mesh& mesh,
                    const YawPitchRoll& attitude,
                    const lens::Lens& lens,
-                   double frame_rate_hz) {
+                   double frame_rate_hz,
+                   double scale) {
   const std::vector<Spot> spots = spots_of(boxes);
   const Pixel side = side_of(spots, lens.size());
   if (side.isZero())
@@ -93,22 +98,26 @@ Beside path_beside(const RealBoxes& boxes,
   Beside path;
   double range_m = 0;
   for (const Spot& spot : spots) {
-    const Pixel place = spot.centre + 2 * std::max(8.0, spot.size_px) * side;
+    const Pixel place = spot.centre + kAway * 2 * std::max(8.0, spot.size_px) * side;
     const Pixel bounded(std::clamp(place.x(), 1.0, lens.size().width - 1.0),
                         std::clamp(place.y(), 1.0, lens.size().height - 1.0));
     const auto ray = lens.ray_from_pixel(bounded);
     if (!ray) throw Error("the lens has no direction where the intruder would be placed");
     const Vector3 direction = world_from_cam.rotation * *ray;
     if (range_m <= 0)
-      range_m = lens.focal_px() * std::max(extents.length_m(), extents.span_m()) / spot.size_px;
+      range_m =
+          lens.focal_px() * std::max(extents.length_m(), extents.span_m()) / (scale * spot.size_px);
     for (int round = 0; round < 4; ++round) {
       const auto box =
           annotation::exact_box(sight, silhouette, {turned, range_m * direction}, 0).box;
       if (!box) throw Error("the intruder cannot be drawn where it would be placed");
-      range_m *= std::max(box->width, box->height) / spot.size_px;
+      range_m *= std::max(box->width, box->height) / (scale * spot.size_px);
     }
     const Vector3 p = range_m * direction;
-    if (!path.waypoints_ned_m.empty() && path.waypoints_ned_m.back() == p) continue;
+    // A path's points stand apart; where the real one stands still, so does ours.
+    if (!path.waypoints_ned_m.empty() &&
+        (path.waypoints_ned_m.back() - p).norm() <= kStandsStill * p.norm())
+      continue;
     path.waypoints_ned_m.push_back(p);
     path.times_s.push_back(double(spot.frame - spots.front().frame) / frame_rate_hz);
   }

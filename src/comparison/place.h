@@ -9,9 +9,9 @@
 
 namespace airtruth::comparison {
 
-// Waypoints and times on which an aircraft of that mesh keeps beside the real one, as large as it,
-// in the view of a camera that stands at the origin and looks north. Time 0 is the first box's
-// frame. Error where there is no room beside it.
+// Waypoints and times on which an aircraft of that mesh keeps beside the real one, `scale` times as
+// large as it, in the view of a camera that stands at the origin and looks north. Time 0 is the
+// first box's frame. Error where there is no room beside it.
 struct Beside {
   std::vector<Vector3> waypoints_ned_m;
   std::vector<double> times_s;
@@ -20,6 +20,7 @@ Beside path_beside(const RealBoxes& boxes,
                    const aircraft::Mesh& mesh,
                    const YawPitchRoll& attitude,
                    const lens::Lens& lens,
-                   double frame_rate_hz);
+                   double frame_rate_hz,
+                   double scale = 1);
 
 }  // namespace airtruth::comparison

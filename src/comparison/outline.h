@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+
+// What the camera makes of a silhouette's outline, from profiles across it.
+namespace airtruth::comparison {
+
+struct Outline {
+  double edge_width_px = 0;  // 10 to 90 % of the step, median along the outline; 0: no clear edge
+  double halo = 0;  // how far the sky beside the outline goes beyond the sky further off, away from
+                    // the aircraft, as a share of the step
+};
+
+// `level`: the surroundings (surroundings_of()). All of one size; `grey` and `level` float.
+Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat& level);
+
+}  // namespace airtruth::comparison
