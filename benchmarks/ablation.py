@@ -23,11 +23,6 @@ LOOKED_AT = (["cumulus_a4", "overcast_b4"] + [f"V_AIRPLANE_{n:03}" for n in (1, 
 # ... and measures on these once, when it is done.
 HELD_BACK = ([f"V_AIRPLANE_{n:03}" for n in (5, 7, 10, 11, 12, 14, 16, 17)]
              + [f"V_HELICOPTER_{n:03}" for n in (5, 6, 7, 8, 9, 10, 11)])
-# What stands where the pose search finds none: aircraft, yaw (0: seen from behind).
-POSE = {"V_AIRPLANE_001": ("738/738-Delta", -60), "V_AIRPLANE_002": ("738/738-Delta", -75), "V_AIRPLANE_003": ("738/738-JAL", -80),
-        "V_AIRPLANE_008": ("738/738-Belavia", 110), "V_AIRPLANE_018": ("738/738-Belavia", 120),
-        "V_AIRPLANE_035": ("738/738-Belavia", 120), "V_AIRPLANE_049": ("c172/news", 150),
-        "cumulus_a4": ("c172/news", 5), "overcast_b4": ("c172/news", 175)}
 SUN = {"cumulus_a4": (150, 50), "overcast_b4": (0, 60), "V_AIRPLANE_008": (180, 30), "V_AIRPLANE_018": (180, 30),
        "V_AIRPLANE_035": (180, 30), "V_AIRPLANE_049": (180, 30)}  # azimuth, elevation
 OTHER_SUN = (0, 50)
@@ -77,13 +72,17 @@ def tables_of(camera, parts):
     return "".join(toml_table(name, values) for name, values in tables.items() if values)
 
 
-def scene_text(clip, method, tables):
-    aircraft, yaw = POSE.get(clip, ("seahawk/Models/seahawk-3d-model" if "HELI" in clip else "738/738-Delta", 90))
+def scene_text(clip, method, tables, pose):
+    if pose:
+        aircraft, yaw, pitch, roll = pose["aircraft"], pose["yaw_deg"], pose["pitch_deg"], pose["roll_deg"]
+    else:  # stands for what the search finds
+        aircraft, yaw, pitch, roll = "seahawk/Models/seahawk-3d-model" if "HELI" in clip else "738/738-Delta", 90, 0, 0
     azimuth, elevation = SUN.get(clip, OTHER_SUN)
     view = 12 if clip.startswith("V_") else 41
     return (f'name = "s"\n[background]\nvideo = "unused.mp4"\n[lens]\nmodel = "pinhole"\nvertical_fov_deg = {view}\n'
             f"[light]\nsun_azimuth_deg = {azimuth}\nsun_elevation_deg = {elevation}\n"
-            f'[[intruder]]\naircraft = "{aircraft}"\nyaw_deg = {yaw}\nwaypoints_ned_m = [[100, 0, 0], [200, 0, 0]]\n'
+            f'[[intruder]]\naircraft = "{aircraft}"\nyaw_deg = {yaw}\npitch_deg = {pitch}\nroll_deg = {roll}\n'
+            f'waypoints_ned_m = [[100, 0, 0], [200, 0, 0]]\n'
             f'speed_mps = 50\n[composite]\nmethod = "{method}"\n' + tables)
 
 
@@ -101,20 +100,32 @@ def compare(arguments, shared, clip, number, stage, parts):
     base = os.path.join(arguments.out, f"{number}")
     os.makedirs(base, exist_ok=True)
     scene = os.path.join(base, clip + ".toml")
+    # The pose is searched once a clip: every stage shows the same aircraft in the same attitude.
+    pose_file = os.path.join(arguments.out, clip + ".pose.json")
+    pose = None
+    if os.path.exists(pose_file):
+        with open(pose_file) as file:
+            pose = json.load(file)
     with open(scene, "w") as file:
-        file.write(scene_text(clip, "chroma-key" if stage == "chroma-key" else "matte", tables_of(camera, parts)))
+        file.write(scene_text(clip, "chroma-key" if stage == "chroma-key" else "matte", tables_of(camera, parts), pose))
     comparison = os.path.join(base, clip)
     if os.path.exists(os.path.join(comparison, "patches.csv")):
         return comparison
     print(f"{stage}: {clip}", file=sys.stderr, flush=True)
     process = subprocess.run([arguments.program, "--quiet", "compare", "--real", video, "--boxes", boxes, "--origin", str(origin),
-                              "--scene", scene, "-o", comparison, "--frames", str(arguments.frames), "--overwrite"],
+                              "--scene", scene, "-o", comparison, "--frames", str(arguments.frames), "--overwrite",
+                              "--no-match" if pose else "--match"],
                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if process.returncode == 2:  # the clip cannot be compared; anything else is a fault of the program
         print(f"ablation: {clip} is left out: {process.stderr.strip()}", file=sys.stderr, flush=True)
         return None
     if process.returncode != 0:
         sys.exit(f"ablation: compare failed on {clip}:\n{process.stderr}")
+    if not pose:
+        with open(os.path.join(comparison, "comparison.json")) as file:
+            found = json.load(file)["pose"]
+        with open(pose_file, "w") as file:
+            json.dump(found, file)
     return comparison
 
 
@@ -137,8 +148,8 @@ def print_tables(verdicts):
     print(f"\n| inserted - real, median over clips (95 %) | real | {stages} |\n|---|---:|" + "---|" * len(verdicts))
     for gap in verdicts[0][1]["gaps"]:
         cells = [next((one for one in verdict["gaps"] if one["name"] == gap["name"]), None) for _, verdict in verdicts]
-        cells = ["-" if one is None or one["clips"] == 0 else "{value:+.3g} ({low:+.3g} to {high:+.3g})".format(**one["difference"])
-                 for one in cells]
+        cells = [f"{d['value']:+.3g} ({d['low']:+.3g} to {d['high']:+.3g})" if d else "-"
+                 for d in (one["difference"] if one and one["clips"] else None for one in cells)]
         print(f"| {gap['name']} | {gap['real']:.3g} | " + " | ".join(cells) + " |")
 
 

@@ -21,6 +21,8 @@ struct CompareArguments {
   double origin_px = 0;
   int pairs = 6;
   std::int64_t frames = 0;
+  bool match = true;
+  std::vector<std::string> types;
   bool overwrite = false;
 };
 
@@ -30,6 +32,8 @@ void compare(const CompareArguments& arguments, Context& context) {
   options.overwrite = arguments.overwrite;
   options.pairs = arguments.pairs;
   options.most_frames = arguments.frames;
+  options.match = arguments.match;
+  options.types = arguments.types;
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -43,6 +47,14 @@ void compare(const CompareArguments& arguments, Context& context) {
                           options);
   console.end_progress();
   std::string text = fmt::format("{}: {} frames", found.folder.string(), found.frames);
+  if (found.pose)
+    text +=
+        fmt::format("\n  {}, yaw {:.0f}, pitch {:.0f}, roll {:.0f}: silhouettes overlap by {:.2f}",
+                    found.pose->aircraft,
+                    found.pose->attitude.yaw_deg,
+                    found.pose->attitude.pitch_deg,
+                    found.pose->attitude.roll_deg,
+                    found.pose->overlap);
   for (const comparison::Pair& p : found.pairs)
     text += fmt::format("\n  {:<44} real {:8.3g}   inserted {:8.3g}", p.name, p.real, p.made);
   console.result(text);
@@ -74,13 +86,16 @@ void add_compare(CLI::App& app, Context& context) {
       "compare", "Put an aircraft beside a real one in its own clip, and measure how both look");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("--real", arguments->real, "Video with a real aircraft in it")->required();
-  command->add_option("--boxes", arguments->boxes, "Its boxes: frame,x,y,width,height (.csv)")
+  command
+      ->add_option("--boxes",
+                   arguments->boxes,
+                   "Its boxes, which may be loose: frame,x,y,width,height (.csv)")
       ->required();
   command
       ->add_option("--scene",
                    arguments->scene,
                    "Scene that says which aircraft, light, lens and camera model; its video and "
-                   "path are not used")
+                   "path are not used, and its aircraft's type and attitude with --no-match alone")
       ->required();
   command->add_option("-o,--out", arguments->out, "Folder to make")->required();
   command
@@ -92,6 +107,16 @@ void add_compare(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--frames", arguments->frames, "At most so many frames from the first box on")
       ->check(CLI::PositiveNumber);
+  command->add_flag(
+      "--match,!--no-match",
+      arguments->match,
+      "Search the type and attitude whose silhouette is the real one's (the default), "
+      "or take the scene's");
+  command
+      ->add_option("--types",
+                   arguments->types,
+                   "Aircraft to search among (`airtruth aircraft list`), with commas between")
+      ->delimiter(',');
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
   command->callback([arguments, &context] { compare(*arguments, context); });
 }

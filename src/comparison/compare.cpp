@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/core.hpp>
 
 #include "aircraft/catalogue.h"
@@ -18,6 +20,7 @@
 #include "comparison/looks.h"
 #include "comparison/measures.h"
 #include "comparison/place.h"
+#include "comparison/pose.h"
 #include "comparison/real.h"
 #include "comparison/segment.h"
 #include "sequence/sequence.h"
@@ -30,6 +33,8 @@ namespace airtruth::comparison {
 namespace {
 
 constexpr const char* kName = "sequence";
+constexpr std::size_t kPoseMasks = 5;      // that a pose is fitted to
+constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning below it
 constexpr std::int64_t kSizingFrames = 9;  // that the inserted aircraft's size is set by
 
 // The scene with its first intruder beside the real aircraft, everything else standing still.
@@ -70,9 +75,13 @@ class Comparing {
       : real_(real), options_(options), staged_(out, options.overwrite) {
     require_utf8(fs::absolute(real));
     if (scene.intruders.empty()) throw Error("has no intruder to compare", {scene.file.string()});
-    boxes_ = find_real(real, boxes, options.most_frames, options.warn, options.stop).boxes;
-    load(scene);
-    render(scene, fitting_scale(scene));
+    const RealAircraft found =
+        find_real(real, boxes, options.most_frames, options.warn, options.stop);
+    boxes_ = found.boxes;
+    scene::Scene matched = scene;
+    if (options.match) matched.intruders[0].aircraft = match(found.masks);
+    load(matched);
+    render(matched, fitting_scale(matched));
     compare();
   }
 
@@ -83,6 +92,7 @@ class Comparing {
     result.folder = out;
     result.frames = static_cast<std::int64_t>(all_.size());
     result.pairs = pairs_of(all_);
+    result.pose = pose_;
     std::vector<double> between, within;
     for (std::size_t i = 0; i < all_.size(); ++i) {
       between.push_back(distance(all_[i].real.histogram, all_[i].made.histogram));
@@ -113,6 +123,40 @@ class Comparing {
     attitude_ = {intruder.yaw_deg.value_or(90),
                  intruder.pitch_deg.value_or(0),
                  intruder.roll_deg.value_or(0)};
+    if (pose_) pose_->attitude = attitude_ = attitude_beside();
+  }
+
+  // The type whose silhouette fits best, by masks around the middle of the shot.
+  std::string match(const std::map<std::int64_t, cv::Mat>& masks) {
+    std::vector<cv::Mat> few;
+    auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
+    for (; it != masks.end() && few.size() < kPoseMasks; ++it) few.push_back(it->second);
+    const TypeFit fit = fit_type(few,
+                                 options_.types.empty() ? types_to_match() : options_.types,
+                                 options_.warn,
+                                 options_.stop);
+    pose_ =
+        Comparison::Pose{fit.aircraft, fit.pose.attitude, fit.pose.overlap, fit.pose.aspect_ratio};
+    if (fit.pose.overlap < kPoorOverlap)
+      warn(options_.warn,
+           fmt::format("{}: no silhouette fits the real aircraft's well: the best, {}, overlaps it "
+                       "by {:.2f}; --types names others",
+                       real_.string(),
+                       fit.aircraft,
+                       fit.pose.overlap));
+    return fit.aircraft;
+  }
+
+  // The found attitude is as seen straight ahead; where the aircraft is placed, the line of sight
+  // turns, and the aircraft with it.
+  YawPitchRoll attitude_beside() const {
+    const Box& box =
+        std::next(boxes_.begin(), static_cast<std::ptrdiff_t>(boxes_.size() / 2))->second;
+    const auto ray = lens_->ray_from_pixel({box.x + box.width / 2, box.y + box.height / 2});
+    if (!ray) return pose_->attitude;
+    const Vector3 sight = cam_from_body().conjugate() * *ray;
+    const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), sight);
+    return yaw_pitch_roll(turn * world_from_body(pose_->attitude));
   }
 
   void render_beside(const scene::Scene& given,
@@ -219,6 +263,7 @@ class Comparing {
   double rate_hz_ = 0;
   aircraft::Aircraft aircraft_;
   YawPitchRoll attitude_;
+  std::optional<Comparison::Pose> pose_;
   std::vector<Compared> all_;
   std::vector<FigureRow> figure_;
 };

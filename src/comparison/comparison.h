@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "geometry/box.h"
+#include "geometry/transform.h"
 #include "scene/scene.h"
 
 // The proof: an inserted aircraft beside a real one, in the same frames of the same clip, at the
@@ -29,7 +30,11 @@ RealBoxes read_boxes(const fs::path& file, double origin_px);
 
 struct Options {
   bool overwrite = false;
-  int pairs = 6;                 // of the figure
+  int pairs = 6;  // of the figure
+  // Search for the attitude, and the type among these (empty: types_to_match(), pose.h), whose
+  // silhouette is the real one's; else both are the scene's.
+  bool match = true;
+  std::vector<std::string> types;
   std::int64_t most_frames = 0;  // 0: all that have a box
   Warn warn;
   std::stop_token stop;
@@ -47,15 +52,24 @@ struct Comparison {
   fs::path folder;
   std::int64_t frames = 0;
   std::vector<Pair> pairs;
+  struct Pose {
+    std::string aircraft;
+    YawPitchRoll attitude;  // as it is placed in the scene: the camera looks north
+    double overlap = 0;     // of both silhouettes, 0..1; and the real one's aspect over ours
+    double aspect_ratio = 1;
+  };
+  std::optional<Pose> pose;           // where it was searched
   double colour_distance = 0;         // median Hellinger distance, real to inserted
   double colour_distance_within = 0;  // of the real one to itself, half the clip later
 };
 
 // Renders the scene's first intruder beside the real one, in each frame that has a box, and leaves
-// in `out`: sequence/ (as `render` does), figure.png, comparison.json, comparison.md, patches.csv
-// (what the judge reads). The scene's own path, camera path and motion are not used: the intruder
-// goes where the real one goes, one and a half patches to its side where that is free. Its attitude
-// is the scene's.
+// in `out`: sequence/ (as `render` does), figure.png, pairs.png (the pairs alone), comparison.json,
+// comparison.md, patches.csv (what the judge reads). The scene's own path, camera path and motion
+// are not used: the intruder goes where the real one goes, beside it where that is free, as large
+// as it by what stands out from the sky in both. The boxes may be loose: the aircraft is found
+// within them. Nothing runs across a cut of the clip: of its shots the one with most boxes is
+// taken. Error where no aircraft stands out within the boxes.
 Comparison compare(const fs::path& real,
                    const RealBoxes& boxes,
                    const scene::Scene& scene,

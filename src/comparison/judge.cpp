@@ -108,6 +108,7 @@ struct Measured {
 
 void add_measures(const fs::path& folder, Measured& measured) {
   const fs::path file = folder / "comparison.json";
+  if (!fs::is_regular_file(file)) return;  // the patches alone are enough for the areas
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
   const auto measures = json.is_object() ? json.find("measures") : json.end();
   if (json.is_discarded() || measures == json.end() || !measures->is_array())

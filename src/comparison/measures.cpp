@@ -136,6 +136,16 @@ std::string patches_csv(const std::vector<Compared>& all) {
 std::string table_of(const Comparison& c) {
   std::string text =
       fmt::format("{} frames compared; median, +- half the middle 68 %\n\n", c.frames);
+  if (c.pose)
+    text += fmt::format(
+        "{}, yaw {:.0f}, pitch {:.0f}, roll {:.0f} degrees: silhouettes overlap by {:.2f}, aspect "
+        "over aspect {:.2f}\n\n",
+        c.pose->aircraft,
+        c.pose->attitude.yaw_deg,
+        c.pose->attitude.pitch_deg,
+        c.pose->attitude.roll_deg,
+        c.pose->overlap,
+        c.pose->aspect_ratio);
   text += "| | real | inserted |\n|---|---:|---:|\n";
   for (const Pair& p : c.pairs)
     text += fmt::format(
@@ -151,6 +161,13 @@ std::string json_of(const Comparison& c, const fs::path& real) {
   nlohmann::ordered_json json;
   json["video"] = real.string();
   json["frames"] = c.frames;
+  if (c.pose)
+    json["pose"] = {{"aircraft", c.pose->aircraft},
+                    {"yaw_deg", c.pose->attitude.yaw_deg},
+                    {"pitch_deg", c.pose->attitude.pitch_deg},
+                    {"roll_deg", c.pose->attitude.roll_deg},
+                    {"overlap", c.pose->overlap},
+                    {"aspect_ratio", c.pose->aspect_ratio}};
   for (const Pair& p : c.pairs)
     json["measures"].push_back({{"name", p.name},
                                 {"real", number(p.real)},

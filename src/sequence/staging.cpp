@@ -17,7 +17,9 @@ namespace {
 
 // A folder that a finished run left, or an empty one: nothing else is ever replaced.
 bool replaceable(const fs::path& folder) {
-  return fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / "sequence.json"));
+  return fs::is_directory(folder) &&
+         (fs::is_empty(folder) || fs::exists(folder / "sequence.json") ||
+          fs::exists(folder / "comparison.json"));
 }
 
 void refuse_what_exists(const fs::path& folder, bool overwrite) {
