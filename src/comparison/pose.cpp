@@ -23,11 +23,13 @@ constexpr double kLeastCover = 0.2;  // of a pixel that stands out: 8 of 40 code
 constexpr double kGrowthPx = 1.0;    // that spread and threshold add to both sides of a silhouette
 constexpr double kMostRollDeg = 60;  // of the aircraft's up in the picture
 constexpr double kAnyRollDeg = -45;  // of the eye's elevation, below which it may be turned anyhow
+constexpr double kUprightDeg = 90;   // turn at which a fit counts exp(-1/2)
 constexpr double kAspectWeight = 0.5;  // of the logarithm of the aspects' ratio
 constexpr std::array kElevationsDeg = {0.0, -12.0, -25.0, -42.0, -62.0, -88.0};
 constexpr double kAzimuthStepDeg = 15;
 constexpr double kTurnStepDeg = 12;
-constexpr std::size_t kClosedIn = 6;  // best of the grid that are closed in on
+constexpr std::size_t kClosedIn = 4;       // best of the grid that are closed in on
+constexpr std::size_t kTypesClosedIn = 3;  // best types that are closed in on
 
 // Where the eye is, seen from the aircraft (azimuth from its nose towards its right wing, elevation
 // above it), and how far the picture is turned about its middle, clockwise.
@@ -156,6 +158,20 @@ struct Candidate {
   Score score;
 };
 
+// Aircraft fly upright more often than not: of two that fit alike, the one that is turned less.
+double likelihood(const EyePlace& eye) {
+  if (eye.elevation_deg <= kAnyRollDeg) return std::exp(-0.5 * 0.25);
+  return std::exp(-0.5 * std::pow(eye.turn_deg / kUprightDeg, 2));
+}
+
+double total_of(const Candidate& candidate) {
+  return candidate.score.total * likelihood(candidate.eye);
+}
+
+void keep_better(Candidate& best, const Candidate& other) {
+  if (other.score.total >= 0 && total_of(other) > total_of(best)) best = other;
+}
+
 bool may_be(const EyePlace& eye) {
   return std::abs(eye.turn_deg) <= kMostRollDeg || eye.elevation_deg <= kAnyRollDeg;
 }
@@ -165,8 +181,7 @@ Candidate best_turn(const std::vector<cv::Mat>& masks, const cv::Mat& coverage, 
   Candidate best;
   for (eye.turn_deg = -180; eye.turn_deg < 180; eye.turn_deg += kTurnStepDeg) {
     if (!may_be(eye)) continue;
-    const Score score = score_of(masks, turned(coverage, eye.turn_deg));
-    if (score.total > best.score.total) best = {eye, score};
+    keep_better(best, {eye, score_of(masks, turned(coverage, eye.turn_deg))});
   }
   return best;
 }
@@ -188,7 +203,7 @@ std::vector<Candidate> coarse_fits(const std::vector<cv::Mat>& masks,
       all.push_back(best_turn(masks, left, {-azimuth_deg, elevation_deg, 0}));
     }
   std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    return a.score.total > b.score.total;
+    return total_of(a) > total_of(b);
   });
   all.resize(std::min(all.size(), kClosedIn));
   return all;
@@ -210,12 +225,38 @@ void close_in(const std::vector<cv::Mat>& masks,
         for (const double turn : {-step, 0.0, step}) {
           eye.turn_deg = from.turn_deg + turn;
           if (!may_be(eye)) continue;
-          const Score score = score_of(masks, turned(coverage, eye.turn_deg));
-          if (score.total > best.score.total) best = {eye, score};
+          keep_better(best, {eye, score_of(masks, turned(coverage, eye.turn_deg))});
         }
       }
   }
 }
+
+Candidate closed_in(const std::vector<cv::Mat>& masks,
+                    const Views& views,
+                    const std::vector<Candidate>& coarse,
+                    const std::stop_token& stop) {
+  Candidate best;
+  for (Candidate candidate : coarse) {
+    candidate.score =
+        score_of(masks,
+                 turned(views.coverage(candidate.eye.azimuth_deg, candidate.eye.elevation_deg),
+                        candidate.eye.turn_deg));
+    close_in(masks, views, stop, candidate);
+    keep_better(best, candidate);
+  }
+  return best;
+}
+
+PoseFit pose_of(const Candidate& best) {
+  return {attitude_of(best.eye), best.score.overlap, best.score.aspect_ratio};
+}
+
+// A type with the best of its grid.
+struct Contender {
+  std::string name;
+  aircraft::Aircraft aircraft;
+  std::vector<Candidate> coarse;
+};
 
 }  // namespace
 
@@ -224,12 +265,7 @@ PoseFit fit_pose(const std::vector<cv::Mat>& masks,
                  const std::stop_token& stop) {
   check(!masks.empty(), "a pose is fitted to masks");
   const Views views(mesh);
-  Candidate best;
-  for (Candidate candidate : coarse_fits(masks, views, stop)) {
-    close_in(masks, views, stop, candidate);
-    if (candidate.score.total > best.score.total) best = candidate;
-  }
-  return {attitude_of(best.eye), best.score.overlap, best.score.aspect_ratio};
+  return pose_of(closed_in(masks, views, coarse_fits({masks[0]}, views, stop), stop));
 }
 
 std::vector<std::string> types_to_match() {
@@ -251,22 +287,28 @@ TypeFit fit_type(const std::vector<cv::Mat>& masks,
                  const std::stop_token& stop) {
   aircraft::LoadOptions load;
   load.stop = stop;
-  std::optional<TypeFit> best;
-  double most = -1;
+  std::vector<Contender> contenders;
   for (const std::string& type : types) {
-    std::optional<aircraft::Aircraft> aircraft;
     try {
-      aircraft = aircraft::load_aircraft(type, load, {});
+      contenders.push_back({type, aircraft::load_aircraft(type, load, {}), {}});
     } catch (const Error& error) {
       warn(warn_to, type + " is not compared with the real aircraft: " + error.what());
       continue;
     }
-    const PoseFit pose = fit_pose(masks, aircraft->mesh, stop);
-    const double score =
-        pose.overlap * std::exp(-kAspectWeight * std::abs(std::log(pose.aspect_ratio)));
-    if (score > most) most = score, best = {type, pose};
+    Contender& last = contenders.back();
+    last.coarse = coarse_fits({masks[0]}, Views(last.aircraft.mesh), stop);
   }
-  if (!best) throw Error("no aircraft can be loaded to compare the real one with");
+  if (contenders.empty()) throw Error("no aircraft can be loaded to compare the real one with");
+  std::stable_sort(contenders.begin(), contenders.end(), [](const auto& a, const auto& b) {
+    return total_of(a.coarse[0]) > total_of(b.coarse[0]);
+  });
+  contenders.resize(std::min(contenders.size(), kTypesClosedIn));
+  std::optional<TypeFit> best;
+  Candidate most;
+  for (const Contender& one : contenders) {
+    const Candidate fit = closed_in(masks, Views(one.aircraft.mesh), one.coarse, stop);
+    if (!best || total_of(fit) > total_of(most)) most = fit, best = {one.name, pose_of(fit)};
+  }
   return *best;
 }
 

@@ -24,9 +24,11 @@ struct PoseFit {
 };
 
 // Renders silhouettes of the mesh from 78 directions and searches them, mirrored and turned in the
-// picture, for the one that fits; then closes in on the six best by steps of 8, 4 and 2 degrees. A
+// picture, for the one that fits the first mask; then closes in on the four best, by
+// all masks, in steps of 8, 4 and 2 degrees. A
 // silhouette is the same from the front and below as from behind and above: of two such attitudes
-// the one that is seen from below is given. The aircraft's up is within 60 degrees of the
+// the one that is seen from below is given. Of attitudes that fit alike
+// the more upright one is given. The aircraft's up is within 60 degrees of the
 // picture's, except where it is seen from more than 45 degrees below. `masks`: 8-bit, 255:
 // aircraft, bounded tightly; one or more. Throws Interrupted on stop.
 PoseFit fit_pose(const std::vector<cv::Mat>& masks,
@@ -41,7 +43,8 @@ struct TypeFit {
   PoseFit pose;
 };
 
-// The best of several types, as of fit_pose(). A type that is not in the catalogue is passed over
+// The best of several types, as of fit_pose(); the three whose coarse silhouettes fit best are
+// closed in on. A type that is not in the catalogue is passed over
 // with a warning. Error where none is left.
 TypeFit fit_type(const std::vector<cv::Mat>& masks,
                  const std::vector<std::string>& types,
