@@ -277,7 +277,6 @@ std::vector<std::string> types_to_match() {
           "Citation-Bravo/Models/Bravo-ai",
           "beech-200/beech-200-234",
           "c172/news",
-          "pa-28/pa-28-g-bprn",
           "seahawk/Models/seahawk-3d-model"};
 }
 
