@@ -7,6 +7,7 @@ plots as files.
 """
 
 import itertools
+import json
 import math
 import os
 import re
@@ -60,6 +61,9 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   const names = () => [...page.querySelectorAll('#ranking tbody tr td:first-child')].map((c) => c.textContent);
   const shownFrame = () => Number(/frame (\\d+)/.exec(id('caption').textContent)[1]);
   const out = { title: id('title').textContent, ranking: names(), injected: page.querySelectorAll('h1 *, option *, td b b').length };
+  const heads = [...page.querySelectorAll('#ranking thead th')].map((c) => c.textContent.replace(/[^a-z/, ]/g, '').trim());
+  out.rates = [...page.querySelectorAll('#ranking tbody tr')].map((row) => [row.cells[0].textContent,
+    row.cells[heads.indexOf('fps, median')].textContent, row.cells[heads.indexOf('fps, mean')].textContent]);
   out.canvases = [...page.querySelectorAll('canvas')].filter((c) => !c.closest('[hidden]')).map((c) => [c.id, drawn(c)]);
   out.sequences = [...id('sequence').options].map((o) => o.textContent);
   out.first = shownFrame();
@@ -236,6 +240,9 @@ def main():
         run("track", "set", "-o", "results", "-t", "am3", "opencv-kcf", "--protocol", "multistart", "--anchor-step", "15")
         results = ["results/" + name for name in TRACKERS]
         run("evaluate", "set", *results, "-o", "evaluation", "--figures", "png")
+        with open(root + "/evaluation/evaluation.json", encoding="utf-8") as file:
+            overall = {t["name"]: t["overall"] for t in json.load(file)["trackers"]}
+        rates = {name: tuple(float(f"{o[key]:.1f}") for key in ("frames_per_second_median", "frames_per_second")) for name, o in overall.items()}
         for size in ((1400, 3600), (400, 9000)):
             out = looked_at(browser, root, size, LOOK)
             faults = []
@@ -247,6 +254,8 @@ def main():
             expect("errors", out.get("found", out), [])
             expect("title", out["title"], "Trackers on set")
             expect("ranking", sorted(out["ranking"]), sorted(TRACKERS))
+            shown = {name: tuple(float(cell.replace(",", "")) for cell in (median, mean)) for name, median, mean in out["rates"]}
+            expect("median and mean of frames/s", shown, rates)
             expect("canvases not drawn", [name for name, is_drawn in out["canvases"] if not is_drawn], [])
             expect("canvases", len(out["canvases"]), 8 + 5)
             expect("sequences", len(out["sequences"]), 2)

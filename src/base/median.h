@@ -16,6 +16,16 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
+// The mean of the two middle values where their number is even, as statistics packages have it.
+// There is at least one value.
+inline double median_between(std::vector<double> values) {
+  const double upper = median(values);
+  if (values.size() % 2 == 1) return upper;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return (*std::max_element(values.begin(), middle) + upper) / 2;
+}
+
 template <class T>
 T median_or_0(std::vector<T> values) {
   return values.empty() ? T{0} : median(std::move(values));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/median.h"
+
 namespace airtruth::evaluation {
 namespace {
 
@@ -87,10 +89,7 @@ void add_rates(std::span<const FramePair> frames, Score& score) {
   for (const FramePair& frame : frames.subspan(std::min<std::size_t>(1, frames.size())))
     if (frame.seconds > 0) rates.push_back(1 / frame.seconds);
   if (rates.empty()) return;
-  std::sort(rates.begin(), rates.end());
-  const std::size_t half = rates.size() / 2;
-  score.frames_per_second_median =
-      rates.size() % 2 == 1 ? rates[half] : (rates[half - 1] + rates[half]) / 2;
+  score.frames_per_second_median = median_between(rates);
   for (const double rate : rates) score.frames_per_second += rate / double(rates.size());
 }
 

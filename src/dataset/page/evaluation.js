@@ -97,7 +97,8 @@
       measured('x_rmse_px', 'x rmse, px', 1, true),
       measured('y_rmse_px', 'y rmse, px', 1, true),
       plain('sequences_lost', 'lost', 0, true),
-      plain('frames_per_second', 'frames/s', 1),
+      plain('frames_per_second_median', 'fps, median', 1),
+      plain('frames_per_second', 'fps, mean', 1),
     ], 2);
     const vot = trackers.filter((t) => t.restart || t.multistart);
     if (!vot.length) return;
