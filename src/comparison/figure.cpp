@@ -31,7 +31,7 @@ image::Rgb8 tile_of(const image::Rgb8& crop, int side) {
   return report::resized(crop, side, side, crop.width > side ? cv::INTER_AREA : cv::INTER_NEAREST);
 }
 
-void place(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
+void paste(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
   report::view(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
 }
 
@@ -73,7 +73,7 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
       report::view(copy)(cv::Rect(from, from, small, small))
           .copyTo(canvas(cv::Rect(x, y, small, small)));
       x += kSmallPx + kGapPx;
-      place(canvas, tile_of(one->picture, kLargePx), x, y);
+      paste(canvas, tile_of(one->picture, kLargePx), x, y);
       cv::Mat large = canvas(cv::Rect(x, y, kLargePx, kLargePx));
       report::outline(large, one->box, double(kLargePx) / one->picture.width, report::kGreen);
       x += kLargePx + kGapPx;
@@ -86,8 +86,8 @@ image::Rgb8 strip_of(const std::vector<FigureRow>& rows) {
   cv::Mat canvas(2 * kTilePx, kTilePx * static_cast<int>(rows.size()), CV_8UC3, report::kDarkPaper);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int x = kTilePx * static_cast<int>(i);
-    place(canvas, tile_of(rows[i].real.picture, kTilePx), x, 0);
-    place(canvas, tile_of(rows[i].made.picture, kTilePx), x, kTilePx);
+    paste(canvas, tile_of(rows[i].real.picture, kTilePx), x, 0);
+    paste(canvas, tile_of(rows[i].made.picture, kTilePx), x, kTilePx);
   }
   return report::from_mat(canvas);
 }
@@ -110,7 +110,7 @@ image::Rgb8 figure_of_all(const std::vector<NamedStrip>& strips) {
                  kTextPx,
                  report::kWhite);
     const image::Rgb8& p = strip.picture;
-    place(canvas, report::resized(p, p.width, p.height, cv::INTER_NEAREST), kGapPx, y);
+    paste(canvas, report::resized(p, p.width, p.height, cv::INTER_NEAREST), kGapPx, y);
     y += strip.picture.height;
   }
   return report::from_mat(canvas);

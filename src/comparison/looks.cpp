@@ -16,7 +16,8 @@
 namespace airtruth::comparison {
 namespace {
 
-constexpr double kReach = 0.35;  // of a patch's side: how far its aircraft may lie from its middle
+constexpr double kPatchReach =
+    0.35;  // of a patch's side: how far its aircraft may lie from its middle
 
 std::vector<double> values_where(const cv::Mat& values, const cv::Mat& mask) {
   std::vector<double> result;
@@ -85,7 +86,7 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   patch.y = y;
   patch.rgb = cv::Mat(side, side, CV_8UC3, crop.samples.get()).clone();
   patch.grey = luma_of(picture, {x, y, side, side});
-  patch.silhouette = silhouette_of(patch.grey, kReach * side);
+  patch.silhouette = silhouette_of(patch.grey, kPatchReach * side);
   return patch;
 }
 

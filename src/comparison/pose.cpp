@@ -52,8 +52,7 @@ YawPitchRoll attitude_of(const EyePlace& eye) {
 class Views {
  public:
   explicit Views(const aircraft::Mesh& mesh)
-      : mesh_(mesh),
-        model_(mesh),
+      : model_(mesh),
         silhouette_{&mesh, aircraft::silhouette_points(mesh)},
         extents_(aircraft::extents(mesh)) {}
 
@@ -81,7 +80,6 @@ class Views {
   }
 
  private:
-  const aircraft::Mesh& mesh_;
   render::Model model_;
   annotation::Silhouette silhouette_;
   aircraft::Extents extents_;

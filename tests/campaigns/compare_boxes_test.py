@@ -60,6 +60,19 @@ def clip_with_an_aircraft(airtruth, data):
     return HEAD + "".join(f"{frame}," + ",".join(map(str, box)) + "\n" for frame, box in boxes.items() if box)
 
 
+def judge_a_whole_one(airtruth, root, out, boxes):
+    """A comparison is replaced where that is asked for; the judge draws its pairs and writes its tables."""
+    common.run([airtruth, "compare", "--real", f"{root}/data/real/out/out.mkv", "--boxes", boxes, "--scene", f"{root}/data/scene.toml",
+                "-o", out, "--no-match", "--overwrite"], codes=(0,), env=common.environment(f"{root}/cache"))
+    judged = common.run([airtruth, "judge", out, out, out, "--figure", f"{root}/all.png", "--json", f"{root}/all.json"], codes=(0,))
+    if "trained and asked within each clip" not in judged.out or not os.path.getsize(f"{root}/all.png"):
+        raise Broken(f"judge of a whole comparison: {judged.out[-300:]}")
+    with open(f"{root}/all.json") as file:
+        gaps = {gap["name"] for gap in json.load(file)["gaps"]}
+    if not any(name.startswith("edge") for name in gaps) or not any(name.startswith("mean contrast below") for name in gaps):
+        raise Broken(f"judge's gaps: {sorted(gaps)}")
+
+
 def compare(airtruth, root):
     data = os.path.join(root, "data")
     os.makedirs(data)
@@ -77,6 +90,8 @@ def compare(airtruth, root):
         worked += done.code == 0
         if what == "of its truth" and done.code != 0:
             raise Broken(f"the boxes of the aircraft's own truth: {done.err[-300:]}")
+        if done.code == 0:
+            judge_a_whole_one(airtruth, root, out, boxes)
     print(f"{len(BOXES) + 1} files of boxes: {worked} compared, the others refused in one line")
 
 
