@@ -26,10 +26,6 @@ HELD_BACK = ([f"V_AIRPLANE_{n:03}" for n in (5, 7, 10, 11, 12, 14, 16, 17)]
 SUN = {"cumulus_a4": (150, 50), "overcast_b4": (0, 60), "V_AIRPLANE_008": (180, 30), "V_AIRPLANE_018": (180, 30),
        "V_AIRPLANE_035": (180, 30), "V_AIRPLANE_049": (180, 30)}  # azimuth, elevation
 OTHER_SUN = (0, 50)
-# What the clip's name says it shows; the pose search takes the type from these.
-AIRPLANES = ["738/738-Delta", "747/744-Default", "A320/A320-default", "CR7/CR7-Default", "AT7/AT7-AirCorsica",
-             "Citation-Bravo/Models/Bravo-ai", "beech-200/beech-200-234", "c172/news"]
-HELICOPTERS = ["seahawk/Models/seahawk-3d-model"]
 # Each stage has the tables of those before it; None: another method.
 STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ air", ["air"]), ("+ optics", ["optics"]),
           ("+ noise", ["noise"]), ("+ codec (all)", ["codec"])]
@@ -80,7 +76,7 @@ def scene_text(clip, method, tables, pose):
     if pose:
         aircraft, yaw, pitch, roll = pose["aircraft"], pose["yaw_deg"], pose["pitch_deg"], pose["roll_deg"]
     else:  # stands for what the search finds
-        aircraft, yaw, pitch, roll = AIRPLANES[0], 90, 0, 0
+        aircraft, yaw, pitch, roll = "738/738-Delta", 90, 0, 0
     azimuth, elevation = SUN.get(clip, OTHER_SUN)
     view = 12 if clip.startswith("V_") else 41
     return (f'name = "s"\n[background]\nvideo = "unused.mp4"\n[lens]\nmodel = "pinhole"\nvertical_fov_deg = {view}\n'
@@ -116,10 +112,9 @@ def compare(arguments, shared, clip, number, stage, parts):
     if os.path.exists(os.path.join(comparison, "patches.csv")):
         return comparison
     print(f"{stage}: {clip}", file=sys.stderr, flush=True)
-    types = HELICOPTERS if "HELICOPTER" in clip else AIRPLANES
     process = subprocess.run([arguments.program, "--quiet", "compare", "--real", video, "--boxes", boxes, "--origin", str(origin),
                               "--scene", scene, "-o", comparison, "--frames", str(arguments.frames), "--overwrite",
-                              *(["--no-match"] if pose else ["--types", ",".join(types)])],
+                              "--no-match" if pose else "--match"],
                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if process.returncode == 2:  # the clip cannot be compared; anything else is a fault of the program
         print(f"ablation: {clip} is left out: {process.stderr.strip()}", file=sys.stderr, flush=True)

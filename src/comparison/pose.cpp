@@ -274,8 +274,7 @@ std::vector<std::string> types_to_match() {
           "AT7/AT7-AirCorsica",
           "Citation-Bravo/Models/Bravo-ai",
           "beech-200/beech-200-234",
-          "c172/news",
-          "seahawk/Models/seahawk-3d-model"};
+          "c172/news"};
 }
 
 TypeFit fit_type(const std::vector<cv::Mat>& masks,
