@@ -20,9 +20,9 @@ class HorizonFinder {
  public:
   HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft);
 
-  // Least sharpness of a horizon. Real horizons over hills have 0.62 to 1, those of virtual flights
-  // in haze of 13 km visibility 0.6 to 0.8; clear and clouded skies without a horizon have 0.5 at
-  // most, rows of trees 0.33 to 0.6.
+  // Least sharpness of a horizon. 92 % of the frames of two real flights over hills and fields have
+  // more, as virtual flights have in clear air; in haze of 13 km visibility they have 0.6 to 0.75.
+  // Clear and clouded skies without a horizon have 0.4 at most, rows of trees 0.36 to 0.65.
   static constexpr double kSharp = 0.6;
   struct Found {
     Vector3 up_in_cam{0, -1, 0};
