@@ -14,10 +14,10 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 480;
+constexpr int kSkyWidth = 640, kSkyHeight = 480;
 constexpr double kFovDeg = 60;
 
-lens::Lens the_lens() { return lens::pinhole_from_vertical_fov(kFovDeg, {kWidth, kHeight}); }
+lens::Lens the_lens() { return lens::pinhole_from_vertical_fov(kFovDeg, {kSkyWidth, kSkyHeight}); }
 
 Vector3 up_of(double pitch_deg, double roll_deg) {
   const Quaternion world_from_camera_body = world_from_body({0, pitch_deg, roll_deg});
@@ -41,10 +41,10 @@ Paint mixed(const Paint& low, const Paint& high, double share) {
 image::Picture drawn(double pitch_deg, double roll_deg, double noise_codes, const Scene& scene) {
   const lens::Lens lens = the_lens();
   const Quaternion level_from_cam = cam_from_level(up_of(pitch_deg, roll_deg)).conjugate();
-  image::Picture picture = image::make_picture(kWidth, kHeight, image::Colour{});
+  image::Picture picture = image::make_picture(kSkyWidth, kSkyHeight, image::Colour{});
   Random random(7);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kSkyHeight; ++y)
+    for (int x = 0; x < kSkyWidth; ++x) {
       const Vector3 ray = level_from_cam * *lens.ray_from_pixel({x + 0.5, y + 0.5});
       const Paint paint =
           scene(degrees(std::atan2(ray.y(), ray.x())), degrees(std::asin(-ray.z())));
