@@ -9,21 +9,22 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kSide = 120;
-const Box kWhole{0, 0, kSide, kSide};
+constexpr int kStageSide = 120;
+const Box kWhole{0, 0, kStageSide, kStageSide};
 constexpr float kCoat = 0.04f;  // what a clear coat mirrors along the normal
 
 struct Stage {
-  lens::Lens lens{lens::Pinhole{{300, 300}, {kSide / 2.0, kSide / 2.0}}, {kSide, kSide}};
+  lens::Lens lens{lens::Pinhole{{300, 300}, {kStageSide / 2.0, kStageSide / 2.0}},
+                  {kStageSide, kStageSide}};
   View view{&lens,
             Rigid{cam_from_body().conjugate(), Vector3::Zero()},  // looks north from the origin
             Homography::Identity(),
-            kSide,
-            kSide};
+            kStageSide,
+            kStageSide};
 
   image::LayerPixel middle(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
     const image::Layer layer = whole(mesh, light, body);
-    return layer.pixels[layer.index(kSide / 2, kSide / 2)];
+    return layer.pixels[layer.index(kStageSide / 2, kStageSide / 2)];
   }
   image::Layer whole(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
     const Model model(mesh);
@@ -112,7 +113,8 @@ TEST(LightAround, ABlackSphereHasABrightRim) {
   const Stage stage;
   EXPECT_NEAR(stage.middle(black, only(even(1)), at_distance(100)).green, kCoat, 0.002);
   const image::Layer layer = stage.whole(black, only(even(1)), at_distance(100));
-  const image::LayerPixel rim = layer.pixels[layer.index(kSide / 2 + 9, kSide / 2)];  // of 12 px
+  const image::LayerPixel rim =
+      layer.pixels[layer.index(kStageSide / 2 + 9, kStageSide / 2)];  // of 12 px
   const double cosine = std::sqrt(1 - std::pow(9.5 / 12, 2));
   EXPECT_NEAR(rim.green / rim.alpha, 0.04 + 0.96 * std::pow(1 - cosine, 5), 0.02);
 }
