@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ struct CompareArguments {
   std::int64_t frames = 0;
   bool match = true;
   std::vector<std::string> types;
+  std::optional<double> camera_pitch_deg;
   bool overwrite = false;
 };
 
@@ -34,6 +36,7 @@ void compare(const CompareArguments& arguments, Context& context) {
   options.most_frames = arguments.frames;
   options.match = arguments.match;
   options.types = arguments.types;
+  options.camera_pitch_deg = arguments.camera_pitch_deg;
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -117,6 +120,12 @@ void add_compare(CLI::App& app, Context& context) {
                    arguments->types,
                    "Aircraft to search among (`airtruth aircraft list`), with commas between")
       ->delimiter(',');
+  command
+      ->add_option("--camera-pitch",
+                   arguments->camera_pitch_deg,
+                   "Degrees that the camera looks up, which says where light comes from (without: "
+                   "as much as has the aircraft most nearly level, 0 to 60)")
+      ->check(CLI::Range(-90.0, 90.0));
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
   command->callback([arguments, &context] { compare(*arguments, context); });
 }

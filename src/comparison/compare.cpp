@@ -42,7 +42,8 @@ scene::Scene scene_beside(const scene::Scene& given,
                           const fs::path& real,
                           const RealBoxes& boxes,
                           const Beside& path,
-                          const YawPitchRoll& attitude) {
+                          const YawPitchRoll& attitude,
+                          double camera_pitch_deg) {
   scene::Scene scene = given;
   scene.name = kName;
   scene.background.video = real;
@@ -50,6 +51,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.background.frame_count = boxes.rbegin()->first - boxes.begin()->first + 1;
   scene.camera = {};
   scene.camera.position_ned_m = Vector3::Zero();
+  scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg = camera_pitch_deg;
   scene.motion.model = "none";
   scene.intruders.resize(1);
   scene::Intruder& intruder = scene.intruders[0];
@@ -164,7 +166,10 @@ class Comparing {
                      double scale,
                      const fs::path& folder,
                      bool reports) {
-    const Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
+    Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
+    const double pitch_deg = options_.camera_pitch_deg.value_or(camera_pitch_deg(attitude_));
+    YawPitchRoll attitude = attitude_;
+    look_up(pitch_deg, path, attitude);
     sequence::Options how;
     // The path is that of a place in the picture; that no aircraft can fly it is no news.
     if (reports)
@@ -176,7 +181,7 @@ class Comparing {
       how.progress = [&](const sequence::Progress& p) {
         if (options_.progress) options_.progress(p.frames_done, 2 * p.frames_total);
       };
-    sequence::render(scene_beside(given, real_, boxes, path, attitude_), folder, how);
+    sequence::render(scene_beside(given, real_, boxes, path, attitude, pitch_deg), folder, how);
   }
 
   void render(const scene::Scene& given, double scale) {

@@ -35,6 +35,9 @@ struct Options {
   // silhouette is the real one's; else both are the scene's.
   bool match = true;
   std::vector<std::string> types;
+  // How far the camera looks up; light comes from the world's above. Empty: camera_pitch_deg()
+  // (place.h).
+  std::optional<double> camera_pitch_deg;
   std::int64_t most_frames = 0;  // 0: all that have a box
   Warn warn;
   std::stop_token stop;

@@ -131,4 +131,22 @@ Beside path_beside(const RealBoxes& boxes,
   return path;
 }
 
+double camera_pitch_deg(const YawPitchRoll& attitude) {
+  constexpr int kSteepestDeg = 60;
+  const Vector3 up = world_from_body(attitude) * Vector3(0, 0, -1);
+  int best = 0;
+  double most = -2;
+  for (int pitch_deg = 0; pitch_deg <= kSteepestDeg; ++pitch_deg) {
+    const double upright = -(world_from_body({0, double(pitch_deg), 0}) * up).z();
+    if (upright > most + 1e-9) most = upright, best = pitch_deg;
+  }
+  return best;
+}
+
+void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude) {
+  const Quaternion turn = world_from_body({0, pitch_deg, 0});
+  for (Vector3& point : path.waypoints_ned_m) point = turn * point;
+  attitude = yaw_pitch_roll(turn * world_from_body(attitude));
+}
+
 }  // namespace airtruth::comparison

@@ -23,4 +23,12 @@ Beside path_beside(const RealBoxes& boxes,
                    double frame_rate_hz,
                    double scale = 1);
 
+// How far a camera looks up, 0 to 60 degrees, that sees an aircraft in that attitude (as a level
+// camera has it): where the aircraft is most nearly upright. Light comes from above in the world
+// and not in the picture, and most of what is filmed from the ground flies level.
+double camera_pitch_deg(const YawPitchRoll& attitude);
+
+// The same picture with the world turned under it, so that the camera looks up by that much.
+void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude);
+
 }  // namespace airtruth::comparison
