@@ -186,10 +186,7 @@ Entry find_aircraft(const std::string& name) {
 }
 
 std::vector<std::string> aircraft_named_like(const std::string& word) {
-  return names_that([&](const std::string& name) {
-    return is_pattern(word) ? matches(word, name, LetterCase::kIgnored)
-                            : contains_ignoring_case(name, word);
-  });
+  return names_that([&](const std::string& name) { return is_named_like(name, word); });
 }
 
 std::vector<std::string> aircraft_fitting(const std::string& pattern) {

@@ -46,4 +46,9 @@ bool contains_ignoring_case(std::string_view text, std::string_view part) {
 
 bool is_pattern(std::string_view text) { return text.find_first_of("*?") != text.npos; }
 
+bool is_named_like(std::string_view name, std::string_view word) {
+  return is_pattern(word) ? matches(word, name, LetterCase::kIgnored)
+                          : contains_ignoring_case(name, word);
+}
+
 }  // namespace airtruth

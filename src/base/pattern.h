@@ -17,6 +17,10 @@ bool matches(std::string_view pattern,
 // Whether `part` occurs in `text`, whatever the case of its letters.
 bool contains_ignoring_case(std::string_view text, std::string_view part);
 
+// Whether a name is one of those that a word asks for: one that the pattern fits, or one that
+// contains the word where it is no pattern; whatever the case of their letters.
+bool is_named_like(std::string_view name, std::string_view word);
+
 // Whether the text holds * or ?, so that it is a pattern and no plain name.
 bool is_pattern(std::string_view text);
 

@@ -27,8 +27,7 @@ std::string published_words(const std::string& name) {
 
 void list_left_out(const std::string& filter, Context& context) {
   for (const auto& [name, reason] : aircraft::left_out())
-    if (is_pattern(filter) ? matches(filter, name, LetterCase::kIgnored)
-                           : contains_ignoring_case(name, filter))
+    if (is_named_like(name, filter))
       context.console().print(fmt::format("{:<40} {}\n", name, reason));
 }
 

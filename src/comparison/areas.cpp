@@ -30,12 +30,6 @@ double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-double middle_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
 Interval interval_of(const std::vector<double>& values,
                      std::uint64_t seed,
                      const std::function<double(const std::vector<double>&)>& statistic) {
@@ -115,7 +109,7 @@ Interval mean_over_clips(const std::vector<double>& values, std::uint64_t seed) 
 }
 
 Interval median_over_clips(const std::vector<double>& values, std::uint64_t seed) {
-  return interval_of(values, seed, middle_of);
+  return interval_of(values, seed, median_between);
 }
 
 }  // namespace airtruth::comparison

@@ -145,6 +145,26 @@ std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& me
 
 }  // namespace
 
+bool is_blocked(const Model::Impl& model,
+                const Eigen::Vector3f& origin,
+                const Eigen::Vector3f& direction,
+                float reach_m) {
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].spins) continue;
+    RTCRay ray{};
+    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+    ray.tnear = 0;
+    ray.tfar = reach_m;
+    ray.mask = 0xffffffffu;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(model.scenes[i].get(), &context, &ray);
+    if (ray.tfar < 0) return true;
+  }
+  return false;
+}
+
 Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = mesh;
   impl_->device.reset(new_device());

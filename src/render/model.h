@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -47,5 +48,12 @@ struct Hit {
   float u = 0;
   float v = 0;
 };
+
+// Does anything of the aircraft stand in the way from there, within that reach? In body
+// coordinates. What spins is left out: a propeller's disc is mostly air.
+bool is_blocked(const Model::Impl& model,
+                const Eigen::Vector3f& origin,
+                const Eigen::Vector3f& direction,
+                float reach_m = INFINITY);
 
 }  // namespace airtruth::render

@@ -44,25 +44,6 @@ std::array<Eigen::Vector3f, 2> axes_across(const Eigen::Vector3f& n) {
           Eigen::Vector3f(b, sign + n.y() * n.y() * a, -n.y())};
 }
 
-bool is_blocked(const Model::Impl& model,
-                const Eigen::Vector3f& origin,
-                const Eigen::Vector3f& direction) {
-  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-    if (model.mesh.parts[i].spins) continue;
-    RTCRay ray{};
-    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
-    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
-    ray.tnear = 0;
-    ray.tfar = kReachM;
-    ray.mask = 0xffffffffu;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(model.scenes[i].get(), &context, &ray);
-    if (ray.tfar < 0) return true;
-  }
-  return false;
-}
-
 float open_share(const Model::Impl& model,
                  const Eigen::Vector3f& point,
                  const Eigen::Vector3f& normal,
@@ -71,7 +52,7 @@ float open_share(const Model::Impl& model,
   const Eigen::Vector3f origin = point + kStartM * normal;
   std::size_t open = 0;
   for (const Eigen::Vector3f& d : about_z)
-    if (!is_blocked(model, origin, d.x() * x + d.y() * y + d.z() * normal)) ++open;
+    if (!is_blocked(model, origin, d.x() * x + d.y() * y + d.z() * normal, kReachM)) ++open;
   return static_cast<float>(open) / static_cast<float>(about_z.size());
 }
 

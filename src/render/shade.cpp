@@ -61,26 +61,6 @@ Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   return result;
 }
 
-bool in_shadow(const Placed& placed, const Eigen::Vector3f& point_in_body) {
-  for (std::size_t i = 0; i < placed.model->scenes.size(); ++i) {
-    const Eigen::Vector3f o = placed.part_from_body[i] * point_in_body;
-    const Eigen::Vector3f d = placed.part_from_body[i].linear() * placed.to_sun_in_body;
-    RTCRay ray{};
-    ray.org_x = o.x(), ray.org_y = o.y(), ray.org_z = o.z();
-    ray.dir_x = d.x(), ray.dir_y = d.y(), ray.dir_z = d.z();
-    ray.tnear = 0;
-    ray.tfar = INFINITY;
-    ray.mask = 0xffffffffu;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    // A propeller's disc is mostly air: what spins casts no shadow.
-    if (placed.model->mesh.parts[i].spins) continue;
-    rtcOccluded1(placed.model->scenes[i].get(), &context, &ray);
-    if (ray.tfar < 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
@@ -198,7 +178,7 @@ std::array<float, 3> shade(const Placed& placed,
   float sun = 0;
   const float cosine = surface.normal.dot(to_sun);
   if (cosine > 0 && surface.face.dot(to_sun) > 0 &&
-      !in_shadow(placed, point + 0.01f * surface.face))
+      !is_blocked(*placed.model, point + 0.01f * surface.face, to_sun))
     sun = cosine;
   const float glint =
       sun > 0 ? sun * glint_of(surface, to_sun, ray.direction, material.shininess) : 0;
