@@ -30,6 +30,9 @@ OTHER_SUN = (0, 50)
 # Each stage has the tables of those before it; None: another method.
 STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ air", ["air"]), ("+ optics", ["optics"]),
           ("+ noise", ["noise"]), ("+ codec (all)", ["codec"])]
+# The clips from the ground are of one camera (data/camera-profiles): what one of them cannot tell, as a clip of sky alone
+# cannot tell its sharpness, the camera's profile does. The onboard clips show enough edges of their own.
+GROUND_PROFILE = "ground-zoom"
 NOISE = ("noise_gain", "noise_floor", "noise_correlation_px")
 
 
@@ -87,9 +90,10 @@ def scene_text(clip, method, tables, pose):
             f'speed_mps = 50\n[composite]\nmethod = "{method}"\n' + tables)
 
 
-def camera_of(program, video, camera_file):
+def camera_of(program, clip, video, camera_file):
     if not os.path.exists(camera_file):
-        run([program, "--quiet", "calibrate", video, "-o", camera_file])
+        profile = ["--profile", GROUND_PROFILE] if clip not in ONBOARD else []
+        run([program, "--quiet", "calibrate", video, "-o", camera_file, *profile])
     with open(camera_file, "rb") as file:
         return tomllib.load(file)
 
@@ -97,7 +101,7 @@ def camera_of(program, video, camera_file):
 def compare(arguments, shared, clip, number, stage, parts):
     """The comparison's folder; None where the clip is refused."""
     video, boxes, origin = place_of(shared, clip)
-    camera = camera_of(arguments.program, video, os.path.join(arguments.out, clip + ".camera.toml")) if parts else {}
+    camera = camera_of(arguments.program, clip, video, os.path.join(arguments.out, clip + ".camera.toml")) if parts else {}
     base = os.path.join(arguments.out, f"{number}")
     os.makedirs(base, exist_ok=True)
     scene = os.path.join(base, clip + ".toml")

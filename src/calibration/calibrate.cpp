@@ -187,11 +187,11 @@ class Session {
       lack("shutter.readout_s", why.empty() ? "the video has no frame rate" : why);
       return;
     }
-    // Below twice its error it is no sign of a rolling shutter.
-    const bool rolls = std::abs(share->value) > 2 * share->sigma;
+    const Estimate downwards_s{share->value * interval_s, share->sigma * interval_s};
+    result_.downwards_s = downwards_s;
     put("shutter.readout_s",
-        {{rolls ? std::abs(share->value) * interval_s : 0, share->sigma * interval_s}});
-    result_.notes["shutter.readout"] = rolls && share->value < 0 ? "up" : "down";
+        {{rolls(downwards_s) ? std::abs(downwards_s.value) : 0, downwards_s.sigma}});
+    result_.notes["shutter.readout"] = rolls(downwards_s) && share->value < 0 ? "up" : "down";
   }
 
   void take_sky() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -68,6 +69,7 @@ struct Horizon {
 
 struct Calibration {
   fs::path video;
+  int clips = 1;  // that were measured as one (join.h)
   int width = 0;
   int height = 0;
   std::int64_t frames = 0;
@@ -76,8 +78,13 @@ struct Calibration {
   image::ToneCurve tone;  // as it was given
   // By key, as in a scene: "sensor.noise_gain", "air.extinction_per_km" (three), ...
   std::map<std::string, std::vector<Estimate>> values;
+  // The readout with its sign, downwards positive, before it is told from nothing; what is joined.
+  std::optional<Estimate> downwards_s;
   std::map<std::string, std::string> missing;  // key: why not
   std::map<std::string, std::string> notes;    // key: what to know about the value
+  // Of values that are not the clip's own alone: whose they are (profile.h).
+  std::map<std::string, std::string> sources;
+  std::map<std::string, std::string> doubts;  // key: what contradicts the value by more than errors
   // Of each frame: the heading of the camera, in degrees from that of the first frame, which turns
   // the sun's azimuth for a sequence that begins at a later frame. Empty without a lens or a
   // horizon.
@@ -91,6 +98,9 @@ struct Calibration {
 // Reads the clip once. Error for what is no video; a clip too short or too still gives what it
 // holds.
 Calibration calibrate(const fs::path& video, const Options& options);
+
+// Is a readout a sign of a rolling shutter? Below twice its error it is none.
+inline bool rolls(const Estimate& readout) { return std::abs(readout.value) > 2 * readout.sigma; }
 
 // camera.toml: values, and as comments their errors and what is missing.
 std::string toml_from(const Calibration& calibration);

@@ -40,6 +40,9 @@ constexpr double kMostMoved = 10;          // px
 constexpr double kSamePlace = 1;           // px
 constexpr double kSameDirection = 0.9994;  // cosine: 2 degrees
 constexpr double kBin = 0.2;               // px
+// By how much, as a share, the edges of the world are softer than the sharpest: of n different ones
+// the sharpest is softer than the camera by 1 / n of it, the least of n exponential ones.
+constexpr double kSofterInWorld = 0.7;
 
 struct Found {
   double x, y;    // on the edge
@@ -323,6 +326,7 @@ void EdgeMeter::add(const image::Picture& frame,
     edges_.push_back(std::move(edge));
     ++count;
   }
+  most_at_once_ = std::max(most_at_once_, count);
 }
 
 // What stays where it is in the picture, as the own aircraft does, is one edge in all frames.
@@ -377,7 +381,9 @@ std::optional<StepResponse> EdgeMeter::result(std::string& why) {
     return std::nullopt;
   }
   const auto edges = sharp_ones();
-  const StepResponse response = fit_step_response(edges, tone_);
+  StepResponse response = fit_step_response(edges, tone_);
+  Estimate& spread = response.point_spread_px;
+  spread.sigma = std::hypot(spread.sigma, spread.value * kSofterInWorld / most_at_once_);
   profile_ = profile_of(nearest_to_camera(edges, response), response, tone_);
   profile_.edges = static_cast<int>(edges.size());
   return response;

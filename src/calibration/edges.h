@@ -22,6 +22,9 @@ class EdgeMeter {
   // not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
 
+  // The spread's error holds that the sharpest of few edges may be soft in the world: edges of one
+  // frame are different ones, those of other frames may be the same again, as those of one aircraft
+  // before the sky are.
   std::optional<StepResponse> result(std::string& why);
   const EdgeProfile& profile() const { return profile_; }
 
@@ -41,6 +44,7 @@ class EdgeMeter {
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;
+  int most_at_once_ = 0;  // edges in one frame
   EdgeProfile profile_;
 };
 

@@ -113,7 +113,8 @@ void paint_panels(image::Picture& picture, int finer) {
 }  // namespace
 
 Clip::Clip()
-    : path_(fs::temp_directory_path() / ("calibration_" + std::to_string(::getpid()) + ".mkv")) {}
+    : path_(fs::temp_directory_path() / ("calibration_" + std::to_string(::getpid()) + "_" +
+                                         std::to_string(made_++) + ".mkv")) {}
 
 Clip::~Clip() {
   std::error_code ignored;
@@ -146,13 +147,18 @@ void Clip::write(const synthetic::FlightOptions& o,
   writer.finish();
 }
 
-void Clip::write(const synthetic::Flight& flight, const Injected& what, bool panels) {
+void Clip::write(const synthetic::Flight& flight,
+                 const Injected& what,
+                 bool panels,
+                 int first_frame,
+                 std::optional<int> frame_count) {
   synthetic::FlightOptions o = flight.options();
   o.width /= what.finer, o.height /= what.finer;
+  o.frame_count = frame_count.value_or(o.frame_count);
   write(o, [&](int k) {
-    image::Picture picture = flight.frame(k);
+    image::Picture picture = flight.frame(first_frame + k);
     if (panels) paint_panels(picture, what.finer);
-    return taken(picture, what, k);
+    return taken(picture, what, first_frame + k);
   });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "calibration/calibration.h"
@@ -34,10 +35,16 @@ class Clip {
              const std::function<image::Picture(int)>& frame,
              video::Format format = video::Format::kMkv,
              int quality = 18);
-  // All of a flight, with that put into it; over painted panels, as airfields have them.
-  void write(const synthetic::Flight& flight, const Injected& what, bool panels = false);
+  // A flight, or some of its frames, with that put into it; over painted panels, as airfields have
+  // them.
+  void write(const synthetic::Flight& flight,
+             const Injected& what,
+             bool panels = false,
+             int first_frame = 0,
+             std::optional<int> frame_count = {});
 
  private:
+  inline static int made_ = 0;  // by this process
   fs::path path_;
 };
 

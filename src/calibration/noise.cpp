@@ -211,7 +211,12 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
     const double spread = (correlations[n * 84 / 100] - correlations[n * 16 / 100]) / 2;
     const double error = 1.25 * spread / std::sqrt(double(n));
     const double width = width_from_correlation(middle);
-    result.correlation_px = {width, std::abs(width_from_correlation(middle + error) - width)};
+    const double off = std::max(std::abs(width_from_correlation(middle + error) - width),
+                                std::abs(width_from_correlation(middle - error) - width));
+    // Where neither neighbour has another width, blocks are too alike to tell one.
+    result.correlation_px = {width, off > 0 ? off : std::max(1.0, width)};
+  } else {
+    result.correlation_px = {0, 1};
   }
   return result;
 }

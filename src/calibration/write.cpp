@@ -14,6 +14,13 @@ namespace {
 // Shown to two digits of its error, and to no fewer than three of its own.
 std::string shown(double value) { return fmt::format("{:.4g}", value); }
 
+// Whose the value is.
+std::string source_words(const Calibration& c, const std::string& key) {
+  const auto source = c.sources.find(key);
+  return source == c.sources.end() ? (c.clips > 1 ? "the clips' own" : "the clip's own")
+                                   : source->second;
+}
+
 std::string array_of(const std::vector<Estimate>& values, bool errors) {
   std::string text;
   for (const Estimate& e : values)
@@ -81,11 +88,14 @@ std::string toml_from(const Calibration& c) {
     }
     if (const auto note = c.notes.find(name); note != c.notes.end())
       text += "# " + note->second + "\n";
-    text += fmt::format("{} = {}  # +- {}; {}\n",
+    if (const auto doubt = c.doubts.find(name); doubt != c.doubts.end())
+      text += "# doubtful: " + doubt->second + "\n";
+    text += fmt::format("{} = {}  # +- {}; {}; {}\n",
                         key.key,
                         array_of(value->second, false),
                         array_of(value->second, true),
-                        key.words);
+                        key.words,
+                        source_words(c, name));
     if (name == "shutter.readout_s" && value->second[0].value > 0)
       text += fmt::format("readout = \"{}\"\n", c.notes.at("shutter.readout"));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -8,7 +10,9 @@
 #include "base/files.h"
 #include "base/output_check.h"
 #include "calibration/calibration.h"
+#include "calibration/join.h"
 #include "calibration/own_aircraft.h"
+#include "calibration/profile.h"
 #include "cli/commands.h"
 #include "lens/calibration_file.h"
 #include "sequence/mask_picture.h"
@@ -18,23 +22,59 @@
 namespace airtruth::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct CalibrateArguments {
-  std::string video;
+  std::vector<std::string> videos;
   std::string out;
   std::string lens;
   std::string mask;
   std::string plot;
+  std::string profile;
   std::optional<double> altitude_m;
   double heading_deg = 0;
   double gamma = 0;
   bool overwrite = false;
 };
 
+// A line a profile: its name and camera, and what an edge of it looks like.
+std::string profile_lines() {
+  std::string lines;
+  for (const calibration::CameraProfile& profile : calibration::camera_profiles())
+    lines += fmt::format("{:<18} {} x {} px, {} clip{}: {}\n",
+                         profile.name,
+                         profile.width,
+                         profile.height,
+                         profile.clips,
+                         profile.clips == 1 ? "" : "s",
+                         profile.camera);
+  return lines;
+}
+
+// Which values are not the clip's own alone, and what is doubtful.
+void report_sources(const calibration::Calibration& found, Console& console) {
+  for (const auto& [key, source] : found.sources)
+    console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}",
+                               key,
+                               found.values.at(key)[0].value,
+                               found.values.at(key)[0].sigma,
+                               source));
+  for (const auto& [key, doubt] : found.doubts) console.warning(key + " is doubtful: " + doubt);
+}
+
 void calibrate(const CalibrateArguments& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   Console& console = context.console();
-  const video::StreamInfo info = video::Reader(arguments.video, {.threads = 1}).info();
+  const calibration::CameraProfile profile = arguments.profile.empty()
+                                                 ? calibration::usual_camera()
+                                                 : calibration::camera_profile(arguments.profile);
+  const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());
+  if (clips.size() > 1 && !arguments.plot.empty())
+    throw Error("--plot draws one clip; expected one video beside it");
+  calibration::check_joinable(clips, {});
+  const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
+  calibration::check_size(profile, info.width, info.height);
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
   calibration::Options options;
@@ -49,16 +89,24 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   options.progress = [&](std::int64_t done, std::int64_t total) {
     console.progress("measuring", done, total);
   };
-  const calibration::Calibration found = calibration::calibrate(arguments.video, options);
+  std::vector<calibration::Calibration> measured;
+  for (const fs::path& clip : clips) measured.push_back(calibration::calibrate(clip, options));
   console.end_progress();
+  const calibration::Calibration found =
+      calibration::with_profile(calibration::joined(std::move(measured)), profile);
   write_file(arguments.out, calibration::toml_from(found));
   if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
   for (const auto& [key, why] : found.missing) console.warning(key + " cannot be had: " + why);
   for (const char* key : {"horizon", "air.extinction_per_km"})
     if (const auto note = found.notes.find(key); note != found.notes.end())
       console.warning(note->first + " is " + note->second);
-  console.result(fmt::format(
-      "{}: {} values from {} frames", arguments.out, found.values.size(), found.frames));
+  report_sources(found, console);
+  console.result(fmt::format("{}: {} values from {} frames, {} of them {}",
+                             arguments.out,
+                             found.values.size(),
+                             found.frames,
+                             found.values.size() - found.sources.size(),
+                             clips.size() > 1 ? "the clips' own" : "the clip's own"));
 }
 
 struct MaskArguments {
@@ -91,7 +139,8 @@ void add_calibrate(CLI::App& app, Context& context) {
   auto* command =
       app.add_subcommand("calibrate", "Measure what a clip's camera and air do to light");
   auto arguments = std::make_shared<CalibrateArguments>();
-  command->add_option("VIDEO", arguments->video, "The video")->required();
+  command->add_option("VIDEO", arguments->videos, "The video, or several of one camera")
+      ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
   command->add_option(
       "--lens", arguments->lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
@@ -112,6 +161,14 @@ void add_calibrate(CLI::App& app, Context& context) {
                    arguments->gamma,
                    "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
       ->check(CLI::Range(1.2, 3.0));
+  command->add_option(
+      "--profile",
+      arguments->profile,
+      "Known camera, for what the clip cannot tell; none: nobody's word [the median over all]");
+  command->add_flag_callback(
+      "--list-profiles",
+      [] { throw CLI::CallForVersion(profile_lines(), 0); },
+      "List the known cameras");
   command->add_option("--plot", arguments->plot, "Draw what was measured here (.png)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
   command->callback([arguments, &context] { calibrate(*arguments, context); });

@@ -93,9 +93,10 @@ struct CameraModel {
 };
 
 struct Realism {
-  std::optional<fs::path> file;  // a camera.toml: values for what the scene does not state
-  bool automatic = false;        // what neither states is measured from the clip
-  bool fallback = false;         // what cannot be measured is left out, with a warning
+  std::optional<fs::path> file;        // a camera.toml: values for what the scene does not state
+  bool automatic = false;              // what neither states is measured from the clip
+  std::optional<std::string> profile;  // of a known camera: for what the clip cannot tell
+  bool fallback = false;               // what cannot be measured is left out, with a warning
   Where where;
 };
 

@@ -200,7 +200,8 @@ TEST(CameraModel, IsReadAndWrittenBackTheSame) {
       "[shutter]\nexposure_s = \"auto\"\nreadout_s = 0.016\nreadout = \"up\"\n"
       "[air]\nextinction_per_km = [0.1, 0.2, 0.3]\nairlight = \"auto\"\n"
       "[optics]\npoint_spread_px = 0.7\n[sensor]\nnoise_gain = 4e-4\ncodec_step = 8\ngamma = 2.2\n"
-      "[realism]\nfile = \"c.toml\"\nauto = true\nfallback = true\n"
+      "[realism]\nfile = \"c.toml\"\nauto = true\nprofile = \"gopro-karma\"\nfallback = "
+      "true\n"
       "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[1, 2, 3], [4, 5, 6]]\nspeed_mps "
       "= 5\n";
   const Scene scene = parse_scene(text, "/f/s.toml");
@@ -210,6 +211,7 @@ TEST(CameraModel, IsReadAndWrittenBackTheSame) {
   EXPECT_EQ(scene.camera_model.readout_s, 0.016);
   EXPECT_EQ(scene.camera_model.gamma, 2.2);
   EXPECT_EQ(scene.realism.file, fs::path("/f/c.toml"));
+  EXPECT_EQ(scene.realism.profile, "gopro-karma");
   const std::string written = toml_from_scene(scene);
   EXPECT_EQ(toml_from_scene(parse_scene(written, "/f/s.toml")), written);
 }

@@ -179,11 +179,12 @@ CameraModel camera_model_in(const TableReader& parent) {
 }
 
 Realism realism_in(const TableReader& parent) {
-  const TableReader table = parent.table("realism", {"file", "auto", "fallback"});
+  const TableReader table = parent.table("realism", {"file", "auto", "profile", "fallback"});
   Realism realism;
   realism.where = table.where();
   realism.file = table.path("file");
   realism.automatic = table.truth("auto").value_or(false);
+  realism.profile = table.text("profile");
   realism.fallback = table.truth("fallback").value_or(false);
   return realism;
 }

@@ -138,6 +138,7 @@ void add_realism(Text& text, const Realism& realism) {
   text.heading("[realism]");
   text.add("file", realism.file);
   text.add("auto", realism.automatic);
+  text.add("profile", realism.profile);
   text.add("fallback", realism.fallback);
 }
 

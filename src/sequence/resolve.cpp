@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "calibration/cache.h"
 #include "calibration/calibration.h"
+#include "calibration/profile.h"
 #include "scene/camera_keys.h"
 #include "sequence/ambient.h"
 #include "sequence/motion_source.h"
@@ -142,30 +143,65 @@ void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
   model.angle_deg.reset();
 }
 
-// Takes from the clip what the scene wants to be measured and the clip can tell.
+// A named profile has its word on what is measured, so something must be measured.
+void check_profile(const scene::Realism& realism,
+                   const video::StreamInfo& info,
+                   bool is_any_to_measure) {
+  if (!realism.profile) return;
+  calibration::check_size(calibration::camera_profile(*realism.profile, realism.where),
+                          info.width,
+                          info.height,
+                          realism.where);
+  if (!is_any_to_measure)
+    throw Error(
+        "profile is for what is measured from the clip, and nothing is; expected auto = "
+        "true, or a key that is \"auto\"",
+        realism.where);
+}
+
+// What was measured, with the word of the camera's profile; where none is named, of cameras in the
+// median.
+calibration::Calibration with_camera(calibration::Calibration measured,
+                                     const scene::Realism& realism) {
+  return calibration::with_profile(
+      std::move(measured),
+      realism.profile ? calibration::camera_profile(*realism.profile, realism.where)
+                      : calibration::usual_camera());
+}
+
+// Takes what the scene wants to be measured: from the clip, as far as it can tell, and from the
+// camera's profile.
 void take_measured(scene::Scene& scene,
                    const StatedScene& stated,
-                   const calibration::Calibration& found,
+                   calibration::Calibration measured,
                    const Warn& to_warn) {
+  const std::map<std::string, std::string> untold = measured.missing;  // by the clip
+  const calibration::Calibration found = with_camera(std::move(measured), stated.realism);
   const scene::CameraModel from_clip = calibration::model_of(found);
   scene::for_each_camera_key(
       [&](const char* key, auto& value, const auto& seen) {
         const auto& wanted = stated.to_measure;
         if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
         value = seen;
-        if (value) return;
-        std::string what = fmt::format("{} cannot be measured: {}", key, found.missing.at(key));
-        const auto horizon = found.missing.find("horizon");
-        if (key == std::string_view("air.airlight") && horizon != found.missing.end())
+        if (value && (stated.realism.profile || !untold.contains(key))) return;
+        std::string what = fmt::format("{} cannot be measured: {}", key, untold.at(key));
+        const auto horizon = untold.find("horizon");
+        if (key == std::string_view("air.airlight") && horizon != untold.end())
           what += " (" + horizon->second + ")";
         if (!stated.realism.fallback)
           throw Error(
-              what + "; state it, or set fallback = true in [realism] to leave it out",
+              what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
+                              "= true to take what cameras have in the median"
+                            : "; state it, or set fallback = true in [realism] to leave it out"),
               stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
-        warn(to_warn, what + "; it is left out");
+        warn(to_warn, what + (value ? "; it is " + found.sources.at(key) : "; it is left out"));
       },
       scene.camera_model,
       from_clip);
+  if (stated.realism.profile)
+    for (const std::string& key : stated.to_measure)
+      if (const auto doubt = found.doubts.find(key); doubt != found.doubts.end())
+        warn(to_warn, key + " is doubtful: " + doubt->second);
   if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
   if (stated.sun_is_known || !found.values.contains("light.sun_azimuth_deg")) return;
   scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
@@ -193,6 +229,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   if (scene.realism.file) file = file_of(scene, {info.width, info.height});
   fill_from_file(result.scene, file);
   result.to_measure = left_to_measure(result.scene);
+  check_profile(scene.realism, info, !result.to_measure.empty());
   if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
     result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
     result.scene.light.sun_elevation_deg = *file.sun_elevation_deg;
