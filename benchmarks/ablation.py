@@ -81,7 +81,8 @@ def scene_text(clip, method, tables, pose):
         aircraft, yaw, pitch, roll = pose["aircraft"], pose["yaw_deg"], pose["pitch_deg"], pose["roll_deg"]
     else:  # stands for what the search finds
         aircraft, yaw, pitch, roll = "738/738-Delta", 90, 0, 0
-    azimuth, elevation = SUN.get(clip, OTHER_SUN)
+    sun = pose.get("sun") if pose else None
+    azimuth, elevation = (sun["azimuth_deg"], sun["elevation_deg"]) if sun else SUN.get(clip, OTHER_SUN)
     view = 12 if clip.startswith("V_") else 41
     return (f'name = "s"\n[background]\nvideo = "unused.mp4"\n[lens]\nmodel = "pinhole"\nvertical_fov_deg = {view}\n'
             f"[light]\nsun_azimuth_deg = {azimuth}\nsun_elevation_deg = {elevation}\n"

@@ -23,6 +23,7 @@
 #include "comparison/pose.h"
 #include "comparison/real.h"
 #include "comparison/segment.h"
+#include "comparison/sun.h"
 #include "sequence/sequence.h"
 #include "sequence/staging.h"
 #include "sequence/world.h"
@@ -36,6 +37,7 @@ constexpr const char* kName = "sequence";
 constexpr std::size_t kPoseMasks = 5;      // that a pose is fitted to
 constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning below it
 constexpr std::int64_t kSizingFrames = 9;  // that the inserted aircraft's size is set by
+constexpr std::size_t kSunFrames = 3;      // that the sun is fitted to
 
 // The scene with its first intruder beside the real aircraft, everything else standing still.
 scene::Scene scene_beside(const scene::Scene& given,
@@ -83,6 +85,7 @@ class Comparing {
     scene::Scene matched = scene;
     if (options.match) matched.intruders[0].aircraft = match(found.masks);
     load(matched);
+    if (pose_) match_sun(matched);
     render(matched, fitting_scale(matched));
     compare();
   }
@@ -161,15 +164,47 @@ class Comparing {
     return yaw_pitch_roll(turn * world_from_body(pose_->attitude));
   }
 
+  // The scene of an intruder beside the real one in the frames of `boxes`.
+  scene::Scene placed_beside(const scene::Scene& given, const RealBoxes& boxes, double scale) const {
+    Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
+    const double pitch_deg = options_.camera_pitch_deg.value_or(camera_pitch_deg(attitude_));
+    YawPitchRoll attitude = attitude_;
+    look_up(pitch_deg, path, attitude);
+    return scene_beside(given, real_, boxes, path, attitude, pitch_deg);
+  }
+
+  // Boxes from the middle of the shot: the picture's edges and the first frames of a codec are not
+  // like the rest.
+  RealBoxes middle_boxes() const {
+    const auto from = std::next(boxes_.begin(), static_cast<std::ptrdiff_t>(boxes_.size() / 2));
+    return {from, boxes_.lower_bound(from->first + kSizingFrames)};
+  }
+
+  void match_sun(scene::Scene& scene) {
+    const RealBoxes few = middle_boxes();
+    if (few.size() < 2) return;
+    const std::int64_t first = few.begin()->first;
+    video::Reader reader(real_, {.first_frame = first, .frame_count = kSizingFrames, .threads = 1});
+    std::vector<video::Frame> read;
+    while (auto frame = reader.next()) read.push_back(std::move(*frame));
+    std::vector<SunFrame> frames;
+    for (const auto& [index, box] : few)
+      if (const auto k = static_cast<std::size_t>(index - first);
+          k < read.size() && frames.size() < kSunFrames)
+        frames.push_back({double(k) / rate_hz_, &read[k].picture, box});
+    if (frames.empty()) return;
+    pose_->sun = fit_sun(placed_beside(scene, few, 1), frames, options_.stop);
+    if (!pose_->sun) return;
+    scene.light.sun_azimuth_deg = pose_->sun->azimuth_deg;
+    scene.light.sun_elevation_deg = pose_->sun->elevation_deg;
+    scene.light.sun_is_stated = true;
+  }
+
   void render_beside(const scene::Scene& given,
                      const RealBoxes& boxes,
                      double scale,
                      const fs::path& folder,
                      bool reports) {
-    Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
-    const double pitch_deg = options_.camera_pitch_deg.value_or(camera_pitch_deg(attitude_));
-    YawPitchRoll attitude = attitude_;
-    look_up(pitch_deg, path, attitude);
     sequence::Options how;
     // The path is that of a place in the picture; that no aircraft can fly it is no news.
     if (reports)
@@ -181,7 +216,7 @@ class Comparing {
       how.progress = [&](const sequence::Progress& p) {
         if (options_.progress) options_.progress(p.frames_done, 2 * p.frames_total);
       };
-    sequence::render(scene_beside(given, real_, boxes, path, attitude, pitch_deg), folder, how);
+    sequence::render(placed_beside(given, boxes, scale), folder, how);
   }
 
   void render(const scene::Scene& given, double scale) {
@@ -191,9 +226,7 @@ class Comparing {
   // What the inserted aircraft's size must be multiplied by to look as large as the real one, both
   // by what stands out: blur and codec make a silhouette larger than geometry says.
   double fitting_scale(const scene::Scene& given) {
-    // From the middle: the picture's edges and the first frames of a codec are not like the rest.
-    const auto from = std::next(boxes_.begin(), static_cast<std::ptrdiff_t>(boxes_.size() / 2));
-    const RealBoxes few(from, boxes_.lower_bound(from->first + kSizingFrames));
+    const RealBoxes few = middle_boxes();
     if (few.size() < 2) return 1;
     const fs::path folder = staged_.path() / "sizing";
     render_beside(given, few, 1, folder, false);

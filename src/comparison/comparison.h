@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "comparison/sun.h"
 #include "geometry/box.h"
 #include "geometry/transform.h"
 #include "scene/scene.h"
@@ -32,7 +33,8 @@ struct Options {
   bool overwrite = false;
   int pairs = 6;  // of the figure
   // Search for the attitude, and the type among these (empty: types_to_match(), pose.h), whose
-  // silhouette is the real one's; else both are the scene's.
+  // silhouette is the real one's, and for the sun under which light and dark are where the real one
+  // has them (sun.h); else all three are the scene's.
   bool match = true;
   std::vector<std::string> types;
   // How far the camera looks up; light comes from the world's above. Empty: camera_pitch_deg()
@@ -60,6 +62,7 @@ struct Comparison {
     YawPitchRoll attitude;  // as it is placed in the scene: the camera looks north
     double overlap = 0;     // of both silhouettes, 0..1; and the real one's aspect over ours
     double aspect_ratio = 1;
+    std::optional<SunFit> sun;  // empty where too little is seen to tell
   };
   std::optional<Pose> pose;           // where it was searched
   double colour_distance = 0;         // median Hellinger distance, real to inserted

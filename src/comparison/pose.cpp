@@ -267,14 +267,14 @@ PoseFit fit_pose(const std::vector<cv::Mat>& masks,
 }
 
 std::vector<std::string> types_to_match() {
-  return {"738/738-Delta",
+  return {"738/738-default",
           "747/744-Default",
           "A320/A320-default",
           "CR7/CR7-Default",
-          "AT7/AT7-AirCorsica",
+          "AT7/AT7-default",
           "Citation-Bravo/Models/Bravo-ai",
-          "beech-200/beech-200-234",
-          "c172/news"};
+          "beech-200/beech-200-vh-mwk",
+          "c172/ei-mcf"};
 }
 
 TypeFit fit_type(const std::vector<cv::Mat>& masks,

@@ -29,27 +29,33 @@ struct Block {
   float brightness = 0;
   float weight = 1;
   bool is_below = false;  // below the horizon, as the camera's pose has it
+  // What each kind of sky would have there: Skies::clear_seen(), overcast_seen().
+  float clear_seen = 1;
+  float overcast_seen = 1;
 };
 
 float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
-bool is_below_horizon(const annotation::Sight& sight,
-                      const Homography& nominal_from_frame,
-                      int x,
-                      int y) {
+// Where a pixel of the frame looks, in world axes; empty where the lens has no direction.
+std::optional<Vector3> direction_of(const annotation::Sight& sight,
+                                    const Homography& nominal_from_frame,
+                                    int x,
+                                    int y) {
   const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
-  if (!(nominal.z() > 0)) return false;
+  if (!(nominal.z() > 0)) return std::nullopt;
   const auto ray =
       sight.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
-  return ray && (sight.cam_from_world.rotation.conjugate() * *ray).z() > 0;
+  if (!ray) return std::nullopt;
+  return (sight.cam_from_world.rotation.conjugate() * *ray).normalized();
 }
 
 std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
                              const annotation::Sight& sight,
+                             const Skies& skies,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
   const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
@@ -68,7 +74,13 @@ std::vector<Block> blocks_of(const image::Picture& picture,
       block.linear = image::linear_at(picture, code, x, y, tone);
       block.brightness = brightness(block.linear);
       block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
-      block.is_below = is_below_horizon(sight, nominal_from_frame, x, y);
+      if (const auto direction = direction_of(sight, nominal_from_frame, x, y)) {
+        block.is_below = direction->z() > 0;
+        block.clear_seen = static_cast<float>(skies.clear_seen(*direction));
+        block.overcast_seen = static_cast<float>(skies.overcast_seen(*direction));
+      } else {
+        block.weight = 0;  // outside the lens's view
+      }
       blocks.push_back(block);
     }
   }
@@ -138,10 +150,18 @@ std::optional<float> blueness(const Rgb& rgb) {
 struct Sums {
   Rgb colour{};
   float weight = 0;
+  float expected = 0;  // what a sky of level irradiance 1 would have in its place
 
-  void add(const Rgb& linear, float by) {
+  void add(const Rgb& linear, float by, float expected_here = 0) {
     for (std::size_t c = 0; c < 3; ++c) colour[c] += by * linear[c];
     weight += by;
+    expected += by * expected_here;
+  }
+  // Of the level irradiance (over pi) of the sky that is seen.
+  Rgb level() const {
+    Rgb result{};
+    for (std::size_t c = 0; c < 3; ++c) result[c] = expected > 0 ? colour[c] / expected : 0.0f;
+    return result;
   }
   Rgb mean() const {
     Rgb result{};
@@ -174,8 +194,8 @@ Seen seen_in(const std::vector<Block>& blocks) {
     if (block.brightness < 0.25f * sky) continue;  // an aircraft, a tree, a rim: no sky
     const auto blue = blueness(block.linear);
     if (!blue) continue;
-    seen.blue.add(block.linear, block.weight * *blue);
-    seen.cloud.add(block.linear, block.weight * (1 - *blue));
+    seen.blue.add(block.linear, block.weight * *blue, block.clear_seen);
+    seen.cloud.add(block.linear, block.weight * (1 - *blue), block.overcast_seen);
     clear.push_back(*blue);
   }
   if (clear.size() < kFewest) return seen;
@@ -185,22 +205,22 @@ Seen seen_in(const std::vector<Block>& blocks) {
   return seen;
 }
 
-Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double sun_elevation_deg) {
+Ambient measure(const std::vector<Block>& blocks, double sun_elevation_deg) {
   const Seen seen = seen_in(blocks);
   Ambient ambient;
   const float sky_weight = seen.blue.weight + seen.cloud.weight;
   const float blue_share = sky_weight > 0 ? seen.blue.weight / sky_weight : 0.0f;
-  const Rgb blue = seen.blue.mean();
-  const Rgb cloud = seen.cloud.mean();
+  const Rgb blue = seen.blue.level();
+  const Rgb cloud = seen.cloud.level();
   for (std::size_t c = 0; c < 3; ++c) {
-    ambient.blue[c] = blue_share * blue[c] / static_cast<float>(skies.clear_seen);
-    ambient.cloud[c] = (1 - blue_share) * cloud[c] / static_cast<float>(skies.overcast_seen);
+    ambient.blue[c] = blue_share * blue[c];
+    ambient.cloud[c] = (1 - blue_share) * cloud[c];
   }
   const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(sun_elevation_deg) /
                                                clear_sky_illuminance_klx(sun_elevation_deg));
   const float direct =
-      seen.clearness * sun_over_sky * brightness(blue) / static_cast<float>(skies.clear_seen) +
-      (1 - seen.clearness) * kVeiledSun * brightness(cloud);
+      seen.clearness * sun_over_sky * brightness(blue) +
+      (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
   for (std::size_t c = 0; c < 3; ++c)
     ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
   constexpr float kLeastGround = 0.05f;  // of the picture: less may be anything
@@ -240,12 +260,12 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
                                const std::optional<PixelBox>& near) {
   const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
   if (all_stated) return with_scene({});
-  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, near);
+  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, skies_, near);
   std::vector<Rgb> colours;
   for (const Block& block : blocks) colours.push_back(block.linear);
   follow_exposure(colours);
   sort_by_brightness(blocks);
-  const Ambient now = measure(blocks, skies_, light_.sun_elevation_deg);
+  const Ambient now = measure(blocks, light_.sun_elevation_deg);
   if (!smooth_) smooth_ = now;
   blend(smooth_->sun, now.sun);
   blend(smooth_->blue, now.blue);

@@ -31,39 +31,24 @@ Environment grey(const std::function<double(const Vector3&)>& radiance) {
   });
 }
 
-// The luminance by direction, its irradiance over pi on a level surface, and its mean over what is
-// usually seen.
-struct Measured {
-  double level = 0;
-  double seen = 0;
-};
-
-Measured measured(const std::function<double(const Vector3&)>& luminance, const Vector3& to_sun) {
+// Irradiance over pi on a level surface.
+double level_of(const std::function<double(const Vector3&)>& luminance) {
   constexpr int kElevations = 90;
   constexpr int kAzimuths = 180;
-  constexpr double kLowestSeenDeg = 3;
-  constexpr double kHighestSeenDeg = 45;
-  constexpr double kFromSunDeg = 40;
-  Measured result;
-  double weights = 0;
+  double sum = 0;
   for (int i = 0; i < kElevations; ++i) {
     const double up = (i + 0.5) / kElevations;  // sine: bands of equal solid angle
     for (int k = 0; k < kAzimuths; ++k) {
       const double azimuth = 2 * kPi * (k + 0.5) / kAzimuths;
       const double level = std::sqrt(1 - up * up);
-      const Vector3 d(level * std::cos(azimuth), level * std::sin(azimuth), -up);
-      const double here = luminance(d);
-      result.level += 2 * here * up / (kElevations * kAzimuths);
-      const double elevation = elevation_deg(d);
-      if (elevation < kLowestSeenDeg || elevation > kHighestSeenDeg ||
-          angle_deg(d, to_sun) < kFromSunDeg)
-        continue;
-      result.seen += here, weights += 1;
+      sum += 2 * luminance({level * std::cos(azimuth), level * std::sin(azimuth), -up}) * up;
     }
   }
-  if (weights > 0) result.seen /= weights;
-  return result;
+  return sum / (kElevations * kAzimuths);
 }
+
+constexpr double kLowestSeenDeg = 3;
+constexpr double kNearestSunSeenDeg = 20;
 
 }  // namespace
 
@@ -105,15 +90,27 @@ Skies skies(const Vector3& to_sun_in_world) {
   const auto overcast = [](const Vector3& d) {
     return d.z() > 0 ? 0.0 : overcast_over_zenith(elevation_deg(d));
   };
-  const Measured of_clear = measured(clear, to_sun_in_world);
-  const Measured of_overcast = measured(overcast, to_sun_in_world);
   Skies result;
-  result.clear = grey([&](const Vector3& d) { return clear(d) / of_clear.level; });
-  result.overcast = grey([&](const Vector3& d) { return overcast(d) / of_overcast.level; });
+  result.to_sun = to_sun_in_world;
+  result.clear_level = level_of(clear);
+  result.overcast_level = level_of(overcast);
+  result.clear = grey([&](const Vector3& d) { return clear(d) / result.clear_level; });
+  result.overcast = grey([&](const Vector3& d) { return overcast(d) / result.overcast_level; });
   result.ground = grey([](const Vector3& d) { return d.z() > 0 ? 1.0 : 0.0; });
-  result.clear_seen = of_clear.seen / of_clear.level;
-  result.overcast_seen = of_overcast.seen / of_overcast.level;
   return result;
+}
+
+double Skies::clear_seen(const Vector3& direction_in_world) const {
+  const double from_sun_deg = std::max(kNearestSunSeenDeg, angle_deg(direction_in_world, to_sun));
+  return clear_sky_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world)),
+                               from_sun_deg,
+                               elevation_deg(to_sun)) /
+         clear_level;
+}
+
+double Skies::overcast_seen(const Vector3& direction_in_world) const {
+  return overcast_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world))) /
+         overcast_level;
 }
 
 }  // namespace airtruth::sequence

@@ -19,15 +19,22 @@ double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double s
 // The same of the overcast sky (Moon and Spencer 1942).
 double overcast_over_zenith(double elevation_deg);
 
-// Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface;
-// and the luminance of what of them a camera usually sees, over that: the mean from 3 to 45 degrees
-// of elevation, more than 40 degrees from the sun.
+// Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface.
 struct Skies {
   render::Environment clear;
   render::Environment overcast;
   render::Environment ground;  // radiance 1 from all below the horizon
-  double clear_seen = 1;
-  double overcast_seen = 1;
+  Vector3 to_sun{0, 0, -1};    // unit, in world axes
+  // Of a luminance relative to the zenith: its irradiance over pi on a level surface.
+  double clear_level = 1;
+  double overcast_level = 1;
+
+  // The luminance that a camera sees in a direction (unit, in world axes), in the environments'
+  // unit. A direction below 3 degrees of elevation counts as 3 degrees, one within 20 degrees of
+  // the sun as 20 degrees from it: nearer the horizon and the sun the models are steep, and where
+  // both are is not known as well.
+  double clear_seen(const Vector3& direction_in_world) const;
+  double overcast_seen(const Vector3& direction_in_world) const;
 };
 Skies skies(const Vector3& to_sun_in_world);
 
