@@ -37,7 +37,10 @@ constexpr const char* kName = "sequence";
 constexpr std::size_t kPoseMasks = 5;      // that a pose is fitted to
 constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning below it
 constexpr std::int64_t kSizingFrames = 9;  // that the inserted aircraft's size is set by
-constexpr std::size_t kSunFrames = 3;      // that the sun is fitted to
+constexpr std::size_t kSunFrames = 2;      // that the sun is fitted to
+constexpr std::size_t kMostPaints = 6;     // liveries of a type that are tried
+constexpr double kPaintSpacingDeg = 40;    // of the suns that a livery is tried under
+constexpr double kSunSpacingDeg = 15;      // of those that the best livery is
 
 // The scene with its first intruder beside the real aircraft, everything else standing still.
 scene::Scene scene_beside(const scene::Scene& given,
@@ -85,7 +88,7 @@ class Comparing {
     scene::Scene matched = scene;
     if (options.match) matched.intruders[0].aircraft = match(found.masks);
     load(matched);
-    if (pose_) match_sun(matched);
+    if (pose_) match_light(matched);
     render(matched, fitting_scale(matched));
     compare();
   }
@@ -180,7 +183,9 @@ class Comparing {
     return {from, boxes_.lower_bound(from->first + kSizingFrames)};
   }
 
-  void match_sun(scene::Scene& scene) {
+  // The livery and the sun with which the aircraft is light, dark and coloured where the real one
+  // is.
+  void match_light(scene::Scene& scene) {
     const RealBoxes few = middle_boxes();
     if (few.size() < 2) return;
     const std::int64_t first = few.begin()->first;
@@ -193,11 +198,31 @@ class Comparing {
           k < read.size() && frames.size() < kSunFrames)
         frames.push_back({double(k) / rate_hz_, &read[k].picture, box});
     if (frames.empty()) return;
-    pose_->sun = fit_sun(placed_beside(scene, few, 1), frames, options_.stop);
+    scene::Scene painted = placed_beside(scene, few, 1);
+    for (const std::string& name : paints_of(pose_->aircraft)) {
+      painted.intruders[0].aircraft = name;
+      const auto fit = fit_sun(painted, {frames[0]}, kPaintSpacingDeg, options_.stop);
+      if (!fit || (pose_->sun && fit->difference_codes >= pose_->sun->difference_codes)) continue;
+      pose_->sun = fit;
+      pose_->aircraft = scene.intruders[0].aircraft = name;
+    }
+    painted.intruders[0].aircraft = pose_->aircraft;
+    pose_->sun = fit_sun(painted, frames, kSunSpacingDeg, options_.stop);
     if (!pose_->sun) return;
     scene.light.sun_azimuth_deg = pose_->sun->azimuth_deg;
     scene.light.sun_elevation_deg = pose_->sun->elevation_deg;
     scene.light.sun_is_stated = true;
+  }
+
+  // The type as it was found, and other liveries of it, evenly from the list of all; the type alone
+  // where the user names the types.
+  std::vector<std::string> paints_of(const std::string& type) const {
+    std::vector<std::string> paints = {type};
+    if (!options_.types.empty()) return paints;
+    const std::vector<std::string> others = aircraft::liveries(type);
+    const std::size_t count = std::min(kMostPaints - 1, others.size());
+    for (std::size_t i = 0; i < count; ++i) paints.push_back(others[i * others.size() / count]);
+    return paints;
   }
 
   void render_beside(const scene::Scene& given,

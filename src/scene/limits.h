@@ -57,6 +57,7 @@ inline constexpr Limits kDistortion{
 // Light, air, optics and sensor.
 inline constexpr Limits kExposureFactor{
     .expected = "a number from 1e-6 to 1e4", .low = 1e-6, .high = 1e4};
+inline constexpr Limits kAlbedo{.expected = "a number from 0 to 1", .low = 0, .high = 1};
 inline constexpr Limits kLinearLight{
     .expected = "a number from 0 to 1e4", .low = 0, .high = 1e4};  // 1 is white
 inline constexpr Limits kExtinction{

@@ -63,6 +63,9 @@ struct Light {
   std::optional<std::array<double, 3>>
       sky_colour;  // linear RGB of the light from above; else from the background
   std::optional<std::array<double, 3>> ground_colour;
+  // Share of the light of sun and sky that a level ground gives back, 0..1; else the ground in the
+  // background, and where none is seen that of fields and roads (sequence/ambient.h).
+  std::optional<double> ground_albedo;
   Where where;
 };
 

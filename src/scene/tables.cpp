@@ -191,7 +191,14 @@ Realism realism_in(const TableReader& parent) {
 
 Light light_in(const TableReader& parent) {
   const TableReader table = parent.table(
-      "light", {"sun_azimuth_deg", "sun_elevation_deg", "exposure", "sky_colour", "ground_colour"});
+      "light",
+      {"sun_azimuth_deg",
+       "sun_elevation_deg",
+       "exposure",
+       "sky_colour",
+       "ground_colour",
+       "ground_albedo"});
+  table.exclude("ground_colour", {"ground_albedo"});
   Light light;
   light.where = table.where();
   light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);
@@ -201,6 +208,7 @@ Light light_in(const TableReader& parent) {
   light.exposure = table.number("exposure", kExposureFactor);
   light.sky_colour = three_from(table, "sky_colour", kLinearLight);
   light.ground_colour = three_from(table, "ground_colour", kLinearLight);
+  light.ground_albedo = table.number("ground_albedo", kAlbedo);
   return light;
 }
 

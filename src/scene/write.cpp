@@ -97,6 +97,7 @@ void add_light(Text& text, const Light& light) {
   text.add("exposure", light.exposure);
   text.add("sky_colour", light.sky_colour);
   text.add("ground_colour", light.ground_colour);
+  text.add("ground_albedo", light.ground_albedo);
 }
 
 // A stated value, or "auto".

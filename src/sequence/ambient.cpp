@@ -22,7 +22,10 @@ constexpr Rgb kSunColour = {
 
 constexpr float kVeiledSun = 0.12f;    // of a cloud's brightness: next to nothing has a direction
 constexpr float kBrightestSun = 6.0f;  // of the brightest sample: a sky that is nearly black
-constexpr float kGroundAlbedo = 0.2f;  // of fields and woods: 0.15 to 0.25 (Oke 1987, table 1.1)
+// Of visible light: grass 0.06, moist earth 0.07, gravel 0.13, macadam 0.18 (IES 2000, "Lighting
+// handbook", reflectances of outside surfaces). What pyranometers call albedo, 0.2 for fields and
+// woods, holds the infrared, of which leaves give back half.
+constexpr float kGroundAlbedo = 0.1f;
 
 struct Block {
   Rgb linear{};
@@ -205,7 +208,16 @@ Seen seen_in(const std::vector<Block>& blocks) {
   return seen;
 }
 
-Ambient measure(const std::vector<Block>& blocks, double sun_elevation_deg) {
+// The radiance of a level ground under the light's sun and sky.
+Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
+  const auto height = static_cast<float>(std::sin(radians(std::max(0.0, sun_elevation_deg))));
+  Rgb ground{};
+  for (std::size_t c = 0; c < 3; ++c)
+    ground[c] = albedo * (height * light.sun[c] + light.sky()[c]);
+  return ground;
+}
+
+Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
   const Seen seen = seen_in(blocks);
   Ambient ambient;
   const float sky_weight = seen.blue.weight + seen.cloud.weight;
@@ -216,20 +228,17 @@ Ambient measure(const std::vector<Block>& blocks, double sun_elevation_deg) {
     ambient.blue[c] = blue_share * blue[c];
     ambient.cloud[c] = (1 - blue_share) * cloud[c];
   }
-  const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(sun_elevation_deg) /
-                                               clear_sky_illuminance_klx(sun_elevation_deg));
+  const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(elevation_deg) /
+                                               clear_sky_illuminance_klx(elevation_deg));
   const float direct =
       seen.clearness * sun_over_sky * brightness(blue) +
       (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
   for (std::size_t c = 0; c < 3; ++c)
     ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
   constexpr float kLeastGround = 0.05f;  // of the picture: less may be anything
-  const auto height = static_cast<float>(std::sin(radians(std::max(0.0, sun_elevation_deg))));
   const bool is_ground_seen = seen.ground.weight > kLeastGround * seen.all;
-  const Rgb ground = seen.ground.mean();
-  for (std::size_t c = 0; c < 3; ++c)
-    ambient.ground[c] =
-        is_ground_seen ? ground[c] : kGroundAlbedo * (height * ambient.sun[c] + ambient.sky()[c]);
+  ambient.ground =
+      is_ground_seen ? seen.ground.mean() : ground_of(kGroundAlbedo, elevation_deg, ambient);
   std::vector<Block> around;
   for (const Block& block : blocks)
     if (block.weight > 1) around.push_back(block);
@@ -258,7 +267,8 @@ AmbientEstimator::AmbientEstimator(const scene::Light& light,
 Ambient AmbientEstimator::next(const image::Picture& picture,
                                const annotation::Sight& sight,
                                const std::optional<PixelBox>& near) {
-  const bool all_stated = light_.exposure && light_.sky_colour && light_.ground_colour;
+  const bool all_stated =
+      light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
   if (all_stated) return with_scene({});
   std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, skies_, near);
   std::vector<Rgb> colours;
@@ -296,6 +306,9 @@ Ambient AmbientEstimator::with_scene(Ambient measured) const {
   // A stated sky is even, as an overcast one nearly is.
   if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
+  if (light_.ground_albedo)
+    measured.ground = ground_of(
+        static_cast<float>(*light_.ground_albedo), light_.sun_elevation_deg, measured);
   measured.surroundings = skies_.clear.scaled(measured.blue);
   measured.surroundings += skies_.overcast.scaled(measured.cloud);
   measured.surroundings += skies_.ground.scaled(measured.ground);
