@@ -68,7 +68,8 @@ TEST(Layers, IncludesGoStrictlyDownward) {
   EXPECT_GT(checked, 50);
 }
 
-// OpenSceneGraph chooses a plugin, which may run code, by a file's name: it draws, and reads nothing.
+// OpenSceneGraph chooses a plugin, which may run code, by a file's name: it draws, and reads
+// nothing.
 TEST(Layers, NoSourceReadsFilesThroughOpenSceneGraph) {
   int checked = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kSource)) {

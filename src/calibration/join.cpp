@@ -74,13 +74,16 @@ std::string words_of(const Told& told) {
 }
 
 std::string contradiction(const std::vector<Told>& all) {
-  const auto [least, most] = std::minmax_element(
-      all.begin(), all.end(), [](const Told& a, const Told& b) { return a.value.value < b.value.value; });
-  return fmt::format("{} clips contradict one another by more than their errors, from {} to {}; "
-                     "the error covers what they differ by",
-                     all.size(),
-                     words_of(*least),
-                     words_of(*most));
+  const auto [least, most] =
+      std::minmax_element(all.begin(), all.end(), [](const Told& a, const Told& b) {
+        return a.value.value < b.value.value;
+      });
+  return fmt::format(
+      "{} clips contradict one another by more than their errors, from {} to {}; "
+      "the error covers what they differ by",
+      all.size(),
+      words_of(*least),
+      words_of(*most));
 }
 
 // Of the clips that tell the key; a readout upwards is negative.

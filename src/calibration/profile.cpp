@@ -47,7 +47,9 @@ std::vector<CameraProfile> read_library(std::string_view text) {
 }
 
 // "0.42 +- 0.1"
-std::string with_error(const Estimate& e) { return fmt::format("{:.3g} +- {:.2g}", e.value, e.sigma); }
+std::string with_error(const Estimate& e) {
+  return fmt::format("{:.3g} +- {:.2g}", e.value, e.sigma);
+}
 
 Estimate signed_readout(const Calibration& c) {
   Estimate readout = c.values.at(kReadout)[0];
@@ -90,7 +92,8 @@ void join(Calibration& c, const std::string& key, const Estimate& prior, const s
             : fmt::format("of {}; the clip's {} says next to nothing", whose, with_error(own));
   const double off = std::abs(own.value - prior.value);
   if (off > kDoubted * std::hypot(own.sigma, prior.sigma))
-    c.doubts[key] = fmt::format("the clip has {}, {} {}", with_error(own), whose, with_error(prior));
+    c.doubts[key] =
+        fmt::format("the clip has {}, {} {}", with_error(own), whose, with_error(prior));
 }
 
 }  // namespace
@@ -109,8 +112,8 @@ CameraProfile parse_camera_profile(std::string_view text, const std::string& nam
     text = end == text.npos ? std::string_view() : text.substr(end + 1);
     const Where where{name + ".csv", ++number};
     if (cells.empty() || cells[0].starts_with('#') || cells[0] == "key") continue;
-    const bool known = std::find(kProfileKeys.begin(), kProfileKeys.end(), cells[0]) !=
-                       kProfileKeys.end();
+    const bool known =
+        std::find(kProfileKeys.begin(), kProfileKeys.end(), cells[0]) != kProfileKeys.end();
     if (cells.size() != (known ? 4U : 2U))
       throw Error(fmt::format("has {} cells; expected key,value,error,clips or camera,WORDS, "
                               "width,PX, height,PX, clips,NUMBER",

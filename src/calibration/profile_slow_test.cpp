@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/profile.h"
-
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +6,7 @@
 
 #include "calibration/flight_clip.h"
 #include "calibration/join.h"
+#include "calibration/profile.h"
 #include "calibration/step_response.h"
 
 // Virtual flights whose clips cannot tell a value, or tell it several times over.
@@ -82,7 +81,8 @@ TEST(CalibrateWithProfile, ManySightsOfOneSoftEdgeGiveWayToTheProfile) {
   ASSERT_TRUE(own.values.contains("optics.point_spread_px"))
       << own.missing.at("optics.point_spread_px");
   const Estimate seen = own.values.at("optics.point_spread_px")[0];
-  std::printf("one soft object: %.3f +- %.3f px, %d edges\n", seen.value, seen.sigma, own.edge.edges);
+  std::printf(
+      "one soft object: %.3f +- %.3f px, %d edges\n", seen.value, seen.sigma, own.edge.edges);
   EXPECT_GT(seen.value, 0.9 * kSoft);
   EXPECT_GT(seen.sigma, 0.15 * seen.value);
   // The camera's own 0.4 px lies within three errors, which without the few edges it would not.

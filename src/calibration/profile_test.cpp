@@ -41,8 +41,9 @@ TEST(CameraProfile, IsReadAsItStands) {
   EXPECT_EQ(profile.values.at("optics.point_spread_px").value, 0.4);
   EXPECT_EQ(profile.values.at("optics.point_spread_px").sigma, 0.1);
   EXPECT_NE(said_by([] { parse_camera_profile("optics.spread,1,2,3\n", "a"); }), "");
-  EXPECT_NE(said_by([] { parse_camera_profile("optics.sharpening,1,x,3\n", "a"); })
-                .find("a.csv:1: 'x' is not a finite number"),
+  EXPECT_NE(said_by([] {
+              parse_camera_profile("optics.sharpening,1,x,3\n", "a");
+            }).find("a.csv:1: 'x' is not a finite number"),
             std::string::npos);
 }
 
@@ -61,7 +62,9 @@ TEST(CameraProfile, TheLibraryHoldsWhatAProfileIsFor) {
     EXPECT_EQ(&camera_profile(profile.name), &profile);
   }
   const std::string near = camera_profiles()[0].name + "x";
-  EXPECT_NE(said_by([&] { camera_profile(near, {"s.toml", 3, 1}); })
+  EXPECT_NE(said_by([&] {
+              camera_profile(near, {"s.toml", 3, 1});
+            })
                 .find("s.toml:3:1: there is no camera profile '" + near + "'; did you mean '" +
                       camera_profiles()[0].name + "'?"),
             std::string::npos);
@@ -101,8 +104,7 @@ TEST(CameraProfile, SaysWhoseAValueIs) {
             "of the profile small; the clip's 0.8 +- 1 says next to nothing");
   EXPECT_EQ(c.values.at("shutter.readout_s")[0].value, 0.02);
   EXPECT_EQ(model_of(c).readout, "up");
-  EXPECT_EQ(c.sources.at("shutter.readout_s"),
-            "of the profile small; the clip does not tell it");
+  EXPECT_EQ(c.sources.at("shutter.readout_s"), "of the profile small; the clip does not tell it");
   EXPECT_FALSE(c.missing.contains("shutter.readout_s"));
   EXPECT_TRUE(c.missing.contains("air.airlight"));
   EXPECT_TRUE(c.doubts.empty());
@@ -121,8 +123,9 @@ TEST(CameraProfile, ASureClipKeepsItsOwnAndWhatContradictsItIsNamed) {
 }
 
 TEST(CameraProfile, IsRefusedForPicturesOfAnotherSize) {
-  EXPECT_NE(said_by([] { with_profile(clip_of(64, 50), small_camera()); })
-                .find("was measured on clips of 64 x 48 px; the clip is 64 x 50"),
+  EXPECT_NE(said_by([] {
+              with_profile(clip_of(64, 50), small_camera());
+            }).find("was measured on clips of 64 x 48 px; the clip is 64 x 50"),
             std::string::npos);
 }
 

@@ -168,7 +168,9 @@ class Comparing {
   }
 
   // The scene of an intruder beside the real one in the frames of `boxes`.
-  scene::Scene placed_beside(const scene::Scene& given, const RealBoxes& boxes, double scale) const {
+  scene::Scene placed_beside(const scene::Scene& given,
+                             const RealBoxes& boxes,
+                             double scale) const {
     Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
     const double pitch_deg = options_.camera_pitch_deg.value_or(camera_pitch_deg(attitude_));
     YawPitchRoll attitude = attitude_;

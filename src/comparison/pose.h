@@ -35,8 +35,8 @@ PoseFit fit_pose(const std::vector<cv::Mat>& masks,
                  const aircraft::Mesh& mesh,
                  const std::stop_token& stop = {});
 
-// Types that look unlike one another, one of each kind, in mostly white paint as most civil aircraft
-// are: what is searched where nothing is stated.
+// Types that look unlike one another, one of each kind, in mostly white paint as most civil
+// aircraft are: what is searched where nothing is stated.
 std::vector<std::string> types_to_match();
 
 struct TypeFit {

@@ -28,7 +28,8 @@ struct Sun {
 // From 10 degrees above the horizon upwards, about `spacing_deg` from one to the next.
 std::vector<Sun> suns(double spacing_deg) {
   std::vector<Sun> all;
-  for (double elevation_deg = kLowestSunDeg; elevation_deg < 85; elevation_deg += spacing_deg * 2 / 3)
+  for (double elevation_deg = kLowestSunDeg; elevation_deg < 85;
+       elevation_deg += spacing_deg * 2 / 3)
     for (double azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += spacing_deg)
       all.push_back({azimuth_deg, elevation_deg});
   all.push_back({0, 90});
@@ -56,12 +57,11 @@ constexpr double kBlurShare = 0.08;  // of the box's larger side: poses fit no b
 // it, brought to a size. Empty where that leaves the picture.
 cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Size& size) {
   const double margin = std::max(2.0, std::max(box.width, box.height) / 4);
-  const PixelBox area = pixels_of(
-      {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin});
+  const PixelBox area =
+      pixels_of({box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin});
   if (area.x < 0 || area.y < 0 || area.right() > picture.width || area.bottom() > picture.height)
     return {};
-  image::Rgb8 crop =
-      image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
+  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
   cv::Mat colour;
   cv::Mat(area.height, area.width, CV_8UC3, crop.samples.get()).convertTo(colour, CV_32FC3);
   cv::Mat rim(colour.size(), CV_8UC1, cv::Scalar(0));
@@ -70,7 +70,8 @@ cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Siz
   cv::split(colour, channels);
   for (cv::Mat& channel : channels) channel -= surroundings_of(channel, rim);
   cv::merge(channels, colour);
-  if (!size.empty() && colour.size() != size) cv::resize(colour, colour, size, 0, 0, cv::INTER_LINEAR);
+  if (!size.empty() && colour.size() != size)
+    cv::resize(colour, colour, size, 0, 0, cv::INTER_LINEAR);
   return colour;
 }
 
@@ -81,8 +82,8 @@ cv::Mat blurred(const cv::Mat& picture) {
   return result;
 }
 
-// The sum of squares of the differences of two pictures' values, channel by channel, each sorted: no
-// place counts, only how much of the picture is how bright.
+// The sum of squares of the differences of two pictures' values, channel by channel, each sorted:
+// no place counts, only how much of the picture is how bright.
 double sorted_squares(const cv::Mat& a, const cv::Mat& b) {
   std::vector<cv::Mat> of_a, of_b;
   cv::split(a, of_a), cv::split(b, of_b);
@@ -125,8 +126,7 @@ class Lit {
     scene_.light.sun_elevation_deg = sun.elevation_deg;
     const sequence::Moment moment = sequence::moment_at(world_, 0, frame.time_s, {});
     if (!moment.boxes[0].box) return;
-    sequence::AmbientEstimator light(
-        scene_.light, sequence::tone_of(scene_.camera_model), nullptr);
+    sequence::AmbientEstimator light(scene_.light, sequence::tone_of(scene_.camera_model), nullptr);
     image::Picture painted = frame.picture->clone();
     sequence::make_painter(scene_, world_, nullptr, {})
         ->paint(painted, moment, light.next(painted, moment.sight, {}));

@@ -69,8 +69,8 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
   const auto towards = [](double azimuth_deg, double elevation_deg) {
     return render::to_sun(azimuth_deg, elevation_deg);
   };
-  const double apart_deg = degrees(
-      std::acos(towards(fit->azimuth_deg, fit->elevation_deg).dot(towards(130, 40))));
+  const double apart_deg =
+      degrees(std::acos(towards(fit->azimuth_deg, fit->elevation_deg).dot(towards(130, 40))));
   EXPECT_LT(apart_deg, 10);
   EXPECT_GT(fit->correlation, 0.95);
 }

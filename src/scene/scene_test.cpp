@@ -111,6 +111,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   scene.background.video = "/data/it's \"here\".mp4";
   scene.light.exposure = 1e4;
   scene.light.sky_colour = {0.1, 1.0 / 3.0, 1e-17};
+  scene.light.ground_albedo = 0.7;
   scene.lens = Lens{};
   scene.lens.model = "brown_conrady";
   scene.lens.focal_px = {480.25, 1e6};
@@ -124,6 +125,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   EXPECT_EQ(again.background.video, scene.background.video);
   EXPECT_EQ(again.light.exposure, scene.light.exposure);
   EXPECT_EQ(again.light.sky_colour, scene.light.sky_colour);
+  EXPECT_EQ(again.light.ground_albedo, scene.light.ground_albedo);
   EXPECT_EQ(again.lens.focal_px, scene.lens.focal_px);
   EXPECT_EQ(again.lens.principal_point_px, scene.lens.principal_point_px);
   EXPECT_EQ(again.lens.distortion, scene.lens.distortion);
@@ -174,6 +176,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "exposure",
                                 "sky_colour",
                                 "ground_colour",
+                                "ground_albedo",
                                 "id",
                                 "aircraft",
                                 "model_forward",

@@ -190,14 +190,13 @@ Realism realism_in(const TableReader& parent) {
 }
 
 Light light_in(const TableReader& parent) {
-  const TableReader table = parent.table(
-      "light",
-      {"sun_azimuth_deg",
-       "sun_elevation_deg",
-       "exposure",
-       "sky_colour",
-       "ground_colour",
-       "ground_albedo"});
+  const TableReader table = parent.table("light",
+                                         {"sun_azimuth_deg",
+                                          "sun_elevation_deg",
+                                          "exposure",
+                                          "sky_colour",
+                                          "ground_colour",
+                                          "ground_albedo"});
   table.exclude("ground_colour", {"ground_albedo"});
   Light light;
   light.where = table.where();

@@ -212,8 +212,7 @@ Seen seen_in(const std::vector<Block>& blocks) {
 Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
   const auto height = static_cast<float>(std::sin(radians(std::max(0.0, sun_elevation_deg))));
   Rgb ground{};
-  for (std::size_t c = 0; c < 3; ++c)
-    ground[c] = albedo * (height * light.sun[c] + light.sky()[c]);
+  for (std::size_t c = 0; c < 3; ++c) ground[c] = albedo * (height * light.sun[c] + light.sky()[c]);
   return ground;
 }
 
@@ -230,9 +229,8 @@ Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
   }
   const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(elevation_deg) /
                                                clear_sky_illuminance_klx(elevation_deg));
-  const float direct =
-      seen.clearness * sun_over_sky * brightness(blue) +
-      (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
+  const float direct = seen.clearness * sun_over_sky * brightness(blue) +
+                       (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
   for (std::size_t c = 0; c < 3; ++c)
     ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
   constexpr float kLeastGround = 0.05f;  // of the picture: less may be anything
@@ -307,8 +305,8 @@ Ambient AmbientEstimator::with_scene(Ambient measured) const {
   if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
   if (light_.ground_albedo)
-    measured.ground = ground_of(
-        static_cast<float>(*light_.ground_albedo), light_.sun_elevation_deg, measured);
+    measured.ground =
+        ground_of(static_cast<float>(*light_.ground_albedo), light_.sun_elevation_deg, measured);
   measured.surroundings = skies_.clear.scaled(measured.blue);
   measured.surroundings += skies_.overcast.scaled(measured.cloud);
   measured.surroundings += skies_.ground.scaled(measured.ground);
