@@ -93,9 +93,11 @@ std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
 }
 
 void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& moved) {
-  if (crops_.size() >= kMostFrames) return;
-  places_.push_back((places_.empty() ? Pixel(0, 0) : places_.back()) + moved.value_or(Pixel(0, 0)));
-  known_.push_back(moved.has_value());
+  if (frames_++ >= kMostFrames) return;
+  Shot& shot = shots_.back();
+  const Pixel before = shot.places.empty() ? Pixel(0, 0) : shot.places.back();
+  shot.places.push_back(before + moved.value_or(Pixel(0, 0)));
+  shot.known.push_back(moved.has_value());
   const cv::Mat luma = motion::luma_of(frame);
   const int width = std::min(kCropWidth, luma.cols);
   const int height = std::min(kCropHeight, luma.rows);
@@ -109,35 +111,45 @@ void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& mov
       for (int x = 0; x < width; ++x)
         if (!own_aircraft_->is_free(x0 + x, y0 + y))
           crop.at<unsigned char>(y, x) = static_cast<unsigned char>(sum / width / height);
-  crops_.push_back(crop);
+  shot.crops.push_back(crop);
 }
 
-std::optional<Estimate> BlurMeter::share(std::string& why) const {
-  std::vector<double> shares;
+void BlurMeter::cut() {
+  if (!shots_.back().places.empty()) shots_.emplace_back();
+}
+
+std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares) {
   std::size_t tried = 0;
-  for (std::size_t k = 1; k < crops_.size() && shares.size() < kMostPairs; ++k) {
-    const auto fast = rate_at(places_, k);
-    if (!fast || !known_[k] || fast->norm() < kFastPx) continue;
+  for (std::size_t k = 1; k < shot.crops.size() && shares.size() < kMostPairs; ++k) {
+    const auto fast = rate_at(shot.places, k);
+    if (!fast || !shot.known[k] || fast->norm() < kFastPx) continue;
     const Pixel along = fast->normalized();
     std::optional<std::size_t> partner;
     double slowest = kSlowShare * fast->norm();
-    for (std::size_t j = k > kNear ? k - kNear : 0; j <= k + kNear && j < crops_.size(); ++j) {
-      const auto rate = rate_at(places_, j);
-      if (j == k || !rate || !known_[j] || rate->norm() >= slowest) continue;
+    for (std::size_t j = k > kNear ? k - kNear : 0; j <= k + kNear && j < shot.crops.size(); ++j) {
+      const auto rate = rate_at(shot.places, j);
+      if (j == k || !rate || !shot.known[j] || rate->norm() >= slowest) continue;
       slowest = rate->norm();
       partner = j;
     }
     if (!partner) continue;
     ++tried;
     cv::Mat still, moving;
-    crops_[*partner].convertTo(still, CV_32F);
-    crops_[k].convertTo(moving, CV_32F);
+    shot.crops[*partner].convertTo(still, CV_32F);
+    shot.crops[k].convertTo(moving, CV_32F);
     const auto length = length_of(still, moving, along, 1.3 * fast->norm());
     if (!length) continue;
     // The neighbour is blurred a little too; variances add.
     const double own = slowest * slowest / fast->squaredNorm();
     shares.push_back(*length / fast->norm() / std::sqrt(std::max(0.2, 1 - own)));
   }
+  return tried;
+}
+
+std::optional<Estimate> BlurMeter::share(std::string& why) const {
+  std::vector<double> shares;
+  std::size_t tried = 0;
+  for (const Shot& shot : shots_) tried += add_shares(shot, shares);
   if (shares.size() < kFewestPairs) {
     why = tried < kFewestPairs
               ? "too few frames in fast motion have a neighbour at rest"

@@ -26,13 +26,21 @@ class BlurMeter {
   // Frames in order; the first few hundred are kept, cropped. `moved`: of the picture's middle
   // since the frame before, px; empty: not known.
   void add(const image::Picture& frame, const std::optional<Pixel>& moved);
+  // The next frame begins a shot: it has no neighbour before it.
+  void cut();
   std::optional<Estimate> share(std::string& why) const;
 
  private:
+  struct Shot {
+    std::vector<cv::Mat> crops;
+    std::vector<Pixel> places;
+    std::vector<bool> known;
+  };
+  // By how much of the interval frames of a shot are blurred; returns how many had a neighbour.
+  static std::size_t add_shares(const Shot& shot, std::vector<double>& shares);
   const image::Mask* own_aircraft_;
-  std::vector<cv::Mat> crops_;
-  std::vector<Pixel> places_;
-  std::vector<bool> known_;
+  std::vector<Shot> shots_ = std::vector<Shot>(1);
+  std::size_t frames_ = 0;
 };
 
 }  // namespace airtruth::calibration

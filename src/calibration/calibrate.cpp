@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/median.h"
@@ -50,7 +50,7 @@ class Session {
  public:
   Session(const fs::path& video, const Options& options)
       : options_(options),
-        reader_(video, {options.first_frame, options.frame_count, 0, true}, options.warn),
+        reader_(video, {options.first_frame, options.frame_count, 0, true, true}, options.warn),
         noise_(options.own_aircraft, options.tone),
         edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),
@@ -78,6 +78,11 @@ class Session {
                                                 result_.frames,
                                                 kFewestFrames))
                     : void();
+    if (!result_.cuts.empty())
+      warn(options_.warn,
+           fmt::format("{}: the clip is cut at frame {}; nothing is measured across",
+                       result_.video.string(),
+                       fmt::join(result_.cuts, ", ")));
     take_noise();
     take_codec();
     take_edges();
@@ -92,18 +97,21 @@ class Session {
     std::optional<Homography> last;
     while (auto frame = reader_.next()) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      const motion::FrameMotion moved = planar_.next(frame->picture, frame->time_s, frame->damaged);
+      const motion::FrameMotion moved =
+          planar_.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
+      // What most corners are followed into is no cut.
+      if (frame->begins_shot && !is_measured(moved)) cut(frame->index, before);
       std::optional<Homography> step;
       if (moved.state == motion::State::kMeasured && last)
         step = moved.frame_from_reference * last->inverse();
       last = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
-      steps_.push_back(step);
+      steps_.back().push_back(step);
       const Pixel centre(result_.width / 2.0, result_.height / 2.0);
       blur_.add(frame->picture,
                 step ? std::optional<Pixel>(apply(*step, centre) - centre) : std::nullopt);
       std::optional<motion::FrameMotion> turned;
       if (turning_) {
-        turned = turning_->next(frame->picture, frame->time_s, frame->damaged);
+        turned = turning_->next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
         cam_from_first_.push_back(*turned->rotation);
       }
       if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
@@ -114,13 +122,22 @@ class Session {
           sampled_.push_back({frame->picture.clone(),
                               frame->index,
                               turned ? *turned->rotation : Quaternion::Identity(),
-                              turned && is_measured(*turned)});
+                              turned && is_measured(*turned) && result_.cuts.empty()});
       }
       // The next sampled frame needs the one before it.
       before = std::move(frame->picture);
       ++result_.frames;
       if (options_.progress) options_.progress(result_.frames, total_);
     }
+  }
+
+  // Nothing is linked across: no pair of frames, no motion. How the camera is turned after a cut
+  // against how it was before is not known either.
+  void cut(std::int64_t frame, std::optional<image::Picture>& before) {
+    result_.cuts.push_back(frame);
+    before.reset();
+    blur_.cut();
+    steps_.emplace_back();
   }
 
   void put(const std::string& key, const std::vector<Estimate>& values) {
@@ -234,9 +251,14 @@ class Session {
       const Quaternion world_from_cam = (cam_from_first * first_from_world).conjugate();
       return yaw_pitch_roll(world_from_cam * cam_from_body()).yaw_deg;
     };
-    for (const Quaternion& cam_from_first : cam_from_first_)
+    for (const Quaternion& cam_from_first : cam_from_first_) {
+      // After a cut the heading is not known.
+      if (!result_.cuts.empty() &&
+          static_cast<std::int64_t>(result_.yaw_from_first_deg.size()) >= result_.cuts.front())
+        break;
       result_.yaw_from_first_deg.push_back(
           std::remainder(heading_deg(cam_from_first) - heading_deg(cam_from_first_.front()), 360));
+    }
   }
 
   // cam_from_world of the first frame, by the median of what its horizons say.
@@ -346,7 +368,7 @@ class Session {
   BlurMeter blur_;
   motion::Estimator planar_;
   std::optional<motion::Estimator> turning_;
-  std::vector<std::optional<Homography>> steps_;
+  std::vector<Steps> steps_ = std::vector<Steps>(1);  // by shot
   std::vector<double> quantisers_;
   std::vector<Quaternion> cam_from_first_;  // of every frame; empty without a lens
   std::vector<Sampled> sampled_;

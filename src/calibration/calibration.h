@@ -74,6 +74,7 @@ struct Calibration {
   int height = 0;
   std::int64_t frames = 0;
   double frame_rate_hz = 0;
+  std::vector<std::int64_t> cuts;  // frames that begin a shot; nothing is measured across
   std::string lens;
   image::ToneCurve tone;  // as it was given
   // By key, as in a scene: "sensor.noise_gain", "air.extinction_per_km" (three), ...

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -7,7 +8,7 @@
 #include "calibration/flight_clip.h"
 #include "calibration/join.h"
 #include "calibration/profile.h"
-#include "calibration/step_response.h"
+#include "video/reader.h"
 
 // Virtual flights whose clips cannot tell a value, or tell it several times over.
 namespace airtruth::calibration {
@@ -88,6 +89,62 @@ TEST(CalibrateWithProfile, ManySightsOfOneSoftEdgeGiveWayToTheProfile) {
   // The camera's own 0.4 px lies within three errors, which without the few edges it would not.
   const Estimate with = combined(seen, {0.4, 0.1});
   EXPECT_LT(with.value, 0.75);
+}
+
+// Two flights of one camera, in one clip: nothing is linked across the cut, and what is told is
+// what the two tell by themselves.
+TEST(CalibrateWithProfile, ACutIsSeenAndASplicedClipTellsWhatItsPartsDo) {
+  synthetic::FlightOptions o = ideal(13);
+  o.width = 640, o.height = 480;
+  o.frame_count = 70;
+  o.shake_deg = 0.5;
+  synthetic::FlightOptions brighter = o;
+  brighter.seed = 14;
+  brighter.sun_elevation_deg = 70, brighter.cloud_cover = 0.9, brighter.heading_deg = 150;
+  brighter.altitude_m = 60;
+  const synthetic::Flight first(o), second(brighter);
+  Clip alone, other, spliced;
+  Injected what;
+  what.point_spread_px = 0.8;
+  what.sensor.noise_gain = 4e-4;
+  what.sensor.noise_floor = 3e-5;
+  alone.write(first, what);
+  other.write(second, what);
+  synthetic::FlightOptions twice = o;
+  twice.frame_count = 2 * o.frame_count;
+  video::Reader one(alone.path()), two(other.path());
+  spliced.write(twice,
+                [&](int k) { return (k < o.frame_count ? one : two).next()->picture.clone(); });
+  std::vector<std::string> warnings;
+  Options options;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  const Calibration c = calibrate(spliced.path(), options);
+  ASSERT_EQ(c.cuts, std::vector<std::int64_t>{o.frame_count});
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& text) {
+    return text.find("is cut at frame 70; nothing is measured across") != std::string::npos;
+  }));
+  std::vector<Calibration> parts;
+  parts.push_back(calibrate(alone.path(), {}));
+  parts.push_back(calibrate(other.path(), {}));
+  ASSERT_TRUE(parts[0].cuts.empty());
+  const Calibration both = joined(std::move(parts));
+  for (const char* key : {"optics.point_spread_px",
+                          "sensor.noise_gain",
+                          "sensor.noise_floor",
+                          "sensor.noise_correlation_px",
+                          "shutter.readout_s"}) {
+    ASSERT_TRUE(both.values.contains(key) && c.values.contains(key)) << key;
+    const bool is_readout = std::string(key) == "shutter.readout_s";
+    const Estimate a = is_readout ? *c.downwards_s : c.values.at(key)[0];
+    const Estimate b = is_readout ? *both.downwards_s : both.values.at(key)[0];
+    std::printf("%s: %.4g +- %.2g spliced, %.4g +- %.2g of the parts\n",
+                key,
+                a.value,
+                a.sigma,
+                b.value,
+                b.sigma);
+    EXPECT_NEAR(a.value, b.value, 3 * std::hypot(a.sigma, b.sigma)) << key;
+  }
 }
 
 // What two halves of a clip tell together is what the whole clip tells.

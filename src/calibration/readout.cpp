@@ -43,14 +43,11 @@ std::optional<Move> move_of(const std::optional<Homography>& h, const Pixel& cen
   return Move{middle - centre, down.x() + right.y(), down.y() - right.x()};
 }
 
-}  // namespace
+using Pairs = std::vector<std::pair<double, double>>;
 
-std::optional<Estimate> readout_share(const std::vector<std::optional<Homography>>& steps,
-                                      int width,
-                                      int height,
-                                      std::string& why) {
-  const Pixel centre(width / 2.0, height / 2.0);
-  // Change of speed over height against shear (0) and stretch (1), frame by frame; NaN: not known.
+// Change of speed over height against shear and stretch, of one shot's frames.
+void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
+  // Shear (0) and stretch (1), frame by frame; NaN: not known.
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::array<std::vector<double>, 2> changes, bends;
   std::vector<Pixel> places;  // of the centre, added up; bridged steps keep still
@@ -64,18 +61,28 @@ std::optional<Estimate> readout_share(const std::vector<std::optional<Homography
     const auto before = rate_at(places, k - 1);
     const auto now = rate_at(places, k);
     const bool known = here && before && now;
-    const Pixel change = known ? Pixel((*now - *before) / height) : Pixel(unknown, unknown);
+    const Pixel change =
+        known ? Pixel((*now - *before) / (2 * centre.y())) : Pixel(unknown, unknown);
     changes[0].push_back(change.x()), changes[1].push_back(change.y());
     bends[0].push_back(known ? here->shear : unknown);
     bends[1].push_back(known ? here->stretch : unknown);
   }
-  std::vector<std::pair<double, double>> pairs;
   for (std::size_t axis = 0; axis < 2; ++axis)
     for (std::size_t k = 0; k < changes[axis].size(); ++k) {
       const double x = slow_part(changes[axis], k);
       const double y = slow_part(bends[axis], k);
       if (std::isfinite(x) && std::isfinite(y)) pairs.push_back({x, y});
     }
+}
+
+}  // namespace
+
+std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
+                                      int width,
+                                      int height,
+                                      std::string& why) {
+  Pairs pairs;
+  for (const Steps& shot : shots) add_pairs(shot, {width / 2.0, height / 2.0}, pairs);
   if (pairs.size() < 60) {
     why = "the motion of too few frames is known";
     return std::nullopt;

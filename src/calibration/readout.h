@@ -13,8 +13,10 @@ namespace airtruth::calibration {
 // The readout time as a share of the frame interval, downwards positive. A rolling shutter shears
 // and stretches what moves faster at the end of a frame than at its beginning: between neighbours
 // the picture's shear is readout / height times the change of its speed across, its stretch the
-// same of its speed down. `steps`: frame k from frame k - 1, in pixels; empty where not known.
-std::optional<Estimate> readout_share(const std::vector<std::optional<Homography>>& steps,
+// same of its speed down. `shots`: of each shot its frames' steps, frame k from frame k - 1, in
+// pixels; empty where not known, as of the first.
+using Steps = std::vector<std::optional<Homography>>;
+std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
                                       int width,
                                       int height,
                                       std::string& why);

@@ -75,14 +75,14 @@ void hand_over(const motion::LensEstimator::Result& found,
 void estimate(const EstimateArguments& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
   Console& console = context.console();
-  video::Reader reader(arguments.video, {}, console.warn());
+  video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
   const video::StreamInfo info = reader.info();
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
   motion::LensEstimator estimator(info.width, info.height, mask ? &*mask : nullptr);
   while (const auto frame = reader.next()) {
     if (context.stop.stop_requested()) throw Interrupted();
-    estimator.add(frame->picture);
+    estimator.add(frame->picture, frame->begins_shot);
     console.progress("looking", frame->index + 1, info.frame_count_estimate);
   }
   console.end_progress();

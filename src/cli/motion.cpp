@@ -77,7 +77,7 @@ void check_outputs(const MotionArguments& arguments) {
 void measure(const MotionArguments& arguments, Context& context) {
   check_outputs(arguments);
   Console& console = context.console();
-  video::Reader reader(arguments.video, {}, console.warn());
+  video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
   const video::StreamInfo info = reader.info();
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);

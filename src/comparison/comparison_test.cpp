@@ -13,7 +13,7 @@
 #include "base/files.h"
 #include "base/seed.h"
 #include "comparison/areas.h"
-#include "comparison/cuts.h"
+#include "comparison/background_shift.h"
 #include "comparison/measures.h"
 #include "comparison/real.h"
 
@@ -122,15 +122,7 @@ TEST_F(Judge, RefusesWhatIsNoComparison) {
   EXPECT_THROW(write_figure({a}, root_ / "all.png"), Error);
 }
 
-TEST(Cuts, OneFrameThatDiffersIsACutAndAPanIsNone) {
-  EXPECT_EQ(cuts_of({0.1, 0.2, 40, 0.1, 0.2}), std::vector<std::int64_t>{3});
-  EXPECT_TRUE(cuts_of({0.1, 8, 9, 8, 0.2}).empty());      // a fast pan
-  EXPECT_TRUE(cuts_of({0.1, 0.2, 4, 0.1, 0.2}).empty());  // the camera is knocked
-  EXPECT_TRUE(cuts_of({0.1, 20, 20, 0.1, 0.2}).empty());  // a flash: there and back
-  EXPECT_TRUE(cuts_of(std::vector<double>{}).empty());
-}
-
-TEST(Cuts, ShiftOfTheBackgroundIsFoundWithoutTheAircraft) {
+TEST(BackgroundShift, IsFoundWithoutTheAircraft) {
   Random random(5);
   cv::Mat ground(400, 500, CV_32F);
   for (int i = 0; i < ground.rows * ground.cols; ++i)

@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "base/median.h"
-#include "comparison/cuts.h"
 #include "comparison/segment.h"
+#include "image/cuts.h"
 #include "video/reader.h"
 
 namespace airtruth::comparison {
@@ -79,7 +79,7 @@ RealAircraft find_real(const fs::path& video,
                        const Warn& warn_to,
                        const std::stop_token& stop) {
   video::Reader reader(video);
-  Differences differences;
+  image::Differences differences;
   std::vector<double> by_frame;
   RealAircraft found;
   while (const auto frame = reader.next()) {
@@ -92,7 +92,7 @@ RealAircraft find_real(const fs::path& video,
       found.masks.emplace(frame->index, small_mask(seen->mask));
     }
   }
-  found.cuts = cuts_of(by_frame);
+  found.cuts = image::cuts_of(by_frame);
   const auto [first, end] = best_shot(found.boxes, found.cuts);
   if (!found.cuts.empty())
     warn(warn_to,

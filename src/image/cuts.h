@@ -8,8 +8,8 @@
 
 #include "image/picture.h"
 
-// Where one shot of a clip ends and another begins, from pictures alone. Whoever links frames to one
-// another (motion, blur, smoothing) links none across a cut.
+// Where one shot of a clip ends and another begins, from pictures alone. Whoever links frames to
+// one another (motion, blur, smoothing) links none across a cut.
 namespace airtruth::image {
 
 // How far a picture differs from the one before: the mean absolute difference of luma, code values,
@@ -26,9 +26,9 @@ class Differences {
 // Differences to the left and right of a frame's own that its own is held against.
 inline constexpr int kCutNeighbours = 2;
 
-// Does a frame that differs by `here` from the one before begin a shot? It does where that is 6 code
-// values or more, and more than three times what any of its neighbours (up to kCutNeighbours before
-// it and after it) differs by: a pan or a change of exposure takes several frames.
+// Does a frame that differs by `here` from the one before begin a shot? It does where that is 6
+// code values or more, and more than three times what any of its neighbours (up to kCutNeighbours
+// before it and after it) differs by: a pan or a change of exposure takes several frames.
 bool is_cut(std::span<const double> before, double here, std::span<const double> after);
 
 // The frames that begin a shot, from 1 on. differences[k]: of frame k to frame k + 1.

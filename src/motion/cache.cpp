@@ -12,7 +12,7 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kEstimatorVersion = 6;  // raise it whenever the estimator's numbers change
+constexpr int kEstimatorVersion = 7;  // raise it whenever the estimator's numbers change
 
 }  // namespace
 

@@ -77,9 +77,12 @@ Estimator::Estimator(const lens::Lens& lens,
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
-FrameMotion Estimator::next(const image::Picture& picture, double time_s, bool damaged) {
+FrameMotion Estimator::next(const image::Picture& picture,
+                            double time_s,
+                            bool damaged,
+                            bool begins_shot) {
   check(picture.width == impl_->width && picture.height == impl_->height, "frames keep their size");
-  FrameMotion motion = impl_->follower->next(luma_of(picture), damaged);
+  FrameMotion motion = impl_->follower->next(luma_of(picture), damaged, begins_shot);
   motion.time_s = time_s;
   if (impl_->horizon) impl_->horizon->hold(motion, picture, impl_->follower->stray_rad());
   return motion;

@@ -121,10 +121,10 @@ struct LensEstimator::Impl {
     frames = 0;
   }
 
-  void add(const cv::Mat& grey) {
+  void add(const cv::Mat& grey, bool begins_shot) {
     if (pairs.size() >= kMostPairs) return;
     Pyramid pyramid = pyramid_of(grey);
-    if (previous.empty()) {
+    if (previous.empty() || begins_shot) {
       begin(grey);
       previous = std::move(pyramid);
       return;
@@ -162,7 +162,9 @@ LensEstimator::LensEstimator(int width, int height, const image::Mask* own_aircr
 }
 LensEstimator::~LensEstimator() = default;
 
-void LensEstimator::add(const image::Picture& picture) { impl_->add(luma_of(picture)); }
+void LensEstimator::add(const image::Picture& picture, bool begins_shot) {
+  impl_->add(luma_of(picture), begins_shot);
+}
 
 std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) const {
   const auto& pairs = impl_->pairs;

@@ -21,7 +21,8 @@ class LensEstimator {
   ~LensEstimator();
 
   // Frames in order.
-  void add(const image::Picture& picture);
+  // begins_shot: nothing is followed into it from the picture before (image/cuts.h).
+  void add(const image::Picture& picture, bool begins_shot = false);
 
   struct Result {
     bool fisheye = false;  // equidistant; else pinhole

@@ -86,9 +86,13 @@ class Estimator {
             const image::Mask* own_aircraft = nullptr);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
-  // A homography reads the luma plane alone. `damaged` frames are bridged. Result against the first
-  // frame.
-  FrameMotion next(const image::Picture& picture, double time_s, bool damaged = false);
+  // A homography reads the luma plane alone. `damaged` frames are bridged. A frame that begins a
+  // shot (image/cuts.h) is a cut, unless most corners are followed into it, as beside something
+  // that suddenly covers a part of the view. Result against the first frame.
+  FrameMotion next(const image::Picture& picture,
+                   double time_s,
+                   bool damaged = false,
+                   bool begins_shot = false);
 
  private:
   struct Impl;

@@ -146,6 +146,58 @@ TEST(Estimator, FlagsACut) {
   EXPECT_EQ(estimator.next(frame(other, 5), 5 / 30.0).state, State::kMeasured);
 }
 
+// Of skies alone there are no corners whose loss would tell.
+TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 4; ++k) estimator.next(blank(), k / 30.0);
+  EXPECT_EQ(estimator.next(blank(), 4 / 30.0).state, State::kBridged);
+  EXPECT_EQ(estimator.next(blank(), 5 / 30.0, false, true).state, State::kCut);
+  EXPECT_EQ(estimator.next(blank(), 6 / 30.0).state, State::kBridged);
+}
+
+// Something bright that suddenly covers a third of the view changes the picture as a cut does; the
+// rest of it goes on.
+TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
+  const cv::Mat texture = wall();
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 4; ++k) estimator.next(frame(texture, k), k / 30.0);
+  image::Picture covered = frame(texture, 4);
+  for (int y = 0; y < kHeight; ++y)
+    std::fill_n(covered.planes[0].row(y), kWidth / 3, std::uint8_t{230});
+  const FrameMotion after = estimator.next(covered, 4 / 30.0, false, true);
+  EXPECT_EQ(after.state, State::kMeasured);
+  EXPECT_LT(corner_error(after.frame_from_reference,
+                         ours(frame_from_wall(4)) * ours(frame_from_wall(0)).inverse()),
+            1.5);
+}
+
+// Two shots, each with its shake and drift: what is smoothed of each is what it is by itself.
+TEST(Smoothed, DoesNotRunAcrossACut) {
+  const cv::Mat texture = wall();
+  cv::Mat other;
+  cv::flip(texture, other, 0);
+  Options options;
+  options.smoothing_s = 0.3;
+  constexpr int kShot = 20;
+  Estimator both(kWidth, kHeight, options), second(kWidth, kHeight, options);
+  std::vector<FrameMotion> spliced, alone;
+  for (int k = 0; k < 2 * kShot; ++k) {
+    const double time_s = k / 30.0;
+    const image::Picture picture = frame(k < kShot ? texture : other, k);
+    spliced.push_back(both.next(picture, time_s, false, k == kShot));
+    if (k >= kShot) alone.push_back(second.next(picture, time_s));
+  }
+  ASSERT_EQ(spliced[kShot].state, State::kCut);
+  const auto steady = smoothed(spliced, options), steady_alone = smoothed(alone, options);
+  for (int k = 0; k < kShot; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    EXPECT_LT(
+        corner_error(steady[i + kShot].frame_from_reference, steady_alone[i].frame_from_reference),
+        0.05)
+        << k;
+  }
+}
+
 TEST(Estimator, IgnoresTheOwnAircraft) {
   const cv::Mat texture = wall();
   image::Mask mask{kWidth, kHeight, std::vector<unsigned char>(kWidth * kHeight, 255)};

@@ -24,7 +24,7 @@ Homography ours_from_cv(const Homography& h) {
 class Planar : public Follower {
  public:
   Planar(const cv::Mat& allowed, const Options& options) : options_(options), allowed_(allowed) {}
-  FrameMotion next(const cv::Mat& grey, bool damaged) override;
+  FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override;
 
  private:
   void make_key(const cv::Mat& grey);
@@ -104,7 +104,7 @@ FrameMotion Planar::measured(const ModelFit& fit,
   return motion;
 }
 
-FrameMotion Planar::next(const cv::Mat& grey, bool damaged) {
+FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   Pyramid now = pyramid_of(grey);
   if (!started_) {
     started_ = true;
@@ -119,15 +119,15 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged) {
   const std::size_t before = now_corners_.size();
   track(now, key, moved);
   const auto fit = fit_model(key, moved, grey.size(), options_);
-  if (fit) {
+  if (fit && is_followed(begins_shot, fit->inliers, before)) {
     const FrameMotion motion = measured(*fit, key, moved, grey);
     previous_ = std::move(now);
     return motion;
   }
   ++bridged_in_row_;
   const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_, options_);
-  const Loss loss =
-      loss_of(fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers);
+  const Loss loss = loss_of(
+      fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers, begins_shot);
   if (loss.starts_anew) {
     // Start anew from here; what is known of the place is carried on.
     previous_ = std::move(now);

@@ -62,7 +62,7 @@ class Spherical : public Follower {
         options_(options),
         limit_rad_(options.ransac_px / lens.focal_px()) {}
 
-  FrameMotion next(const cv::Mat& grey, bool damaged) override {
+  FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override {
     Pyramid now = pyramid_of(grey);
     if (keys_.empty()) {
       make_key(grey, now, {});
@@ -76,13 +76,13 @@ class Spherical : public Follower {
     std::size_t survivors = 0;
     const std::size_t before = previous_corners_.size();
     const auto guess = step(now, survivors);
-    if (guess) {
+    if (guess && is_followed(begins_shot, static_cast<int>(survivors), before)) {
       const std::vector<Sighting> sightings = find_landmarks(now, *guess);
       const auto fit =
           fit_rotation(bearings_of(sightings), limit_rad_, options_.min_inliers, options_.seed);
       if (fit) return measured(grey, std::move(now), sightings, *fit);
     }
-    return lost(grey, std::move(now), before, survivors);
+    return lost(grey, std::move(now), before, survivors, begins_shot);
   }
 
   double stray_rad() const override { return stray_rad_; }
@@ -260,11 +260,15 @@ class Spherical : public Follower {
     return motion;
   }
 
-  FrameMotion lost(const cv::Mat& grey, Pyramid now, std::size_t before, std::size_t survivors) {
+  FrameMotion lost(const cv::Mat& grey,
+                   Pyramid now,
+                   std::size_t before,
+                   std::size_t survivors,
+                   bool begins_shot) {
     ++bridged_in_row_;
     const auto fresh = spread_corners(grey, allowed_, options_);
-    const Loss loss =
-        loss_of(fresh.size(), before, survivors, bridged_in_row_, options_.min_inliers);
+    const Loss loss = loss_of(
+        fresh.size(), before, survivors, bridged_in_row_, options_.min_inliers, begins_shot);
     if (loss.starts_anew) {
       keys_.clear();
       links_.clear();

@@ -264,13 +264,15 @@ AmbientEstimator::AmbientEstimator(const scene::Light& light,
 
 Ambient AmbientEstimator::next(const image::Picture& picture,
                                const annotation::Sight& sight,
-                               const std::optional<PixelBox>& near) {
+                               const std::optional<PixelBox>& near,
+                               bool begins_shot) {
   const bool all_stated =
       light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
   if (all_stated) return with_scene({});
   std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, skies_, near);
   std::vector<Rgb> colours;
   for (const Block& block : blocks) colours.push_back(block.linear);
+  if (begins_shot) smooth_.reset();
   follow_exposure(colours);
   sort_by_brightness(blocks);
   const Ambient now = measure(blocks, light_.sun_elevation_deg);

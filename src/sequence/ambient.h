@@ -49,10 +49,12 @@ class AmbientEstimator {
                    const image::ToneCurve& tone,
                    const image::Mask* own_aircraft);
 
-  // Frames in order. `near`: the intruders' box, where one is in view.
+  // Frames in order. `near`: the intruders' box, where one is in view. `begins_shot`: the light is
+  // another than before, and is not smoothed across.
   Ambient next(const image::Picture& picture,
                const annotation::Sight& sight,
-               const std::optional<PixelBox>& near);
+               const std::optional<PixelBox>& near,
+               bool begins_shot = false);
 
  private:
   Ambient with_scene(Ambient measured) const;

@@ -82,5 +82,34 @@ TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
   }
 }
 
+// An even grey sky; code value of its luma.
+image::Picture grey_sky(int luma) {
+  image::Picture picture = image::make_picture(96, 72, {});
+  for (std::size_t p = 0; p < 3; ++p)
+    for (int y = 0; y < picture.planes[p].height; ++y)
+      std::fill_n(picture.planes[p].row(y),
+                  picture.planes[p].width,
+                  static_cast<std::uint8_t>(p == 0 ? luma : 128));
+  return picture;
+}
+
+// Before a cut the sky nearly clips, so that its jump cannot be followed as one of exposure: what
+// is smoothed stays too bright, and at a cut begins anew.
+TEST(Ambient, ACutBeginsTheLightAnew) {
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(20, {96, 72});
+  annotation::Sight sight;
+  sight.lens = &lens;
+  sight.cam_from_world.rotation = cam_from_body();
+  const auto after = [&](bool begins_shot) {
+    AmbientEstimator estimator({}, {}, nullptr);
+    for (int k = 0; k < 10; ++k) estimator.next(grey_sky(234), sight, {});
+    return estimator.next(grey_sky(80), sight, {}, begins_shot).cloud[1];
+  };
+  AmbientEstimator alone({}, {}, nullptr);
+  const float truth = alone.next(grey_sky(80), sight, {}).cloud[1];
+  EXPECT_FLOAT_EQ(after(true), truth);
+  EXPECT_GT(after(false), 2 * truth);
+}
+
 }  // namespace
 }  // namespace airtruth::sequence

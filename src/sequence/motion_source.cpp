@@ -120,7 +120,8 @@ MotionSource::Measured MotionSource::next(const video::Frame& frame) {
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
   if (!estimator_) estimator_.emplace(estimator(frame.picture.width, frame.picture.height));
-  motion::FrameMotion motion = estimator_->next(frame.picture, frame.time_s, frame.damaged);
+  motion::FrameMotion motion =
+      estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
   motion.frame = frame.index;
   against_first_.push_back(motion);
   return motion;
@@ -158,7 +159,8 @@ std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
   std::vector<motion::FrameMotion> result;
   while (const auto frame = reader.next()) {
     if (stop.stop_requested()) throw Interrupted();
-    result.push_back(estimator.next(frame->picture, frame->time_s, frame->damaged));
+    result.push_back(
+        estimator.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot));
     result.back().frame = frame->index;
     if (seen) seen(static_cast<std::int64_t>(result.size()));
   }

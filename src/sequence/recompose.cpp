@@ -98,6 +98,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   video::ReaderOptions options;
   options.first_frame = scene.background.first_frame;
   options.frame_count = scene.background.frame_count;
+  options.with_cuts = true;
   video::Reader background(scene.background.video, options);
   video::Reader stored(sequence.video);
   const lens::ImageSize size{background.info().width, background.info().height};
@@ -120,7 +121,8 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
       break;
     }
     const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
-    const Ambient light = ambient.next(before->picture, moment.sight, search_bounds(moment));
+    const Ambient light =
+        ambient.next(before->picture, moment.sight, search_bounds(moment), before->begins_shot);
     if (truth.frame % every != 0) continue;
     annotation::Frame again = truth;
     again.time_s = before->time_s;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
@@ -39,6 +40,7 @@ video::Reader open(const scene::Scene& scene, const Options& options) {
   reader_options.first_frame = scene.background.first_frame;
   reader_options.frame_count = scene.background.frame_count;
   reader_options.threads = options.threads;
+  reader_options.with_cuts = true;
   return video::Reader(scene.background.video, reader_options, options.warn);
 }
 
@@ -149,8 +151,8 @@ class Run {
     work.motion = measured.motion;
     work.truth.shake = measured.shake;
     work.moment = moment_at(world_, work.frame.index, work.frame.time_s, measured.shake);
-    work.ambient =
-        ambient_->next(work.frame.picture, work.moment.sight, search_bounds(work.moment));
+    work.ambient = ambient_->next(
+        work.frame.picture, work.moment.sight, search_bounds(work.moment), work.frame.begins_shot);
   }
 
   void paint(Work& work) {
@@ -181,6 +183,7 @@ class Run {
     summary_.frames_visible += any ? 1 : 0;
     const motion::State state = work.motion.state;
     summary_.frames_bridged += motion::is_known(state) ? 0 : 1;
+    if (work.frame.begins_shot) cuts_.push_back(work.frame.index);
     turned_away_ += state == motion::State::kTurnedAway ? 1 : 0;
     summary_.frames_damaged += work.frame.damaged ? 1 : 0;
     if (options_.progress) options_.progress({summary_.frames, total_});
@@ -243,6 +246,13 @@ class Run {
       warn(options_.warn,
            "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
                " frames; they are bridged, and truth.jsonl says which");
+    if (!cuts_.empty())
+      warn(options_.warn,
+           fmt::format(
+               "{}: the video is cut at frame {}: nothing links the camera's pose and light to "
+               "the frames before",
+               scene_.background.video.string(),
+               fmt::join(cuts_, ", ")));
     if (turned_away_ > 0)
       warn(
           options_.warn,
@@ -319,7 +329,8 @@ class Run {
   std::optional<AmbientEstimator> ambient_;
   std::optional<Outputs> outputs_;
   std::vector<bool> seen_;
-  std::int64_t turned_away_ = 0;  // frames
+  std::int64_t turned_away_ = 0;    // frames
+  std::vector<std::int64_t> cuts_;  // frames that begin a shot
   Summary summary_;
   double last_time_s_ = 0;
   mutable std::int64_t total_ = 0;

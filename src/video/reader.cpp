@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "image/cuts.h"
 #include "video/libav.h"
 #include "video/numbered_images.h"
 
@@ -60,7 +63,12 @@ struct Reader::State {
   std::int64_t last_pts = AV_NOPTS_VALUE;
   std::int64_t pts_step = 1;
   std::optional<std::int64_t> first_pts;
-  std::optional<Frame> ahead;  // decoded by the constructor
+  // Decoded by the constructor and, with cuts, what comes after the frame that is next.
+  std::deque<Frame> ahead;
+  image::Differences difference;
+  // Of the frames from `first_difference` on, each to the one before it.
+  std::deque<double> differences;
+  std::int64_t first_difference = 1;
 
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(message, {path.string()});
@@ -72,6 +80,8 @@ struct Reader::State {
   int read_packet();  // fills `packet`; below 0 at the end, as libav has it
   bool decode_one();  // fills `frame`; false at the end
   std::optional<Frame> next();
+  bool look_ahead();  // decodes one more frame; false at the end
+  bool begins_shot(std::int64_t index);
   Frame to_frame();
   void make_plain();
 };
@@ -307,6 +317,29 @@ std::optional<Frame> Reader::State::next() {
   }
 }
 
+bool Reader::State::look_ahead() {
+  auto one = next();
+  if (!one) return false;
+  if (options.with_cuts)
+    if (const auto d = difference.add(one->picture)) differences.push_back(*d);
+  ahead.push_back(std::move(*one));
+  return true;
+}
+
+bool Reader::State::begins_shot(std::int64_t index) {
+  // Those of the neighbours, as far as there are any.
+  while (first_difference < index - image::kCutNeighbours) {
+    differences.pop_front();
+    ++first_difference;
+  }
+  if (index < first_difference) return false;
+  const std::vector<double> around(differences.begin(), differences.end());
+  const std::span<const double> all(around);
+  const auto here = static_cast<std::size_t>(index - first_difference);
+  const std::size_t after = std::min(all.size() - here - 1, std::size_t{image::kCutNeighbours});
+  return image::is_cut(all.first(here), all[here], all.subspan(here + 1, after));
+}
+
 Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
     : state_(std::make_unique<State>()) {
   state_->path = path;
@@ -314,8 +347,7 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
   state_->warn = std::move(warn);
   state_->open_input();
   state_->open_codec();
-  state_->ahead = state_->next();
-  if (state_->ahead) return;
+  if (state_->look_ahead()) return;
   if (state_->decoded == 0) state_->fail("holds no frame that can be decoded; expected a video");
   if (!options.frame_count || *options.frame_count > 0)
     state_->fail("holds " + std::to_string(state_->decoded) + " frames; first_frame = " +
@@ -329,12 +361,15 @@ Reader& Reader::operator=(Reader&&) noexcept = default;
 const StreamInfo& Reader::info() const { return state_->info; }
 
 std::optional<Frame> Reader::next() {
-  if (state_->ahead) {
-    std::optional<Frame> first = std::move(state_->ahead);
-    state_->ahead.reset();
-    return first;
+  State& state = *state_;
+  const std::size_t wanted = state.options.with_cuts ? 1 + std::size_t{image::kCutNeighbours} : 1;
+  while (state.ahead.size() < wanted && state.look_ahead()) {
   }
-  return state_->next();
+  if (state.ahead.empty()) return std::nullopt;
+  Frame frame = std::move(state.ahead.front());
+  state.ahead.pop_front();
+  if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
+  return frame;
 }
 
 std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }

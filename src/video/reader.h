@@ -44,6 +44,9 @@ struct ReaderOptions {
   std::optional<std::int64_t> frame_count;  // else to the end
   int threads = 0;                          // 0 = one per core
   bool with_quantiser = false;              // Frame::quantiser, where the decoder tells it
+  // Frame::begins_shot. What comes after a frame says whether it begins a shot: two frames are held
+  // that are decoded and not handed out.
+  bool with_cuts = false;
 };
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or

@@ -213,6 +213,39 @@ TEST_F(Video, LosslessOutputGivesEverySampleBack) {
   }
 }
 
+// Two shots and a slow change; the frame that begins the second one is said to, and no other, and
+// every frame is the one that comes without looking ahead.
+TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
+  ffmpeg(
+      "-f lavfi -i color=0x404040:s=64x48:r=25:d=0.4 -f lavfi -i testsrc=s=64x48:r=25:d=0.4 "
+      "-filter_complex [0][1]concat=n=2,format=yuv420p -c:v ffv1 cut.mkv");
+  Reader plain(folder_ / "cut.mkv");
+  Reader reader(folder_ / "cut.mkv", {.with_cuts = true});
+  std::vector<std::int64_t> cuts;
+  std::int64_t frames = 0;
+  while (const auto frame = reader.next()) {
+    EXPECT_EQ(frame->index, frames++);
+    const auto same = plain.next();
+    ASSERT_TRUE(same);
+    EXPECT_FALSE(same->begins_shot);
+    EXPECT_EQ(planes_of(frame->picture), planes_of(same->picture));
+    if (frame->begins_shot) cuts.push_back(frame->index);
+  }
+  EXPECT_FALSE(plain.next());
+  EXPECT_EQ(frames, 20);
+  EXPECT_EQ(cuts, std::vector<std::int64_t>{10});
+  // From a later frame on, and up to the last before the cut.
+  Reader later(folder_ / "cut.mkv", {.first_frame = 7, .with_cuts = true});
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(later.next()->begins_shot, k == 3) << k;
+  Reader first(folder_ / "cut.mkv", {.frame_count = 10, .with_cuts = true});
+  int count = 0;
+  while (const auto frame = first.next()) {
+    EXPECT_FALSE(frame->begins_shot);
+    ++count;
+  }
+  EXPECT_EQ(count, 10);
+}
+
 TEST_F(Video, TagsComeThrough) {
   ffmpeg(
       "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p -colorspace bt709 "
