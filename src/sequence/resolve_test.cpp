@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/resolve.h"
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "calibration/cache.h"
+#include "calibration/profile.h"
 #include "sequence/ambient.h"
 #include "sequence/motion_source.h"
 #include "sequence/world.h"
@@ -85,6 +91,55 @@ TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
     }
   scene_.camera_model.codec_step = 2;
   EXPECT_FALSE(needs_calibration());
+}
+
+std::string said_by(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A clip without edges: stopped without a word from the scene, the median over cameras with
+// fallback, the profile's value where one is named, nothing where none is wanted.
+TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  found.missing["optics.point_spread_px"] = "no edges";
+  keep(found);
+  scene_.camera_model.automatic = {"optics.point_spread_px"};
+  EXPECT_NE(said_by([&] { resolve(); }).find("cannot be measured: no edges; state it, name"),
+            std::string::npos);
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  scene_.realism.fallback = true;
+  EXPECT_EQ(resolve().camera_model.point_spread_px,
+            calibration::usual_camera().values.at("optics.point_spread_px").value);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("it is of the median over"), std::string::npos) << warnings[0];
+  scene_.realism.profile = "none";
+  EXPECT_FALSE(resolve().camera_model.point_spread_px);
+  scene_.realism.fallback = false;
+  scene_.realism.profile = "fixed-wing-nose";
+  EXPECT_EQ(
+      resolve().camera_model.point_spread_px,
+      calibration::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
+}
+
+TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
+  scene_.realism.where = {"s.toml", 7, 1};
+  scene_.realism.profile = "fixed-wing-nos";
+  EXPECT_NE(said_by([&] { needs_calibration(); })
+                .find("s.toml:7:1: there is no camera profile 'fixed-wing-nos'; did you mean "
+                      "'fixed-wing-nose'?"),
+            std::string::npos);
+  scene_.realism.profile = "gopro-karma";
+  EXPECT_NE(said_by([&] { needs_calibration(); }).find("the clip is 640 x 480"), std::string::npos);
+  scene_.realism.profile = "fixed-wing-nose";
+  scene_.camera_model.automatic.clear();
+  EXPECT_NE(said_by([&] { needs_calibration(); }).find("expected auto = true"), std::string::npos);
 }
 
 }  // namespace

@@ -331,6 +331,33 @@ class Others(Case):
             for option in ("--lens", "--altitude"):
                 self.assertEqual(option in notes[0], option in named, notes[0])
 
+    def test_camera_profiles_are_listed_named_and_refused_for_other_sizes(self):
+        listed = run("calibrate", "--list-profiles")
+        self.assertEqual(listed.returncode, 0, listed.stderr)
+        names = [line.split()[0] for line in listed.stdout.splitlines() if line.strip()]
+        self.assertGreaterEqual(len(names), 3, listed.stdout)
+        out = ["-o", os.path.join(self.out, "p.toml"), "--overwrite"]
+        for size in ("160", "192"):
+            made = run("synth", "-o", os.path.join(self.out, f"p{size}.mkv"), "--width", size, "--height", "120", "--frames", "10")
+            self.assertEqual(made.returncode, 0, made.stderr)
+        one, other = (os.path.join(self.out, f"p{size}.mkv") for size in ("160", "192"))
+        for words, said in (([one, "--profile", names[0] + "x"], f"did you mean '{names[0]}'?"),
+                            ([one, "--profile", names[0]], "the clip is 160 x 120"),
+                            ([one, other], "expected clips of one camera in one size"),
+                            ([one, one, "--plot", os.path.join(self.out, "p.png")], "--plot draws one clip")):
+            refused = run("calibrate", *words, *out)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertEqual(len(refused.stderr.splitlines()), 1, refused.stderr)
+            self.assertIn(said, refused.stderr)
+        alone = run("calibrate", one, *out, "--profile", "none")
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        self.assertNotIn("median over", alone.stdout + alone.stderr)
+        usual = run("calibrate", one, one, *out)
+        self.assertEqual(usual.returncode, 0, usual.stderr)
+        self.assertIn("of the median over 3 cameras", usual.stdout)  # 10 frames of 160 x 120 show no clean edge
+        with open(os.path.join(self.out, "p.toml")) as file:
+            self.assertIn("of the median over 3 cameras", file.read())
+
     def test_lens_crop_writes_what_the_refusal_offers(self):
         profile = os.path.join(self.out, "lens.yml")
         with open(profile, "w") as file:
