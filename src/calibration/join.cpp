@@ -73,14 +73,16 @@ std::string words_of(const Told& told) {
   return fmt::format("{:.3g} +- {:.2g} ({})", told.value.value, told.value.sigma, told.clip);
 }
 
-std::string contradiction(const std::vector<Told>& all) {
-  const auto [least, most] =
-      std::minmax_element(all.begin(), all.end(), [](const Told& a, const Told& b) {
-        return a.value.value < b.value.value;
-      });
+// Names the clips that lie farthest to either side of `middle`, by their errors.
+std::string contradiction(const std::vector<Told>& all, double middle) {
+  const auto off = [&](const Told& told) {
+    return told.value.sigma > 0 ? (told.value.value - middle) / told.value.sigma : 0;
+  };
+  const auto [least, most] = std::minmax_element(
+      all.begin(), all.end(), [&](const Told& a, const Told& b) { return off(a) < off(b); });
   return fmt::format(
-      "{} clips contradict one another by more than their errors, from {} to {}; "
-      "the error covers what they differ by",
+      "{} clips contradict one another by more than their errors, {} and {} most; the error covers "
+      "what they differ by",
       all.size(),
       words_of(*least),
       words_of(*most));
@@ -120,7 +122,7 @@ void join_key(Calibration& result, const std::vector<Calibration>& clips, const 
   const Pooled together = pooled(values);
   put_joined(result, key, together.value);
   result.notes[key] = fmt::format("by {} of {} clips", all.size(), clips.size());
-  if (!together.agree) result.doubts[key] = contradiction(all);
+  if (!together.agree) result.doubts[key] = contradiction(all, together.value.value);
 }
 
 }  // namespace
