@@ -98,7 +98,8 @@ void add_compare(CLI::App& app, Context& context) {
       ->add_option("--scene",
                    arguments->scene,
                    "Scene that says which aircraft, light, lens and camera model; its video and "
-                   "path are not used, and its aircraft's type and attitude with --no-match alone")
+                   "path are not used, and its aircraft's type and attitude and its sun with "
+                   "--no-match alone")
       ->required();
   command->add_option("-o,--out", arguments->out, "Folder to make")->required();
   command
@@ -113,8 +114,8 @@ void add_compare(CLI::App& app, Context& context) {
   command->add_flag(
       "--match,!--no-match",
       arguments->match,
-      "Search the type and attitude whose silhouette is the real one's (the default), "
-      "or take the scene's");
+      "Search the type, attitude, livery and sun with which the inserted aircraft looks like the "
+      "real one (the default), or take the scene's");
   command
       ->add_option("--types",
                    arguments->types,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,8 +40,8 @@ constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning 
 constexpr std::int64_t kSizingFrames = 9;  // that the inserted aircraft's size is set by
 constexpr std::size_t kSunFrames = 2;      // that the sun is fitted to
 constexpr std::size_t kMostPaints = 6;     // liveries of a type that are tried
-constexpr double kPaintSpacingDeg = 40;    // of the suns that a livery is tried under
-constexpr double kSunSpacingDeg = 15;      // of those that the best livery is
+constexpr double kPoseSpacingDeg = 40;     // of the suns that a pose or a livery is tried under
+constexpr double kSunSpacingDeg = 15;      // of those that the best of them is
 
 // The scene with its first intruder beside the real aircraft, everything else standing still.
 scene::Scene scene_beside(const scene::Scene& given,
@@ -86,9 +87,10 @@ class Comparing {
         find_real(real, boxes, options.most_frames, options.warn, options.stop);
     boxes_ = found.boxes;
     scene::Scene matched = scene;
-    if (options.match) matched.intruders[0].aircraft = match(found.masks);
-    load(matched);
-    if (pose_) match_light(matched);
+    if (options.match)
+      match(found.masks, matched);
+    else
+      load(matched);
     render(matched, fitting_scale(matched));
     compare();
   }
@@ -134,25 +136,36 @@ class Comparing {
     if (pose_) pose_->attitude = attitude_ = attitude_beside();
   }
 
-  // The type whose silhouette fits best, by masks around the middle of the shot.
-  std::string match(const std::map<std::int64_t, cv::Mat>& masks) {
+  // Type, attitude, livery and sun of the real aircraft, as far as they can be told: silhouettes,
+  // by masks around the middle of the shot, leave a few poses; of these the one is taken, and the
+  // livery and sun, that is light, dark and coloured where the real one is.
+  void match(const std::map<std::int64_t, cv::Mat>& masks, scene::Scene& scene) {
     std::vector<cv::Mat> few;
     auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
     for (; it != masks.end() && few.size() < kPoseMasks; ++it) few.push_back(it->second);
-    const TypeFit fit = fit_type(few,
-                                 options_.types.empty() ? types_to_match() : options_.types,
-                                 options_.warn,
-                                 options_.stop);
-    pose_ =
-        Comparison::Pose{fit.aircraft, fit.pose.attitude, fit.pose.overlap, fit.pose.aspect_ratio};
-    if (fit.pose.overlap < kPoorOverlap)
+    const std::vector<TypeFit> fits =
+        fit_types(few,
+                  options_.types.empty() ? types_to_match() : options_.types,
+                  options_.warn,
+                  options_.stop);
+    take(fits[0], scene);
+    const std::vector<video::Frame> read = frames_of_the_middle();
+    const std::vector<SunFrame> frames = sun_frames(read);
+    if (!frames.empty()) match_light(fits, frames, scene);
+    if (pose_->overlap < kPoorOverlap)
       warn(options_.warn,
            fmt::format("{}: no silhouette fits the real aircraft's well: the best, {}, overlaps it "
                        "by {:.2f}; --types names others",
                        real_.string(),
-                       fit.aircraft,
-                       fit.pose.overlap));
-    return fit.aircraft;
+                       pose_->aircraft,
+                       pose_->overlap));
+  }
+
+  void take(const TypeFit& fit, scene::Scene& scene) {
+    pose_ = Comparison::Pose{
+        fit.aircraft, fit.pose.attitude, fit.pose.overlap, fit.pose.aspect_ratio, {}};
+    scene.intruders[0].aircraft = fit.aircraft;
+    load(scene);
   }
 
   // The found attitude is as seen straight ahead; where the aircraft is placed, the line of sight
@@ -185,31 +198,54 @@ class Comparing {
     return {from, boxes_.lower_bound(from->first + kSizingFrames)};
   }
 
-  // The livery and the sun with which the aircraft is light, dark and coloured where the real one
-  // is.
-  void match_light(scene::Scene& scene) {
+  std::vector<video::Frame> frames_of_the_middle() const {
     const RealBoxes few = middle_boxes();
-    if (few.size() < 2) return;
-    const std::int64_t first = few.begin()->first;
-    video::Reader reader(real_, {.first_frame = first, .frame_count = kSizingFrames, .threads = 1});
     std::vector<video::Frame> read;
+    if (few.size() < 2) return read;
+    video::Reader reader(
+        real_, {.first_frame = few.begin()->first, .frame_count = kSizingFrames, .threads = 1});
     while (auto frame = reader.next()) read.push_back(std::move(*frame));
+    return read;
+  }
+
+  std::vector<SunFrame> sun_frames(const std::vector<video::Frame>& read) const {
     std::vector<SunFrame> frames;
+    const RealBoxes few = middle_boxes();
     for (const auto& [index, box] : few)
-      if (const auto k = static_cast<std::size_t>(index - first);
+      if (const auto k = static_cast<std::size_t>(index - few.begin()->first);
           k < read.size() && frames.size() < kSunFrames)
         frames.push_back({double(k) / rate_hz_, &read[k].picture, box});
-    if (frames.empty()) return;
-    scene::Scene painted = placed_beside(scene, few, 1);
-    for (const std::string& name : paints_of(pose_->aircraft)) {
-      painted.intruders[0].aircraft = name;
-      const auto fit = fit_sun(painted, {frames[0]}, kPaintSpacingDeg, options_.stop);
-      if (!fit || (pose_->sun && fit->difference_codes >= pose_->sun->difference_codes)) continue;
-      pose_->sun = fit;
-      pose_->aircraft = scene.intruders[0].aircraft = name;
+    return frames;
+  }
+
+  void match_light(const std::vector<TypeFit>& fits,
+                   const std::vector<SunFrame>& frames,
+                   scene::Scene& scene) {
+    const std::vector<SunFrame> one = {frames[0]};
+    const auto fit_now = [&](const std::vector<SunFrame>& in, double spacing_deg) {
+      return fit_sun(placed_beside(scene, middle_boxes(), 1), in, spacing_deg, options_.stop);
+    };
+    // A pose that overlaps less has to be the more alike.
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      take(fits[i], scene);
+      const auto sun = fit_now(one, kPoseSpacingDeg);
+      if (!sun || !(sun->difference_codes < least * fits[i].pose.overlap)) continue;
+      least = sun->difference_codes / fits[i].pose.overlap;
+      best = i;
     }
-    painted.intruders[0].aircraft = pose_->aircraft;
-    pose_->sun = fit_sun(painted, frames, kSunSpacingDeg, options_.stop);
+    take(fits[best], scene);
+    TypeFit painted = fits[best];
+    least = std::numeric_limits<double>::infinity();
+    for (const std::string& name : paints_of(fits[best].aircraft)) {
+      scene.intruders[0].aircraft = name;
+      const auto sun = fit_now(one, kPoseSpacingDeg);
+      if (sun && sun->difference_codes < least)
+        least = sun->difference_codes, painted.aircraft = name;
+    }
+    take(painted, scene);
+    pose_->sun = fit_now(frames, kSunSpacingDeg);
     if (!pose_->sun) return;
     scene.light.sun_azimuth_deg = pose_->sun->azimuth_deg;
     scene.light.sun_elevation_deg = pose_->sun->elevation_deg;

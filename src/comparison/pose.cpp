@@ -30,6 +30,9 @@ constexpr double kAzimuthStepDeg = 15;
 constexpr double kTurnStepDeg = 12;
 constexpr std::size_t kClosedIn = 4;       // best of the grid that are closed in on
 constexpr std::size_t kTypesClosedIn = 3;  // best types that are closed in on
+constexpr std::size_t kPosesOfAType = 2;   // that are handed out
+constexpr double kUnlikeDeg = 30;          // between two attitudes of one type
+constexpr double kNearBest = 0.85;         // of the best fit's score: what is handed out beside it
 
 // Where the eye is, seen from the aircraft (azimuth from its nose towards its right wing, elevation
 // above it), and how far the picture is turned about its middle, clockwise.
@@ -229,24 +232,34 @@ void close_in(const std::vector<cv::Mat>& masks,
   }
 }
 
-Candidate closed_in(const std::vector<cv::Mat>& masks,
-                    const Views& views,
-                    const std::vector<Candidate>& coarse,
-                    const std::stop_token& stop) {
-  Candidate best;
-  for (Candidate candidate : coarse) {
+// The coarse ones closed in on, best first.
+std::vector<Candidate> closed_in(const std::vector<cv::Mat>& masks,
+                                 const Views& views,
+                                 const std::vector<Candidate>& coarse,
+                                 const std::stop_token& stop) {
+  std::vector<Candidate> all = coarse;
+  for (Candidate& candidate : all) {
     candidate.score =
         score_of(masks,
                  turned(views.coverage(candidate.eye.azimuth_deg, candidate.eye.elevation_deg),
                         candidate.eye.turn_deg));
     close_in(masks, views, stop, candidate);
-    keep_better(best, candidate);
   }
-  return best;
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& x, const Candidate& y) {
+    return total_of(x) > total_of(y);
+  });
+  return all;
 }
 
 PoseFit pose_of(const Candidate& best) {
   return {attitude_of(best.eye), best.score.overlap, best.score.aspect_ratio};
+}
+
+bool is_unlike(const TypeFit& fit, const std::vector<TypeFit>& others) {
+  return std::none_of(others.begin(), others.end(), [&](const TypeFit& other) {
+    return degrees(world_from_body(fit.pose.attitude)
+                       .angularDistance(world_from_body(other.pose.attitude))) < kUnlikeDeg;
+  });
 }
 
 // A type with the best of its grid.
@@ -263,7 +276,7 @@ PoseFit fit_pose(const std::vector<cv::Mat>& masks,
                  const std::stop_token& stop) {
   check(!masks.empty(), "a pose is fitted to masks");
   const Views views(mesh);
-  return pose_of(closed_in(masks, views, coarse_fits({masks[0]}, views, stop), stop));
+  return pose_of(closed_in(masks, views, coarse_fits({masks[0]}, views, stop), stop)[0]);
 }
 
 std::vector<std::string> types_to_match() {
@@ -274,13 +287,15 @@ std::vector<std::string> types_to_match() {
           "AT7/AT7-default",
           "Citation-Bravo/Models/Bravo-ai",
           "beech-200/beech-200-vh-mwk",
+          "SF3/SFF-Airest",
+          "pa-28/pa-28-g-egll",
           "c172/ei-mcf"};
 }
 
-TypeFit fit_type(const std::vector<cv::Mat>& masks,
-                 const std::vector<std::string>& types,
-                 const Warn& warn_to,
-                 const std::stop_token& stop) {
+std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
+                               const std::vector<std::string>& types,
+                               const Warn& warn_to,
+                               const std::stop_token& stop) {
   aircraft::LoadOptions load;
   load.stop = stop;
   std::vector<Contender> contenders;
@@ -299,13 +314,22 @@ TypeFit fit_type(const std::vector<cv::Mat>& masks,
     return total_of(a.coarse[0]) > total_of(b.coarse[0]);
   });
   contenders.resize(std::min(contenders.size(), kTypesClosedIn));
-  std::optional<TypeFit> best;
-  Candidate most;
+  std::vector<std::pair<double, TypeFit>> fits;
   for (const Contender& one : contenders) {
-    const Candidate fit = closed_in(masks, Views(one.aircraft.mesh), one.coarse, stop);
-    if (!best || total_of(fit) > total_of(most)) most = fit, best = {one.name, pose_of(fit)};
+    std::vector<TypeFit> of_type;
+    for (const Candidate& fit : closed_in(masks, Views(one.aircraft.mesh), one.coarse, stop)) {
+      const TypeFit next{one.name, pose_of(fit)};
+      if (of_type.size() >= kPosesOfAType || !is_unlike(next, of_type)) continue;
+      of_type.push_back(next);
+      fits.emplace_back(total_of(fit), next);
+    }
   }
-  return *best;
+  std::stable_sort(
+      fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<TypeFit> result;
+  for (const auto& [total, fit] : fits)
+    if (total >= kNearBest * fits[0].first) result.push_back(fit);
+  return result;
 }
 
 }  // namespace airtruth::comparison

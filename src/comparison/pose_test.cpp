@@ -72,10 +72,14 @@ TEST(Pose, TheTypeIsFoundAmongOthers) {
   const cv::Mat mask = mask_in_the_sky(aircraft.mesh, {100, 20, 10}, 40);
   ASSERT_FALSE(mask.empty());
   std::string said;
-  const TypeFit fit = fit_type({mask},
-                               {"738/738-Delta", "no-such/aircraft", "c172/news"},
-                               [&](const std::string& message) { said += message; });
-  EXPECT_EQ(fit.aircraft, "c172/news");
+  const std::vector<TypeFit> fits = fit_types({mask},
+                                              {"738/738-Delta", "no-such/aircraft", "c172/news"},
+                                              [&](const std::string& message) { said += message; });
+  ASSERT_FALSE(fits.empty());
+  EXPECT_EQ(fits[0].aircraft, "c172/news");
+  for (std::size_t i = 1; i < fits.size(); ++i)
+    EXPECT_TRUE(fits[i].aircraft != fits[0].aircraft ||
+                angle_deg(fits[i].pose.attitude, fits[0].pose.attitude) >= 30);
   EXPECT_NE(said.find("no-such/aircraft"), std::string::npos);
 }
 
