@@ -33,10 +33,10 @@ struct SunFit {
 // azimuth and two thirds of that in elevation apart (from 10 degrees above the horizon on), closes
 // in on the best three by a half and a quarter of the spacing, and takes the one with the least
 // difference. A sun that brightens one side and one that brightens the whole can look alike, so
-// that the best of a wide spacing may be far from the best of all: 30 degrees serve to compare
-// liveries, 15 to find the sun. The scene's camera model counts as far as it is stated; a point
-// spread that is not is 0.8 px. Empty where the two aircraft cannot both be seen in any frame.
-// Throws Interrupted on stop.
+// that the best of a wide spacing may be far from the best of all: 40 degrees serve to compare
+// poses and liveries, 15 to find the sun. The scene's camera model counts as far as it is stated; a
+// point spread that is not is 0.8 px. Frames are drawn in draft quality. Empty where the two
+// aircraft cannot both be seen in any frame. Throws Interrupted on stop.
 std::optional<SunFit> fit_sun(const scene::Scene& scene,
                               const std::vector<SunFrame>& frames,
                               double spacing_deg,
