@@ -32,7 +32,7 @@ constexpr std::size_t kClosedIn = 4;       // best of the grid that are closed i
 constexpr std::size_t kTypesClosedIn = 3;  // best types that are closed in on
 constexpr std::size_t kPosesOfAType = 2;   // that are handed out
 constexpr double kUnlikeDeg = 30;          // between two attitudes of one type
-constexpr double kNearBest = 0.85;         // of the best fit's score: what is handed out beside it
+constexpr double kNearBest = 0.95;         // of the best fit's score: what is handed out beside it
 
 // Where the eye is, seen from the aircraft (azimuth from its nose towards its right wing, elevation
 // above it), and how far the picture is turned about its middle, clockwise.

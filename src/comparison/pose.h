@@ -46,7 +46,7 @@ struct TypeFit {
 
 // Of several types, the poses that fit nearly as well as the best does, best first: those of
 // fit_pose() for the three types whose coarse silhouettes fit best, two of each at most and 30
-// degrees or more apart, with 0.85 of the best's score or more. A silhouette alone does not say
+// degrees or more apart, with 0.95 of the best's score or more. A silhouette alone does not say
 // which of them it is. A type that is not in the catalogue is passed over with a warning. Error
 // where none is left.
 std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
