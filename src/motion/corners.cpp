@@ -17,6 +17,7 @@ constexpr int kBackLevels =
 constexpr int kWindowPx = 13;
 constexpr int kGrid = 8;          // corners are spread over kGrid x kGrid cells
 constexpr int kMaskMarginPx = 9;  // corners keep this far from the own aircraft
+constexpr int kFarInCell = 3;     // far corners in a cell, over what others have
 
 }  // namespace
 
@@ -53,7 +54,8 @@ cv::Mat allowed_area(int width, int height, const image::Mask* own_aircraft) {
 // whatever stands at the point.
 std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
-                                        const Options& options) {
+                                        const Options& options,
+                                        const std::function<bool(const cv::Point2f&)>& is_far) {
   const bool half = std::min(grey.cols, grey.rows) >= 400;
   cv::Mat image = grey;
   cv::Mat mask = allowed;
@@ -68,19 +70,28 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
   std::vector<cv::Point2f> candidates;
   cv::goodFeaturesToTrack(image, candidates, 0, 0.0005, distance / scale, mask, 5);
   const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
-  std::vector<int> taken(kGrid * kGrid, 0);
+  const auto s = static_cast<float>(scale);
   std::vector<cv::Point2f> chosen;
-  for (const cv::Point2f& c : candidates) {  // best first
-    const int column =
-        std::min(kGrid - 1, static_cast<int>(c.x * kGrid / static_cast<float>(image.cols)));
-    const int row =
-        std::min(kGrid - 1, static_cast<int>(c.y * kGrid / static_cast<float>(image.rows)));
-    int& count = taken[static_cast<std::size_t>(row * kGrid + column)];
-    if (count >= share || static_cast<int>(chosen.size()) >= options.max_corners) continue;
-    ++count;
-    const auto s = static_cast<float>(scale);
-    chosen.emplace_back((c.x + 0.5f) * s - 0.5f, (c.y + 0.5f) * s - 0.5f);
+  const auto choose = [&](const std::vector<cv::Point2f>& from, int in_cell, int most) {
+    std::vector<int> taken(kGrid * kGrid, 0);
+    for (const cv::Point2f& c : from) {  // best first
+      const int column =
+          std::min(kGrid - 1, static_cast<int>(c.x * kGrid / static_cast<float>(grey.cols)));
+      const int row =
+          std::min(kGrid - 1, static_cast<int>(c.y * kGrid / static_cast<float>(grey.rows)));
+      int& count = taken[static_cast<std::size_t>(row * kGrid + column)];
+      if (count >= in_cell || static_cast<int>(chosen.size()) >= most) continue;
+      ++count;
+      chosen.push_back(c);
+    }
+  };
+  std::vector<cv::Point2f> far, near;
+  for (const cv::Point2f& c : candidates) {
+    const cv::Point2f full((c.x + 0.5f) * s - 0.5f, (c.y + 0.5f) * s - 0.5f);
+    (is_far && is_far(full) ? far : near).push_back(full);
   }
+  choose(far, kFarInCell * share, options.max_corners / 2);
+  choose(near, share, options.max_corners);
   return chosen;
 }
 

@@ -15,7 +15,11 @@ class HorizonWatch {
   HorizonWatch(const lens::Lens& lens, const image::Mask* own_aircraft)
       : finder_(lens, own_aircraft) {}
 
-  void hold(FrameMotion& motion, const image::Picture& picture, double stray_rad) {
+  // Returns where up is then, in the reference of what was measured; empty where it is not known.
+  std::optional<Vector3> hold(FrameMotion& motion,
+                              const image::Picture& picture,
+                              double stray_rad) {
+    const Quaternion measured = *motion.rotation;
     hold_.stray(stray_rad);
     const bool known = motion.state != State::kBridged || stray_rad > 0;
     const double pause_s = hold_.uncertainty_rad() > kLostRad ? kPauseWhenLost_s : kPause_s;
@@ -29,6 +33,9 @@ class HorizonWatch {
         motion.state = State::kCut;
     }
     motion.rotation = hold_.held(*motion.rotation);
+    const auto up_in_cam = hold_.expected_up(measured);
+    if (!up_in_cam || hold_.uncertainty_rad() > kLostRad) return std::nullopt;
+    return measured.conjugate() * *up_in_cam;
   }
 
  private:
@@ -84,7 +91,8 @@ FrameMotion Estimator::next(const image::Picture& picture,
   check(picture.width == impl_->width && picture.height == impl_->height, "frames keep their size");
   FrameMotion motion = impl_->follower->next(luma_of(picture), damaged, begins_shot);
   motion.time_s = time_s;
-  if (impl_->horizon) impl_->horizon->hold(motion, picture, impl_->follower->stray_rad());
+  if (impl_->horizon)
+    impl_->follower->set_up(impl_->horizon->hold(motion, picture, impl_->follower->stray_rad()));
   return motion;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <opencv2/core.hpp>
 
@@ -47,6 +48,9 @@ class Follower {
  public:
   virtual ~Follower() = default;
   virtual FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) = 0;
+  // Where up is, as a unit vector in the reference camera; empty where no horizon is known. What
+  // lies under the horizon is near, and counts less (nearness.h). A homography does not ask.
+  virtual void set_up(const std::optional<Vector3>&) {}
   // How far the rotation may have strayed from the truth since the frame before, as a standard
   // deviation: where a key frame was tied to others, and where tracking began anew.
   virtual double stray_rad() const { return 0; }

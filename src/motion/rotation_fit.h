@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "geometry/transform.h"
+#include "motion/nearness.h"
 
 namespace airtruth::motion {
 
-// A far point seen twice, as unit vectors.
+// A point seen twice, as unit vectors.
 struct Bearings {
   Vector3 in_reference;
   Vector3 in_cam;
+  Nearness near = {};
 };
 
 struct RotationFit {
@@ -26,6 +28,10 @@ struct RotationFit {
 // McClure (1987), repeated. limit_rad: of an inlier. Empty where fewer than min_inliers agree, or
 // less than 15 % of all, or where all that agree lie about one direction (a turn about it is
 // not known).
+//
+// Where enough points are far, these alone choose the rotation that the fit starts from. How far
+// the near ones move against them is then measured, and each counts by what that leaves of it
+// (nearness.h).
 std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
                                         double limit_rad,
                                         int min_inliers,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +33,38 @@ TEST(RotationFit, HoldsBesideFortyPerCentOfOutliers) {
   EXPECT_LT(degrees(fit->cam_from_reference.angularDistance(truth)), 0.005);
   EXPECT_NEAR(fit->inliers, 180, 12);
   EXPECT_FALSE(fit_rotation({bearings.begin(), bearings.begin() + 5}, 2e-3, 12, 1));
+}
+
+// Level ground 30 m below a camera that flies half a metre ahead, and a fifth as many far points.
+std::vector<Bearings> flown_over(const Quaternion& turned, double way_m, bool is_told) {
+  Random random(8);
+  const Vector3 up(0, -1, 0);  // camera axes
+  const double height_m = 30;
+  std::vector<Bearings> bearings;
+  for (int i = 0; i < 240; ++i) {
+    const bool far = i % 6 == 0;
+    const double below = far ? random.uniform(-0.1, 0.02) : random.uniform(0.1, 0.5);
+    const Vector3 a = Vector3(random.uniform(-0.6, 0.6), below, 1).normalized();
+    Vector3 b = a;
+    if (below > 0) b -= way_m * a.y() / height_m * Vector3(0.3, 0, 1);  // range = height / sine
+    b = turned * b.normalized() + 1e-4 * Vector3(random.normal(), random.normal(), random.normal());
+    bearings.push_back({a, b.normalized(), is_told ? nearness_of(a, up, 1) : Nearness{}});
+  }
+  return bearings;
+}
+
+TEST(RotationFit, NearGroundDoesNotPullIt) {
+  const Quaternion truth = turn(1, -2, 3);
+  const auto error_mrad = [&](double way_m, bool is_told) {
+    const auto fit = fit_rotation(flown_over(truth, way_m, is_told), 2e-3, 12, 1);
+    return fit ? 1e3 * fit->cam_from_reference.angularDistance(truth) : 1e9;
+  };
+  const double pulled_mrad = error_mrad(0.25, false);
+  const double far_mrad = error_mrad(0.25, true);
+  std::printf("pulled by near ground: %.3f mrad; far alone: %.3f mrad\n", pulled_mrad, far_mrad);
+  EXPECT_GT(pulled_mrad, 2 * far_mrad);
+  EXPECT_LT(far_mrad, 0.25);             // an eighth of the limit
+  EXPECT_LT(error_mrad(0, true), 0.03);  // at rest all of it counts
 }
 
 std::vector<FrameMotion> shaken(int count) {

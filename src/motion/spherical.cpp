@@ -38,6 +38,7 @@ struct Key {
   std::size_t proven = 0;  // landmarks that were far points, when first looked for
   Quaternion cam_from_reference = Quaternion::Identity();
   int id = 0;
+  std::int64_t frame = 0;
 };
 
 // What two key frames have both seen, each in its own camera.
@@ -64,6 +65,7 @@ class Spherical : public Follower {
 
   FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override {
     Pyramid now = pyramid_of(grey);
+    ++frame_;
     if (keys_.empty()) {
       make_key(grey, now, {});
       previous_ = std::move(now);
@@ -75,34 +77,57 @@ class Spherical : public Follower {
     if (damaged) return unmeasured(State::kBridged);
     std::size_t survivors = 0;
     const std::size_t before = previous_corners_.size();
-    const auto guess = step(now, survivors);
+    std::vector<Bearings> steps;
+    const auto guess = step(now, survivors, steps);
     if (guess && is_followed(begins_shot, static_cast<int>(survivors), before)) {
       const std::vector<Sighting> sightings = find_landmarks(now, *guess);
-      const auto fit =
-          fit_rotation(bearings_of(sightings), limit_rad_, options_.min_inliers, options_.seed);
+      std::vector<Bearings> all = bearings_of(sightings);
+      all.insert(all.end(), steps.begin(), steps.end());
+      auto fit = fit_rotation(all, limit_rad_, options_.min_inliers, options_.seed);
+      if (fit) fit = of_first(*fit, all, sightings.size());
       if (fit) return measured(grey, std::move(now), sightings, *fit);
     }
     return lost(grey, std::move(now), before, survivors, begins_shot);
   }
 
   double stray_rad() const override { return stray_rad_; }
+  void set_up(const std::optional<Vector3>& in_reference) override {
+    up_in_reference_ = in_reference;
+  }
 
  private:
   std::optional<Vector3> bearing(const cv::Point2f& p) const {
     return lens_.ray_from_pixel({p.x + 0.5, p.y + 0.5});
   }
 
+  // Empty where no horizon is known.
+  std::function<bool(const cv::Point2f&)> far_corners() const {
+    if (!up_in_reference_) return {};
+    return
+        [this, up = Vector3(now_from_reference_ * *up_in_reference_)](const cv::Point2f& corner) {
+          const auto ray = bearing(corner);
+          return ray && nearness_of(*ray, up, 1).is_far;
+        };
+  }
+
+  Bearings bearings(const Vector3& in_reference, const Vector3& in_cam, std::int64_t frames) const {
+    if (!up_in_reference_) return {in_reference, in_cam};
+    return {in_reference, in_cam, nearness_of(in_reference, *up_in_reference_, frames)};
+  }
+
   // From the frame before: how far did the camera turn, roughly?
-  std::optional<Quaternion> step(const Pyramid& now, std::size_t& survivors) const {
+  std::optional<Quaternion> step(const Pyramid& now,
+                                 std::size_t& survivors,
+                                 std::vector<Bearings>& pairs) const {
     std::vector<cv::Point2f> moved;
     const auto good = follow(previous_, now, allowed_, previous_corners_, moved, false, options_);
-    std::vector<Bearings> pairs;
     for (std::size_t i = 0; i < good.size(); ++i) {
       if (!good[i]) continue;
       ++survivors;
       const auto before = bearing(previous_corners_[i]);
       const auto after = bearing(moved[i]);
-      if (before && after) pairs.push_back({now_from_reference_.conjugate() * *before, *after});
+      if (before && after)
+        pairs.push_back(bearings(now_from_reference_.conjugate() * *before, *after, 1));
     }
     const auto fit =
         fit_rotation(pairs, kStepLimit * limit_rad_, options_.min_inliers, options_.seed);
@@ -142,12 +167,31 @@ class Spherical : public Follower {
     return sightings;
   }
 
+  // The fit with its inliers among the first `count` alone.
+  std::optional<RotationFit> of_first(RotationFit fit,
+                                      const std::vector<Bearings>& all,
+                                      std::size_t count) const {
+    fit.is_inlier.resize(count);
+    fit.inliers = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!fit.is_inlier[i]) continue;
+      ++fit.inliers;
+      squares += (all[i].in_cam - fit.cam_from_reference * all[i].in_reference).squaredNorm();
+    }
+    if (fit.inliers < options_.min_inliers) return std::nullopt;
+    fit.rms_rad = std::sqrt(squares / fit.inliers);
+    return fit;
+  }
+
   std::vector<Bearings> bearings_of(const std::vector<Sighting>& sightings) const {
     std::vector<Bearings> result;
     for (const Sighting& s : sightings) {
       const Key& key = keys_[s.key];
       result.push_back(
-          {key.cam_from_reference.conjugate() * key.landmarks[s.landmark].in_key_cam, s.in_cam});
+          bearings(key.cam_from_reference.conjugate() * key.landmarks[s.landmark].in_key_cam,
+                   s.in_cam,
+                   frame_ - key.frame));
     }
     return result;
   }
@@ -213,7 +257,8 @@ class Spherical : public Follower {
     key.pyramid = now;
     key.cam_from_reference = now_from_reference_;
     key.id = next_id_++;
-    for (const cv::Point2f& corner : spread_corners(grey, allowed_, options_))
+    key.frame = frame_;
+    for (const cv::Point2f& corner : spread_corners(grey, allowed_, options_, far_corners()))
       if (const auto ray = bearing(corner)) key.landmarks.push_back({corner, *ray, 0});
     previous_corners_.clear();
     const std::size_t stride = std::max<std::size_t>(1, key.landmarks.size() / kStepCorners);
@@ -241,11 +286,13 @@ class Spherical : public Follower {
         for (const Link& link : links_) {
           if (link.from != keys_[k].id && link.to != keys_[k].id) continue;
           const bool is_later = link.to == keys_[k].id;
-          const Quaternion reference_from_other =
-              find(is_later ? link.from : link.to)->cam_from_reference.conjugate();
+          const Key& other = *find(is_later ? link.from : link.to);
+          const Quaternion reference_from_other = other.cam_from_reference.conjugate();
+          const std::int64_t frames = std::abs(keys_[k].frame - other.frame);
           for (const Bearings& b : link.seen)
-            all.push_back(is_later ? Bearings{reference_from_other * b.in_reference, b.in_cam}
-                                   : Bearings{reference_from_other * b.in_cam, b.in_reference});
+            all.push_back(is_later
+                              ? bearings(reference_from_other * b.in_reference, b.in_cam, frames)
+                              : bearings(reference_from_other * b.in_cam, b.in_reference, frames));
         }
         if (static_cast<int>(all.size()) < options_.min_inliers) continue;
         const auto fit = fit_rotation(all, limit_rad_, options_.min_inliers, options_.seed);
@@ -292,6 +339,8 @@ class Spherical : public Follower {
   Quaternion now_from_reference_ = Quaternion::Identity();
   int bridged_in_row_ = 0;
   double stray_rad_ = 0;
+  std::int64_t frame_ = 0;
+  std::optional<Vector3> up_in_reference_;
 };
 
 }  // namespace
