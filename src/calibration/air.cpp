@@ -75,6 +75,11 @@ AirMeter::Air AirMeter::air(const std::stop_token& stop) const {
     air.extinction_per_km = fading->extinction_per_km;
     air.airlight = airlight_of(sky, fading->horizon_rad);
   }
+  if (air.airlight && !air.extinction_per_km) {
+    const double height_m = ground_.altitude_m.value_or(kAssumedHeightM);
+    air.visibility_km = visibility_by_horizon_km(
+        ground_patches(views_, lens_, own_aircraft_, height_m, tone_), sky, height_m);
+  }
   return air;
 }
 

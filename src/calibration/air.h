@@ -33,12 +33,18 @@ class AirMeter {
   // outlive the meter.
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
+  // Higher than nearly all that is filmed from the air: from lower down the same look of a horizon
+  // comes of thicker air, so that this errs to clear air.
+  static constexpr double kAssumedHeightM = 1000;
   struct Air {
     std::optional<ColourEstimate> airlight;  // at the horizon: of sky, or of what hazes the ground
     // Per km: from ground that is seen again from nearer (same_ground.h), else from how the darkest
     // ground fades (extinction.h). Empty without an altitude, or where it does not show.
     std::optional<ColourEstimate> extinction_per_km;
     std::string why, why_no_extinction;  // of what is empty
+    // Where there is no extinction but a horizon: the visibility that its look supports, km
+    // (extinction.h). Without an altitude the camera is taken to fly kAssumedHeightM high.
+    std::optional<double> visibility_km;
   };
   Air air(const std::stop_token& stop = {}) const;
   // The sun's azimuth and elevation, degrees: the direction about which the clear sky (its darkest

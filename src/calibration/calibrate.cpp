@@ -282,12 +282,29 @@ class Session {
     }
     // Nothing unmeasured is applied as if it were known: air that may be clear is drawn clear. The
     // error is that of a visibility of 50 km, beyond which the international visibility code calls
-    // it exceptionally clear (Koschmieder's 3.912 over it).
-    constexpr double kRangeKm = 50;
-    const Estimate clear{0, 3.912 / kRangeKm};
+    // it exceptionally clear (Koschmieder's 3.912 over it). A horizon that looks hazy makes a
+    // prior.
+    constexpr double kKoschmieder = 3.912, kClearKm = 50;
+    if (air.visibility_km && *air.visibility_km < kClearKm) {
+      const double per_km = kKoschmieder / *air.visibility_km;
+      const Estimate hazy{per_km, per_km};
+      put("air.extinction_per_km", {hazy, hazy, hazy});
+      result_.notes["air.extinction_per_km"] = fmt::format(
+          "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
+          "less{}: {}",
+          *air.visibility_km,
+          options_.altitude_m && options_.lens
+              ? ""
+              : fmt::format(" from {} m above the ground", AirMeter::kAssumedHeightM),
+          air.why_no_extinction);
+      return;
+    }
+    const Estimate clear{0, kKoschmieder / kClearKm};
     put("air.extinction_per_km", {clear, clear, clear});
     result_.notes["air.extinction_per_km"] =
-        "not measured, and drawn as clear air: " + air.why_no_extinction;
+        fmt::format("not measured, and drawn as clear air{}: {}",
+                    air.visibility_km ? ", as the horizon looks" : "",
+                    air.why_no_extinction);
   }
 
   void take_sun(const AirMeter& air, bool level_known) {

@@ -271,4 +271,36 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
   return result;
 }
 
+std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& ground,
+                                               const SkyCurves& sky,
+                                               double altitude_m) {
+  constexpr double kFarDeg = 5, kNearDeg = 10;
+  constexpr double kLeastContrast = 0.02;  // linear light, of near ground to the sky
+  constexpr double kClearerShare = 0.25;   // of the values, below the one that is taken
+  constexpr std::size_t kGreen = 1;
+  constexpr double kSeen = 3.912;  // -ln of the 2 % of contrast at which Koschmieder has sight end
+  const std::vector<Cell> cells = cells_of(ground);
+  std::vector<double> near;
+  for (const Cell& cell : cells)
+    if (cell.depression_rad > radians(kNearDeg)) near.push_back(cell.dark[kGreen]);
+  if (near.empty()) return std::nullopt;
+  const double dark = median(std::move(near));
+  std::vector<float> per_km;
+  for (const Cell& cell : cells) {
+    const auto& curve = sky[static_cast<std::size_t>(cell.sector)];
+    if (!curve || cell.depression_rad > radians(kFarDeg)) continue;
+    const double contrast = curve->at(kGreen, 0) - dark;
+    if (contrast < kLeastContrast) continue;
+    const double share =
+        std::clamp((curve->at(kGreen, 0) - cell.dark[kGreen]) / contrast, 1e-3, 1.0);
+    const double range_km = 1e-3 * altitude_m / std::sin(cell.depression_rad);
+    per_km.push_back(static_cast<float>(-std::log(share) / range_km));
+  }
+  if (per_km.size() < 3) return std::nullopt;
+  const double visibility_km = kSeen / std::max(quantile(per_km, kClearerShare), 1e-6);
+  for (const double class_km : kVisibilityClassesKm)
+    if (visibility_km <= class_km) return class_km;
+  return kVisibilityClassesKm.back();
+}
+
 }  // namespace airtruth::calibration

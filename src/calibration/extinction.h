@@ -62,4 +62,18 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
                                        double altitude_m,
                                        std::string& why);
 
+// A weak prior for where that is not to be had: the least visibility that the horizon's look
+// supports, km. The darkest ground within 5 degrees of the horizon keeps a share
+// t = (A - L) / (A - D) of the contrast that the darkest ground from near (D, below 10 degrees) has
+// to the sky at the horizon (A), over r = altitude / sin(depression): at most -ln(t) / r of
+// extinction. A dark line at the horizon means clear air. Three quarters of the sectors' and
+// depressions' values are above the one that is taken, and the visibility is rounded up to the
+// bounds of the international visibility code (haze ends at 4 km, light haze at 10, clear air at
+// 20, very clear air at 50; McCartney 1976, Optics of the Atmosphere, table 1.2): in doubt the
+// clearer. Empty where too little ground or sky is seen.
+inline constexpr std::array<double, 4> kVisibilityClassesKm{4, 10, 20, 50};
+std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& ground,
+                                               const SkyCurves& sky,
+                                               double altitude_m);
+
 }  // namespace airtruth::calibration
