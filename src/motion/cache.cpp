@@ -12,7 +12,7 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kEstimatorVersion = 7;  // raise it whenever the estimator's numbers change
+constexpr int kEstimatorVersion = 8;  // raise it whenever the estimator's numbers change
 
 }  // namespace
 
