@@ -68,6 +68,7 @@ struct JudgeArguments {
   std::string figure;
   std::string json;
   std::uint64_t seed = 1;
+  int chance_draws = 0;
   bool overwrite = false;
 };
 
@@ -76,7 +77,8 @@ void judge(const JudgeArguments& arguments, Context& context) {
   check_output_file(arguments.json, arguments.overwrite);
   const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
                                                    arguments.comparisons.end());
-  const comparison::Verdict verdict = comparison::judge(folders, arguments.seed);
+  const comparison::Verdict verdict =
+      comparison::judge(folders, arguments.seed, arguments.chance_draws, context.stop);
   if (!arguments.figure.empty()) comparison::write_figure(folders, arguments.figure);
   if (!arguments.json.empty()) write_file(arguments.json, comparison::json_of(verdict));
   context.console().result(comparison::text_of(verdict));
@@ -145,6 +147,12 @@ void add_judge(CLI::App& app, Context& context) {
       "--figure", arguments->figure, "Picture of the pairs of all comparisons (.png, .jpg)");
   command->add_option("--json", arguments->json, "The tables as JSON");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
+  command
+      ->add_option("--by-chance",
+                   arguments->chance_draws,
+                   "Say what area chance gives where the inserted aircraft have nothing in common: "
+                   "so many draws of which aircraft of a clip is called real")
+      ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->seed, "Of the interval's resampling")
       ->capture_default_str();
   command->callback([arguments, &context] { judge(*arguments, context); });

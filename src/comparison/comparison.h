@@ -110,10 +110,24 @@ struct Verdict {
     double within = 0.5;  // folded
   };
   std::vector<Clip> clips;
+  // What `across` is where no difference is common to the clips: each clip keeps its own, but which
+  // of its two aircraft is called real is drawn for each clip. Clips that differ, whatever in, give
+  // folded areas far above 0.5, since a judge finds the side of a clip that happens to look like
+  // the others. A judge that finds the inserted aircraft finds more than that.
+  struct ByChance {
+    int draws = 0;
+    double mean = 0, least = 0, most = 0;
+    int as_high = 0;  // draws that reach the area found
+  };
+  std::optional<ByChance> by_chance;
   std::vector<std::pair<std::string, double>> telling;  // features, by how much each alone tells
   std::vector<Gap> gaps;
 };
-Verdict judge(const std::vector<fs::path>& comparisons, std::uint64_t seed);
+// `chance_draws`: of by_chance, each as long as `across` takes; 0: none.
+Verdict judge(const std::vector<fs::path>& comparisons,
+              std::uint64_t seed,
+              int chance_draws = 0,
+              const std::stop_token& stop = {});
 
 // The verdict as Markdown tables and as JSON.
 std::string text_of(const Verdict& verdict);

@@ -113,6 +113,28 @@ TEST_F(Judge, WhatIsAlikeIsNotToldApart) {
   EXPECT_DOUBLE_EQ(verdict.gaps[0].difference.value, 0);
 }
 
+// Clips whose two aircraft differ, but not all the same way round, are told apart by chance as
+// well.
+TEST_F(Judge, ChanceGivesHighAreasWhereClipsDifferInWhateverWay) {
+  std::vector<fs::path> alike, either, common;
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    alike.push_back(clip(fmt::format("alike{}", name), 0, measure(1, 1)));
+    either.push_back(clip(fmt::format("either{}", name), *name % 2 == 0 ? 6 : -6, measure(1, 1)));
+    common.push_back(clip(fmt::format("common{}", name), 6, measure(1, 1)));
+  }
+  constexpr int kDraws = 6;
+  const auto of_alike = judge(alike, 1, kDraws).by_chance;
+  ASSERT_TRUE(of_alike);
+  EXPECT_LT(of_alike->mean, 0.6);
+  const Verdict of_either = judge(either, 1, kDraws), of_common = judge(common, 1, kDraws);
+  EXPECT_GT(of_either.by_chance->mean, 0.7);
+  EXPECT_GT(of_either.by_chance->as_high, 0);
+  EXPECT_LT(of_common.by_chance->mean, of_common.across.value);
+  EXPECT_LE(of_common.by_chance->as_high, 2);  // all six one way round: 2 draws of 64
+  EXPECT_FALSE(judge(alike, 1).by_chance);
+  EXPECT_THAT(text_of(of_common), testing::HasSubstr("drawn for each clip"));
+}
+
 TEST_F(Judge, RefusesWhatIsNoComparison) {
   const fs::path a = clip("a", 1, measure(1, 1)), b = clip("b", 1, measure(1, 1));
   EXPECT_THROW(judge({a, b}, 1), Error);

@@ -11,6 +11,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/seed.h"
 #include "comparison/areas.h"
 #include "comparison/comparison.h"
 #include "comparison/figure.h"
@@ -143,13 +144,57 @@ std::vector<Gap> gaps_of(const std::vector<fs::path>& comparisons, std::uint64_t
   return gaps;
 }
 
+// Of each clip, by a judge that is trained on the others.
+std::vector<double> areas_across(const std::vector<Patches>& clips, const std::stop_token& stop) {
+  std::vector<double> areas;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    std::vector<Patches> others = clips;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    areas.push_back(area_of_judge(others, clips[i]));
+  }
+  return areas;
+}
+
+double mean_folded(const std::vector<double>& areas) {
+  double sum = 0;
+  for (const double area : areas) sum += folded(area);
+  return sum / double(areas.size());
+}
+
+// A permutation test over clips (Fisher 1935): under the hypothesis that nothing is common to the
+// inserted aircraft, calling the two of a clip by each other's names changes nothing.
+Verdict::ByChance by_chance(const std::vector<Patches>& clips,
+                            double found,
+                            int draws,
+                            std::uint64_t seed,
+                            const std::stop_token& stop) {
+  Verdict::ByChance chance{draws, 0, 1, 0, 0};
+  for (int draw = 0; draw < draws; ++draw) {
+    Random random = Seed(seed).stream("judge by chance", static_cast<std::uint64_t>(draw));
+    std::vector<Patches> drawn = clips;
+    for (Patches& clip : drawn)
+      if (random.uniform() < 0.5)
+        for (int& real : clip.real) real = 1 - real;
+    const double area = mean_folded(areas_across(drawn, stop));
+    chance.mean += area / draws;
+    chance.least = std::min(chance.least, area);
+    chance.most = std::max(chance.most, area);
+    chance.as_high += area >= found ? 1 : 0;
+  }
+  return chance;
+}
+
 nlohmann::ordered_json json_of_interval(const Interval& interval) {
   return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
 }  // namespace
 
-Verdict judge(const std::vector<fs::path>& comparisons, std::uint64_t seed) {
+Verdict judge(const std::vector<fs::path>& comparisons,
+              std::uint64_t seed,
+              int chance_draws,
+              const std::stop_token& stop) {
   if (comparisons.size() < 3)
     throw Error(
         "a judge is trained on other clips than it is asked about; expected three or more "
@@ -161,17 +206,17 @@ Verdict judge(const std::vector<fs::path>& comparisons, std::uint64_t seed) {
       throw Error("has patches of another kind than the first comparison", {folder.string()});
   }
   Verdict verdict;
+  const std::vector<double> areas = areas_across(clips, stop);
   std::vector<double> across, within;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    std::vector<Patches> others = clips;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const double area = area_of_judge(others, clips[i]);
-    across.push_back(folded(area));
+    across.push_back(folded(areas[i]));
     within.push_back(area_within(clips[i], kFolds));
-    verdict.clips.push_back({clips[i].name, clips[i].real.size() / 2, area, within.back()});
+    verdict.clips.push_back({clips[i].name, clips[i].real.size() / 2, areas[i], within.back()});
   }
   verdict.across = mean_over_clips(across, seed);
   verdict.within = mean_over_clips(within, seed);
+  if (chance_draws > 0)
+    verdict.by_chance = by_chance(clips, verdict.across.value, chance_draws, seed, stop);
   verdict.telling = telling_of(clips);
   verdict.gaps = gaps_of(comparisons, seed);
   return verdict;
@@ -188,6 +233,16 @@ std::string text_of(const Verdict& v) {
       v.clips.size(),
       interval(v.across),
       interval(v.within));
+  if (v.by_chance)
+    text += fmt::format(
+        "With the names of the two aircraft drawn for each clip, the mean trained on the other "
+        "clips "
+        "is {:.3f} ({:.3f} to {:.3f}; {} draws, {} as high as the one found).\n\n",
+        v.by_chance->mean,
+        v.by_chance->least,
+        v.by_chance->most,
+        v.by_chance->draws,
+        v.by_chance->as_high);
   text +=
       "| clip | pairs | from other clips, not folded | within, folded |\n|---|---:|---:|---:|\n";
   for (const Verdict::Clip& clip : v.clips)
@@ -217,6 +272,12 @@ std::string json_of(const Verdict& v) {
   nlohmann::ordered_json json;
   json["across"] = json_of_interval(v.across);
   json["within"] = json_of_interval(v.within);
+  if (v.by_chance)
+    json["by_chance"] = {{"draws", v.by_chance->draws},
+                         {"mean", v.by_chance->mean},
+                         {"least", v.by_chance->least},
+                         {"most", v.by_chance->most},
+                         {"as_high", v.by_chance->as_high}};
   for (const Verdict::Clip& clip : v.clips)
     json["clips"].push_back({{"name", clip.name},
                              {"pairs", clip.pairs},
