@@ -33,6 +33,7 @@ STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ a
 # The clips from the ground are of one camera (data/camera-profiles): what one of them cannot tell, as a clip of sky alone
 # cannot tell its sharpness, the camera's profile does. The onboard clips show enough edges of their own.
 GROUND_PROFILE = "ground-zoom"
+CHANCE_DRAWS = 10  # of which aircraft of a clip is called real: what `judge --by-chance` says
 NOISE = ("noise_gain", "noise_floor", "noise_correlation_px")
 
 
@@ -142,11 +143,14 @@ def shown(interval):
 
 
 def print_tables(verdicts):
-    print("| stage | clips | folded area, from other clips (95 % over clips) | within clips | what alone tells most |")
-    print("|---|---:|---|---|---|")
+    print("| stage | clips | folded area, from other clips (95 % over clips) | by chance (range of draws) | within clips | "
+          "what alone tells most |")
+    print("|---|---:|---|---|---|---|")
     for stage, verdict in verdicts:
         telling = ", ".join(f"{one['name']} {one['area']:.2f}" for one in verdict["telling"][:3])
-        print(f"| {stage} | {len(verdict['clips'])} | {shown(verdict['across'])} | {shown(verdict['within'])} | {telling} |")
+        chance = verdict["by_chance"]
+        print(f"| {stage} | {len(verdict['clips'])} | {shown(verdict['across'])} | {chance['mean']:.3f} ({chance['least']:.3f} to "
+              f"{chance['most']:.3f}) | {shown(verdict['within'])} | {telling} |")
     stages = " | ".join(stage for stage, _ in verdicts)
     for key, words in (("across", "from other clips, not folded"), ("within", "within, folded")):
         print(f"\n| clip, {words} | {stages} |\n|---|" + "---:|" * len(verdicts))
@@ -190,7 +194,7 @@ def main():
         made = [compare(arguments, shared, clip, number, stage, parts) for clip in clips]
         base = os.path.join(arguments.out, f"{number}")
         text = run([arguments.program, "judge", *[folder for folder in made if folder], "--figure", base + ".png", "--json",
-                    base + ".json", "--overwrite"])
+                    base + ".json", "--by-chance", str(CHANCE_DRAWS), "--overwrite"])
         with open(base + ".md", "w") as file:
             file.write(f"{stage}\n\n{text}")
         with open(base + ".json") as file:
