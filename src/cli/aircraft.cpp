@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/pattern.h"
 #include "cli/commands.h"
+#include "report/tiles.h"
 #include "sequence/portrait.h"
 #include "video/still.h"
 
@@ -25,10 +26,29 @@ std::string published_words(const std::string& name) {
       "{}: span {:.2f} m, length {:.2f} m", size->type, size->span_m, size->length_m);
 }
 
+std::string nothing_like(const std::string& filter) {
+  return fmt::format(
+      "no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft list` shows all",
+      aircraft::list_aircraft().size(),
+      is_pattern(filter) ? "fits" : "contains",
+      filter,
+      fmt::join(aircraft::nearest_aircraft(filter, 3), ", "));
+}
+
 void list_left_out(const std::string& filter, Context& context) {
-  for (const auto& [name, reason] : aircraft::left_out())
-    if (is_named_like(name, filter))
-      context.console().print(fmt::format("{:<40} {}\n", name, reason));
+  int count = 0;
+  for (const auto& [name, reason] : aircraft::left_out()) {
+    if (!is_named_like(name, filter)) continue;
+    context.console().print(fmt::format("{:<40} {}\n", name, reason));
+    ++count;
+  }
+  if (count == 0)
+    throw Error(
+        fmt::format("no name that is left out {} '{}'; `airtruth aircraft list --left-out` "
+                    "shows all {}",
+                    is_pattern(filter) ? "fits" : "contains",
+                    filter,
+                    aircraft::left_out().size()));
 }
 
 void list(const std::string& filter, bool sizes, Context& context) {
@@ -38,14 +58,41 @@ void list(const std::string& filter, bool sizes, Context& context) {
       context.console().print(fmt::format("{:<40} {}\n", name, published_words(name)));
     else
       context.console().print(name + "\n");
-  if (names.empty())
-    throw Error(
-        fmt::format("no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft "
-                    "list` shows all",
-                    aircraft::list_aircraft().size(),
-                    is_pattern(filter) ? "fits" : "contains",
-                    filter,
-                    fmt::join(aircraft::nearest_aircraft(filter, 3), ", ")));
+  if (names.empty()) throw Error(nothing_like(filter));
+}
+
+// The first name of each type's folder.
+std::vector<std::string> one_of_each_type(const std::vector<std::string>& names) {
+  std::vector<std::string> types;
+  std::string last;
+  for (const std::string& name : names) {
+    const std::string folder = name.substr(0, name.find('/'));
+    if (folder != last) types.push_back(name);
+    last = folder;
+  }
+  return types;
+}
+
+void draw_sheet(const std::string& filter,
+                const std::string& out,
+                bool overwrite,
+                Context& context) {
+  video::check_still_output(out, overwrite);
+  constexpr int kColumns = 10;
+  Console& console = context.console();
+  aircraft::LoadOptions load;
+  load.stop = context.stop;
+  std::vector<report::NamedPicture> tiles;
+  const std::vector<std::string> names = one_of_each_type(aircraft::aircraft_named_like(filter));
+  if (names.empty()) throw Error(nothing_like(filter));
+  for (const std::string& name : names) {
+    if (context.stop.stop_requested()) throw Interrupted();
+    tiles.push_back({name.substr(0, name.find('/')),
+                     sequence::small_portrait(aircraft::load_aircraft(name, load, {}))});
+  }
+  video::write_still(
+      out, report::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
+  console.result(fmt::format("{}: one aircraft of each of {} types", out, names.size()));
 }
 
 struct ShowArguments {
@@ -114,8 +161,15 @@ void add_aircraft(CLI::App& app, Context& context) {
   list_command->add_flag("--left-out",
                          *is_left_out,
                          "In their place: the names of the package that are not offered, and why");
-  list_command->callback([filter, sizes, is_left_out, &context] {
-    if (*is_left_out)
+  auto sheet = std::make_shared<std::string>();
+  list_command->add_option(
+      "--sheet", *sheet, "In their place: draw one aircraft of each type here (.png or .jpg)");
+  auto overwrite = std::make_shared<bool>(false);
+  list_command->add_flag("--overwrite", *overwrite, "Replace the picture if it exists");
+  list_command->callback([filter, sizes, is_left_out, sheet, overwrite, &context] {
+    if (!sheet->empty())
+      draw_sheet(*filter, *sheet, *overwrite, context);
+    else if (*is_left_out)
       list_left_out(*filter, context);
     else
       list(*filter, *sizes, context);

@@ -23,11 +23,11 @@ struct Pose {
   int length_px;
 };
 
-image::Picture sky_tile() {
-  image::Rgb8 rgb = image::make_rgb8(kTilePx, kTilePx);
-  for (int y = 0; y < kTilePx; ++y) {
-    const double t = static_cast<double>(y) / kTilePx;
-    for (int x = 0; x < kTilePx; ++x) {
+image::Picture sky_tile(int tile_px) {
+  image::Rgb8 rgb = image::make_rgb8(tile_px, tile_px);
+  for (int y = 0; y < tile_px; ++y) {
+    const double t = static_cast<double>(y) / tile_px;
+    for (int x = 0; x < tile_px; ++x) {
       rgb.at(x, y)[0] = static_cast<std::uint8_t>(92 + 70 * t);
       rgb.at(x, y)[1] = static_cast<std::uint8_t>(130 + 55 * t);
       rgb.at(x, y)[2] = static_cast<std::uint8_t>(178 + 30 * t);
@@ -37,13 +37,16 @@ image::Picture sky_tile() {
                                   {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
 }
 
-image::Rgb8 tile(const aircraft::Aircraft& aircraft, const render::Model& model, const Pose& pose) {
+image::Rgb8 tile(const aircraft::Aircraft& aircraft,
+                 const render::Model& model,
+                 const Pose& pose,
+                 int tile_px = kTilePx) {
   const aircraft::Extents size = aircraft::extents(aircraft.mesh);
   const double largest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double range_m = 12 * largest_m;
   const double focal_px = pose.length_px * range_m / largest_m;
-  const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {kTilePx / 2.0, kTilePx / 2.0}},
-                        {kTilePx, kTilePx});
+  const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {tile_px / 2.0, tile_px / 2.0}},
+                        {tile_px, tile_px});
   const Vector3 centre = 0.5 * (size.low_in_body + size.high_in_body);
   const double azimuth = radians(pose.azimuth_deg);
   const double elevation = radians(pose.elevation_deg);
@@ -63,9 +66,9 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft, const render::Model& model,
   light.sun = {0.62f, 0.6f, 0.56f};
   light.sky = {0.28f, 0.34f, 0.42f};
   light.ground = {0.14f, 0.13f, 0.11f};
-  const render::View view{&lens, world_from_cam, Homography::Identity(), kTilePx, kTilePx};
+  const render::View view{&lens, world_from_cam, Homography::Identity(), tile_px, tile_px};
   const image::Layer layer = render::render(view, light, {{&model, {}, 0}}, {box}, {.quality = 3});
-  image::Picture picture = sky_tile();
+  image::Picture picture = sky_tile(tile_px);
   if (!layer.empty()) composite::composite_matte(picture, layer, {});
   return image::rgb8_from_picture(picture);
 }
@@ -86,6 +89,11 @@ image::Rgb8 portrait(const aircraft::Aircraft& aircraft) {
   std::vector<report::NamedPicture> tiles;
   for (const Pose& pose : poses) tiles.push_back({pose.name, tile(aircraft, model, pose)});
   return report::tiled(aircraft.name, std::move(tiles), 3);
+}
+
+image::Rgb8 small_portrait(const aircraft::Aircraft& aircraft) {
+  constexpr int kSmallTilePx = 150;
+  return tile(aircraft, render::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
 }
 
 }  // namespace airtruth::sequence

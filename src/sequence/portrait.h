@@ -10,4 +10,7 @@ namespace airtruth::sequence {
 // two oblique views and how it looks at 40 and 10 pixels, each with its name.
 image::Rgb8 portrait(const aircraft::Aircraft& aircraft);
 
+// One view, from the front left and above, 150 px square: a tile of a sheet of many aircraft.
+image::Rgb8 small_portrait(const aircraft::Aircraft& aircraft);
+
 }  // namespace airtruth::sequence
