@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "base/median.h"
 #include "comparison/segment.h"
-#include "image/cuts.h"
 #include "video/reader.h"
 
 namespace airtruth::comparison {
@@ -78,13 +77,11 @@ RealAircraft find_real(const fs::path& video,
                        std::int64_t most_frames,
                        const Warn& warn_to,
                        const std::stop_token& stop) {
-  video::Reader reader(video);
-  image::Differences differences;
-  std::vector<double> by_frame;
+  video::Reader reader(video, {.with_cuts = true});
   RealAircraft found;
   while (const auto frame = reader.next()) {
     if (stop.stop_requested()) throw Interrupted();
-    if (const auto d = differences.add(frame->picture)) by_frame.push_back(*d);
+    if (frame->begins_shot) found.cuts.push_back(frame->index);
     const auto box = loose.find(frame->index);
     if (box == loose.end()) continue;
     if (const auto seen = seen_in(frame->picture, box->second)) {
@@ -92,7 +89,6 @@ RealAircraft find_real(const fs::path& video,
       found.masks.emplace(frame->index, small_mask(seen->mask));
     }
   }
-  found.cuts = image::cuts_of(by_frame);
   const auto [first, end] = best_shot(found.boxes, found.cuts);
   if (!found.cuts.empty())
     warn(warn_to,

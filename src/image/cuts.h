@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,8 +29,5 @@ inline constexpr int kCutNeighbours = 2;
 // code values or more, and more than three times what any of its neighbours (up to kCutNeighbours
 // before it and after it) differs by: a pan or a change of exposure takes several frames.
 bool is_cut(std::span<const double> before, double here, std::span<const double> after);
-
-// The frames that begin a shot, from 1 on. differences[k]: of frame k to frame k + 1.
-std::vector<std::int64_t> cuts_of(const std::vector<double>& differences);
 
 }  // namespace airtruth::image

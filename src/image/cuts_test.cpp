@@ -9,6 +9,20 @@
 namespace airtruth::image {
 namespace {
 
+// The frames that begin a shot, from 1 on. differences[k]: of frame k to frame k + 1.
+std::vector<std::int64_t> cuts_of(const std::vector<double>& differences) {
+  const std::span<const double> all(differences);
+  constexpr auto kReach = static_cast<std::size_t>(kCutNeighbours);
+  std::vector<std::int64_t> cuts;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t first = i - std::min(i, kReach);
+    const std::size_t after = std::min(kReach, all.size() - i - 1);
+    if (is_cut(all.subspan(first, i - first), all[i], all.subspan(i + 1, after)))
+      cuts.push_back(static_cast<std::int64_t>(i) + 1);
+  }
+  return cuts;
+}
+
 TEST(Cuts, OneFrameThatDiffersIsACutAndAPanIsNone) {
   EXPECT_EQ(cuts_of({0.1, 0.2, 40, 0.1, 0.2}), std::vector<std::int64_t>{3});
   EXPECT_TRUE(cuts_of({0.1, 8, 9, 8, 0.2}).empty());      // a fast pan
