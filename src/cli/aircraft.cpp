@@ -61,16 +61,15 @@ void list(const std::string& filter, bool sizes, Context& context) {
   if (names.empty()) throw Error(nothing_like(filter));
 }
 
+// The folder of a name: its type.
+std::string type_of(const std::string& name) { return name.substr(0, name.find('/')); }
+
 // The first name of each type's folder.
 std::vector<std::string> one_of_each_type(const std::vector<std::string>& names) {
-  std::vector<std::string> types;
-  std::string last;
-  for (const std::string& name : names) {
-    const std::string folder = name.substr(0, name.find('/'));
-    if (folder != last) types.push_back(name);
-    last = folder;
-  }
-  return types;
+  std::vector<std::string> first;
+  for (const std::string& name : names)
+    if (first.empty() || type_of(name) != type_of(first.back())) first.push_back(name);
+  return first;
 }
 
 void draw_sheet(const std::string& filter,
@@ -87,8 +86,8 @@ void draw_sheet(const std::string& filter,
   if (names.empty()) throw Error(nothing_like(filter));
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
-    tiles.push_back({name.substr(0, name.find('/')),
-                     sequence::small_portrait(aircraft::load_aircraft(name, load, {}))});
+    tiles.push_back(
+        {type_of(name), sequence::small_portrait(aircraft::load_aircraft(name, load, {}))});
   }
   video::write_still(
       out, report::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));

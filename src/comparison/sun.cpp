@@ -119,27 +119,45 @@ class Lit {
   Lit(const scene::Scene& scene, const std::vector<SunFrame>& frames, const std::stop_token& stop)
       : scene_(scene),
         world_(sequence::load_world(
-            scene, {frames[0].picture->width, frames[0].picture->height}, {}, stop)) {}
+            scene, {frames[0].picture->width, frames[0].picture->height}, {}, stop)) {
+    for (const SunFrame& frame : frames) {
+      View view{frame.picture,
+                sequence::moment_at(world_, 0, frame.time_s, {}),
+                contrast_in(*frame.picture, frame.real, {})};
+      if (view.moment.boxes[0].box && !view.real.empty()) views_.push_back(std::move(view));
+    }
+  }
 
-  void add(const SunFrame& frame, const Sun& sun, Agreement& agreement) {
+  Agreement under(const Sun& sun, const std::stop_token& stop) {
     scene_.light.sun_azimuth_deg = sun.azimuth_deg;
     scene_.light.sun_elevation_deg = sun.elevation_deg;
-    const sequence::Moment moment = sequence::moment_at(world_, 0, frame.time_s, {});
-    if (!moment.boxes[0].box) return;
-    sequence::AmbientEstimator light(scene_.light, sequence::tone_of(scene_.camera_model), nullptr);
-    image::Picture painted = frame.picture->clone();
-    sequence::make_painter(scene_, world_, nullptr, {})
-        ->paint(painted, moment, light.next(painted, moment.sight, {}));
-    const cv::Mat real = contrast_in(*frame.picture, frame.real, {});
-    const auto made = seen_in(painted, *moment.boxes[0].box);
-    if (real.empty() || !made) return;
-    const cv::Mat contrast = contrast_in(painted, made->box, real.size());
-    if (!contrast.empty()) agreement.add(real, contrast);
+    Agreement agreement;
+    for (const View& view : views_) {
+      if (stop.stop_requested()) throw Interrupted();
+      sequence::AmbientEstimator light(
+          scene_.light, sequence::tone_of(scene_.camera_model), nullptr);
+      image::Picture painted = view.picture->clone();
+      sequence::make_painter(scene_, world_, nullptr, {})
+          ->paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
+      const auto made = seen_in(painted, *view.moment.boxes[0].box);
+      if (!made) continue;
+      const cv::Mat contrast = contrast_in(painted, made->box, view.real.size());
+      if (!contrast.empty()) agreement.add(view.real, contrast);
+    }
+    return agreement;
   }
 
  private:
+  // What is the same under every sun.
+  struct View {
+    const image::Picture* picture = nullptr;
+    sequence::Moment moment;
+    cv::Mat real;  // what the real aircraft adds to its surroundings
+  };
+
   scene::Scene scene_;
   sequence::World world_;
+  std::vector<View> views_;
 };
 
 scene::Scene prepared(scene::Scene scene) {
@@ -159,11 +177,7 @@ std::optional<SunFit> fit_sun(const scene::Scene& scene,
   check(!frames.empty(), "a sun is fitted to frames");
   Lit lit(prepared(scene), frames, stop);
   const auto fit_of = [&](const Sun& sun) -> std::optional<SunFit> {
-    Agreement agreement;
-    for (const SunFrame& frame : frames) {
-      if (stop.stop_requested()) throw Interrupted();
-      lit.add(frame, sun, agreement);
-    }
+    const Agreement agreement = lit.under(sun, stop);
     if (!(agreement.samples > 0)) return std::nullopt;
     return SunFit{
         sun.azimuth_deg, sun.elevation_deg, agreement.difference(), agreement.correlation()};
