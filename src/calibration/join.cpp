@@ -63,23 +63,25 @@ void fill_errors(std::vector<Estimate>& all) {
     if (!(e.sigma > 0)) e.sigma = usual;
 }
 
-// What one clip says.
-struct Told {
+// What one clip measures.
+struct ClipValue {
   Estimate value;
   std::string clip;
 };
 
-std::string words_of(const Told& told) {
-  return fmt::format("{:.3g} +- {:.2g} ({})", told.value.value, told.value.sigma, told.clip);
+std::string words_of(const ClipValue& of) {
+  return fmt::format("{:.3g} +- {:.2g} ({})", of.value.value, of.value.sigma, of.clip);
 }
 
 // Names the clips that lie farthest to either side of `middle`, by their errors.
-std::string contradiction(const std::vector<Told>& all, double middle) {
-  const auto off = [&](const Told& told) {
-    return told.value.sigma > 0 ? (told.value.value - middle) / told.value.sigma : 0;
+std::string contradiction(const std::vector<ClipValue>& all, double middle) {
+  const auto off = [&](const ClipValue& of) {
+    return of.value.sigma > 0 ? (of.value.value - middle) / of.value.sigma : 0;
   };
-  const auto [least, most] = std::minmax_element(
-      all.begin(), all.end(), [&](const Told& a, const Told& b) { return off(a) < off(b); });
+  const auto [least, most] =
+      std::minmax_element(all.begin(), all.end(), [&](const ClipValue& a, const ClipValue& b) {
+        return off(a) < off(b);
+      });
   return fmt::format(
       "{} clips contradict one another by more than their errors, {} and {} most; the error covers "
       "what they differ by",
@@ -88,9 +90,10 @@ std::string contradiction(const std::vector<Told>& all, double middle) {
       words_of(*most));
 }
 
-// Of the clips that tell the key; a readout upwards is negative.
-std::vector<Told> told(const std::vector<Calibration>& clips, const std::string& key) {
-  std::vector<Told> all;
+// Of the clips that have the key; a readout upwards is negative.
+std::vector<ClipValue> values_by_clip(const std::vector<Calibration>& clips,
+                                      const std::string& key) {
+  std::vector<ClipValue> all;
   for (const Calibration& clip : clips) {
     const auto found = clip.values.find(key);
     if (found == clip.values.end()) continue;
@@ -110,7 +113,7 @@ void put_joined(Calibration& result, const std::string& key, Estimate value) {
 }
 
 void join_key(Calibration& result, const std::vector<Calibration>& clips, const std::string& key) {
-  const std::vector<Told> all = told(clips, key);
+  const std::vector<ClipValue> all = values_by_clip(clips, key);
   if (all.empty()) {
     const auto why = clips[0].missing.find(key);
     result.missing[key] = fmt::format(
@@ -118,7 +121,7 @@ void join_key(Calibration& result, const std::vector<Calibration>& clips, const 
     return;
   }
   std::vector<Estimate> values;
-  for (const Told& one : all) values.push_back(one.value);
+  for (const ClipValue& one : all) values.push_back(one.value);
   const Pooled together = pooled(values);
   put_joined(result, key, together.value);
   result.notes[key] = fmt::format("by {} of {} clips", all.size(), clips.size());
