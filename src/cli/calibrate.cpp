@@ -161,10 +161,10 @@ void add_calibrate(CLI::App& app, Context& context) {
                    arguments->gamma,
                    "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
       ->check(CLI::Range(1.2, 3.0));
-  command->add_option(
-      "--profile",
-      arguments->profile,
-      "Known camera, for what the clip cannot tell; none: nobody's word [the median over all]");
+  command->add_option("--profile",
+                      arguments->profile,
+                      "Known camera, for what the clip cannot tell; none: the clip's values alone "
+                      "[the median over all]");
   command->add_flag_callback(
       "--list-profiles",
       [] { throw CLI::CallForVersion(profile_lines(), 0); },
