@@ -162,6 +162,7 @@ class Lit {
 
 scene::Scene prepared(scene::Scene scene) {
   scene.camera_model.automatic.clear();
+  scene.camera_model.codec_step.reset();
   scene.realism = {};
   scene.render.quality = 1;
   if (!scene.camera_model.point_spread_px) scene.camera_model.point_spread_px = kUnstatedSpreadPx;

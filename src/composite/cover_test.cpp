@@ -136,11 +136,24 @@ TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
   EXPECT_EQ(covered_box(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (PixelBox{10, 10, 1, 1}));
 }
 
+// A codec that leaves ripple in every sample that it is given.
+class Rippling : public PatchCoder {
+ public:
+  Coded code(const PixelBox&,
+             const image::Picture& with_layer,
+             const image::Picture& background) override {
+    image::Picture coded = with_layer.clone();
+    for (int y = 0; y < coded.height; ++y)
+      for (int x = 0; x < coded.width; ++x) coded.planes[0].row(y)[x] += (x + y) % 2 == 0 ? 2 : 1;
+    return {std::move(coded), background.clone()};
+  }
+};
+
 // A codec's ripple moves samples all around and no box of what is covered.
-TEST(Cover, TheCodecsStepMovesTheVisibleBoxAlone) {
+TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
   const image::Layer layer =
       spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kCoverWidth, kCoverHeight);
-  const auto composed = [&](double codec_step) {
+  const auto composed = [&](PatchCoder* coder) {
     image::Picture picture =
         image::make_picture(kCoverWidth,
                             kCoverHeight,
@@ -148,11 +161,12 @@ TEST(Cover, TheCodecsStepMovesTheVisibleBoxAlone) {
     for (int y = 0; y < kCoverHeight; ++y)
       for (int x = 0; x < kCoverWidth; ++x) picture.planes[0].row(y)[x] = 180;
     MatteOptions options;
-    options.sensor.codec_step = codec_step;
+    options.coder = coder;
     return composite_matte(picture, layer, options).at(0);
   };
-  const Visible plain = composed(0);
-  const Visible coded = composed(12);
+  Rippling codec;
+  const Visible plain = composed(nullptr);
+  const Visible coded = composed(&codec);
   EXPECT_EQ(plain.covered, coded.covered);
   EXPECT_EQ(plain.covered, covered_box(layer, 0, nullptr));
   EXPECT_NE(plain.box, coded.box);

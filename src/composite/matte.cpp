@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "composite/codec_blocks.h"
 #include "composite/cover.h"
 #include "composite/transfer_curve.h"
 #include "image/colour.h"
@@ -62,6 +63,10 @@ class Matte {
   void pass_sensor();
   void write_luma();
   void blend_chroma();
+  void pass_codec(const std::vector<CodedWindow>& windows);
+  void take_coded_luma(const CodedWindow& window, const Coded& coded);
+  void take_coded_chroma(const CodedWindow& window, const Coded& coded);
+  float chroma_alpha(int cx, int cy) const;
   image::Ycc chroma_change(int cx, int cy) const;
   bool move_chroma(int cx, int cy, const image::Ycc& change);
   void mark_block(int cx, int cy);
@@ -144,10 +149,10 @@ void Matte::find_luma_changes() {
     }
 }
 
-// Sharpening reaches beyond the layer; quantiser and noise stay where something is drawn.
+// Sharpening reaches beyond the layer; noise stays where something is drawn.
 void Matte::pass_sensor() {
   const Sensor& sensor = options_.sensor;
-  if (!(sensor.sharpening > 0) && !(sensor.codec_step > 0) && !sensor.has_noise()) return;
+  if (!(sensor.sharpening > 0) && !sensor.has_noise()) return;
   const PixelBox& patch = layer_.patch;
   std::vector<float> luma(change_.size());
   for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = change_[i].y;
@@ -155,7 +160,6 @@ void Matte::pass_sensor() {
   constexpr float kHalo = 0.5F;  // less does not move a sample
   for (std::size_t i = 0; i < luma.size(); ++i)
     drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kHalo);
-  quantise(luma, patch, sensor);
   if (sensor.has_noise()) {
     const std::vector<float> field =
         noise_field(patch, options_.seed, options_.frame, sensor.noise_correlation_px);
@@ -245,15 +249,76 @@ void Matte::blend_chroma() {
   }
 }
 
+// The sum of what the codec makes of the layer and of what is left of the background's grain.
+void Matte::take_coded_luma(const CodedWindow& window, const Coded& coded) {
+  const PixelBox& box = window.box;
+  for (int y = box.y; y < box.bottom(); ++y) {
+    std::uint8_t* row = picture_.planes[0].row(y);
+    const std::uint8_t* with_layer = coded.with_layer.planes[0].row(y - box.y);
+    const std::uint8_t* without = coded.background.planes[0].row(y - box.y);
+    for (int x = box.x; x < box.right(); ++x) {
+      if (!drawn(x, y)) continue;
+      const std::size_t i = layer_.index(x, y);
+      const auto lost = static_cast<float>(int{luma_[i]} - int{without[x - box.x]});
+      row[x] = code(static_cast<float>(with_layer[x - box.x]) +
+                    (1 - std::min(1.0F, layer_.pixels[i].alpha)) * lost);
+      changed_[i] = row[x] != luma_[i];
+    }
+  }
+}
+
+// Mean coverage of the pixels of a chroma sample's block.
+float Matte::chroma_alpha(int cx, int cy) const {
+  float sum = 0;
+  for (int y = cy << log2_height_; y < (cy + 1) << log2_height_; ++y)
+    for (int x = cx << log2_width_; x < (cx + 1) << log2_width_; ++x)
+      if (layer_.patch.contains(x, y)) sum += layer_.pixels[layer_.index(x, y)].alpha;
+  return std::min(1.0F, sum / static_cast<float>(1 << (log2_width_ + log2_height_)));
+}
+
+void Matte::take_coded_chroma(const CodedWindow& window, const Coded& coded) {
+  const int left = window.box.x >> log2_width_, top = window.box.y >> log2_height_;
+  const image::Plane& size = coded.background.planes[1];
+  for (int v = 0; v < size.height; ++v)
+    for (int u = 0; u < size.width; ++u) {
+      if (!block_is_drawn(left + u, top + v)) continue;
+      const float shows = 1 - chroma_alpha(left + u, top + v);
+      bool moved = false;
+      for (const std::size_t p : {1u, 2u}) {
+        const std::uint8_t before = window.background.planes[p].row(v)[u];
+        const auto lost = static_cast<float>(int{before} - int{coded.background.planes[p].row(v)[u]});
+        std::uint8_t& sample = picture_.planes[p].row(top + v)[left + u];
+        sample = code(static_cast<float>(coded.with_layer.planes[p].row(v)[u]) + shows * lost);
+        moved = moved || sample != before;
+      }
+      if (moved) mark_block(left + u, top + v);
+    }
+}
+
+void Matte::pass_codec(const std::vector<CodedWindow>& windows) {
+  drawn_ = in_marked_blocks(layer_.patch, drawn_);
+  for (std::size_t i = 0; i < drawn_.size(); ++i) drawn_[i] = drawn_[i] && free_[i];
+  for (const CodedWindow& window : windows) {
+    const Coded coded = options_.coder->code(
+        window.box, image::crop(picture_, window.box), window.background);
+    take_coded_luma(window, coded);
+    if (picture_.plane_count == 3) take_coded_chroma(window, coded);
+  }
+}
+
 void Matte::blend() {
+  std::vector<CodedWindow> windows;
+  if (options_.coder != nullptr)
+    windows = coded_windows(picture_, layer_, options_.sensor.halo_px());
   find_luma_changes();
   pass_sensor();
   write_luma();
   if (picture_.plane_count == 3) blend_chroma();
+  if (options_.coder != nullptr) pass_codec(windows);
 }
 
-// Where the intruder and its halo can be: pixels that it covers, and those that sharpening reaches
-// from there.
+// Where the intruder can have changed samples: the pixels that it covers, those that sharpening
+// reaches from there, and all others of a codec's blocks.
 std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) const {
   const int halo = options_.sensor.halo_px();
   std::vector<std::uint8_t> reached(coverage.size(), 0);
@@ -266,7 +331,7 @@ std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) c
       for (int v = std::max(y - halo, patch.y); v <= std::min(y + halo, patch.bottom() - 1); ++v)
         std::fill_n(&reached[layer_.index(left, v)], right - left + 1, std::uint8_t{1});
     }
-  return reached;
+  return options_.coder == nullptr ? reached : in_marked_blocks(patch, reached);
 }
 
 void Matte::add_coverage(std::size_t intruder, Visible& visible) const {

@@ -17,7 +17,8 @@
 // the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
 // nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
 // the sample sits, and only where one of the pixels of its own block is under the layer. Every
-// other sample keeps its bits. A sensor's sharpening, noise and quantiser change those changes.
+// other sample keeps its bits. A sensor's sharpening and noise change those changes; a codec changes the
+// samples that come of it (codec_blocks.h).
 namespace airtruth::composite {
 
 // What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
@@ -32,14 +33,32 @@ struct Visible {
   std::optional<Pixel> centroid;    // of the coverage that is seen; empty: none is
 };
 
+// What a codec makes of a part of the frame, `box`: of the picture with the layer in it, and of the
+// background alone. Coding both tells what the codec loses of the intruder from what it loses of the
+// background a second time.
+struct Coded {
+  image::Picture with_layer;
+  image::Picture background;
+};
+class PatchCoder {
+ public:
+  virtual ~PatchCoder() = default;
+  virtual Coded code(const PixelBox& box,
+                     const image::Picture& with_layer,
+                     const image::Picture& background) = 0;
+};
+
 struct MatteOptions {
   const image::Mask* own_aircraft = nullptr;  // where not free, nothing is drawn
   // What the camera does to the samples. Sharpening puts a halo around the layer, inside its patch:
   // spread() makes room. Each pixel's own noise makes way for as much as the light that is there
-  // now would have; the codec keeps what it would keep.
+  // now would have.
   Sensor sensor;
   std::uint64_t seed = 1;  // of the noise ...
   std::int64_t frame = 0;  // ... which is another in each frame
+  // Where one is given, the samples of the blocks of 8 x 8 pixels that the layer reaches become what
+  // it makes of them.
+  PatchCoder* coder = nullptr;
 };
 
 // One entry per intruder of the layer.

@@ -2,65 +2,13 @@
 #include "composite/sensor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "composite/spread.h"
-#include "geometry/transform.h"
 #include "image/colour.h"
 
 namespace airtruth::composite {
 namespace {
-
-constexpr int kBlock = 8;
-using Block = std::array<std::array<float, kBlock>, kBlock>;
-
-// Orthonormal DCT-II (Ahmed, Natarajan and Rao 1974).
-const Block& cosines() {
-  static const Block table = [] {
-    Block t;
-    for (std::size_t k = 0; k < kBlock; ++k)
-      for (std::size_t n = 0; n < kBlock; ++n) {
-        const double scale = k == 0 ? std::sqrt(1.0 / kBlock) : std::sqrt(2.0 / kBlock);
-        t[k][n] = static_cast<float>(scale * std::cos(kPi * (static_cast<double>(n) + 0.5) *
-                                                      static_cast<double>(k) / kBlock));
-      }
-    return t;
-  }();
-  return table;
-}
-
-// rows of a times columns of b; `turned`: of a's transpose.
-Block product(const Block& a, bool turned, const Block& b) {
-  Block result{};
-  for (std::size_t i = 0; i < kBlock; ++i)
-    for (std::size_t k = 0; k < kBlock; ++k) {
-      const float weight = turned ? a[k][i] : a[i][k];
-      for (std::size_t j = 0; j < kBlock; ++j) result[i][j] += weight * b[k][j];
-    }
-  return result;
-}
-
-Block transposed(const Block& a) {
-  Block result;
-  for (std::size_t i = 0; i < kBlock; ++i)
-    for (std::size_t j = 0; j < kBlock; ++j) result[i][j] = a[j][i];
-  return result;
-}
-
-float rounded(float value, float step) {
-  constexpr float kDeadZone = 1.0F / 3;
-  const float levels = std::floor(std::abs(value) / step + kDeadZone);
-  return std::copysign(levels * step, value);
-}
-
-void quantise_block(Block& block, float step) {
-  const Block& c = cosines();
-  Block coefficients = product(c, false, transposed(product(c, false, transposed(block))));
-  for (auto& row : coefficients)
-    for (float& value : row) value = rounded(value, step);
-  block = product(c, true, transposed(product(c, true, transposed(coefficients))));
-}
 
 std::uint64_t mixed(std::uint64_t x) {
   x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ULL;
@@ -95,32 +43,6 @@ void sharpen(std::vector<float>& change, int width, int height, const Sensor& se
   blur(soft, width, height, gaussian(sensor.sharpening_px));
   const auto amount = static_cast<float>(sensor.sharpening);
   for (std::size_t i = 0; i < change.size(); ++i) change[i] += amount * (change[i] - soft[i]);
-}
-
-void quantise(std::vector<float>& change, const PixelBox& patch, const Sensor& sensor) {
-  if (!(sensor.codec_step > 0)) return;
-  const auto step = static_cast<float>(sensor.codec_step);
-  const auto first = [](int v) { return v / kBlock * kBlock; };
-  for (int by = first(patch.y); by < patch.bottom(); by += kBlock)
-    for (int bx = first(patch.x); bx < patch.right(); bx += kBlock) {
-      Block block{};
-      bool any = false;
-      const auto each = [&](const auto& visit) {
-        for (int j = std::max(0, patch.y - by); j < std::min(kBlock, patch.bottom() - by); ++j)
-          for (int i = std::max(0, patch.x - bx); i < std::min(kBlock, patch.right() - bx); ++i)
-            visit(block[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)],
-                  change[static_cast<std::size_t>(by + j - patch.y) *
-                             static_cast<std::size_t>(patch.width) +
-                         static_cast<std::size_t>(bx + i - patch.x)]);
-      };
-      each([&](float& in_block, const float& value) {
-        in_block = value;
-        any = any || value != 0;
-      });
-      if (!any) continue;
-      quantise_block(block, step);
-      each([](const float& in_block, float& value) { value = in_block; });
-    }
 }
 
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {

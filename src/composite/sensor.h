@@ -7,8 +7,8 @@
 #include "geometry/box.h"
 #include "image/tone_curve.h"
 
-// What a camera does to its samples after the light has come: sharpening, noise, the codec's
-// quantiser. All on luma, in code values, on a patch of the frame.
+// What a camera does to its samples after the light has come: sharpening and noise. All on luma, in
+// code values, on a patch of the frame.
 namespace airtruth::composite {
 
 struct Sensor {
@@ -22,8 +22,6 @@ struct Sensor {
   double noise_floor = 0;
   double noise_correlation_px = 0;
   image::ToneCurve tone;
-  // Step of the quantiser of the codec's transform, in luma code values; 0: none.
-  double codec_step = 0;
 
   bool has_noise() const { return noise_gain > 0 || noise_floor > 0; }
   int halo_px() const;  // how far sharpening reaches
@@ -32,11 +30,6 @@ struct Sensor {
 // change + sharpening (change - G change). Sharpening is linear, and the background has been
 // sharpened already: what is put over it changes by this.
 void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor);
-
-// Through the 8 x 8 cosine transform of the blocks that the frame has (from its corner), each
-// coefficient rounded to a multiple of the step, with the dead zone of a video encoder (a third of
-// a step rounds to 0 up to two thirds): what an encoder keeps of what has changed.
-void quantise(std::vector<float>& change, const PixelBox& patch, const Sensor& sensor);
 
 // Standard deviation of luma in code values at a luma of 0..1 (coded).
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor);

@@ -87,18 +87,6 @@ TEST(Sharpen, LeavesEvenChangesAloneAndOvershootsAtSteps) {
   EXPECT_LT(change[20 * 40 + 19], -5);
 }
 
-TEST(Quantise, GivesBackWhatIsOnItsStepsAndDropsWhatIsBelow) {
-  Sensor sensor;
-  sensor.codec_step = 16;
-  std::vector<float> flat(64, 12.0F);  // its only coefficient: 96 = 6 steps
-  quantise(flat, {8, 16, 8, 8}, sensor);
-  for (const float v : flat) EXPECT_NEAR(v, 12, 1e-3);
-  std::vector<float> faint(64, 0.0F);
-  faint[27] = 6;  // no coefficient reaches two thirds of a step
-  quantise(faint, {8, 16, 8, 8}, sensor);
-  for (const float v : faint) EXPECT_NEAR(v, 0, 1e-4);
-}
-
 TEST(Noise, HasItsCurveItsCorrelationAndAnotherFaceEachFrame) {
   const PixelBox patch{3, 5, 300, 300};
   for (const double correlation_px : {0.0, 0.6}) {
@@ -136,7 +124,6 @@ TEST(Matte, WithASensorTouchesNothingBeyondItsReach) {
   MatteOptions options;
   options.sensor.sharpening = 1;
   options.sensor.noise_gain = 1e-3;
-  options.sensor.codec_step = 10;
   const auto visible = composite_matte(picture, layer, options);
   ASSERT_TRUE(visible[0].box);
   for (int y = 0; y < 60; ++y)

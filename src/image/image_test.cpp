@@ -102,5 +102,46 @@ TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
   for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
 }
 
+Picture with_numbered_samples(int width, int height, Chroma chroma) {
+  Picture picture = make_picture(width, height, {chroma});
+  int next = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
+    for (int y = 0; y < picture.planes[i].height; ++y)
+      for (int x = 0; x < picture.planes[i].width; ++x)
+        picture.planes[i].row(y)[x] = static_cast<std::uint8_t>(7 * next++ % 251);
+  return picture;
+}
+
+TEST(Crop, TakesEverySampleOfTheBoxAndPasteBringsItBack) {
+  for (const Chroma chroma : {Chroma::kNone, Chroma::k420, Chroma::k422, Chroma::k440, Chroma::k444}) {
+    const Picture whole = with_numbered_samples(37, 29, chroma);
+    const PixelBox box{12, 8, 25, 21};  // reaches the odd-sized picture's far corner
+    const Picture part = crop(whole, box);
+    for (int y = 0; y < box.height; ++y)
+      for (int x = 0; x < box.width; ++x)
+        ASSERT_EQ(part.luma().row(y)[x], whole.luma().row(box.y + y)[box.x + x]);
+    if (whole.plane_count == 3) {
+      const int cx = 12 >> log2_chroma_width(chroma), cy = 8 >> log2_chroma_height(chroma);
+      EXPECT_EQ(part.planes[2].row(3)[2], whole.planes[2].row(cy + 3)[cx + 2]);
+    }
+    Picture other = make_picture(37, 29, {chroma});
+    for (const PixelBox& tile : {PixelBox{0, 0, 12, 29}, PixelBox{12, 0, 25, 8}, box})
+      paste(other, crop(whole, tile), tile.x, tile.y);
+    EXPECT_TRUE(identical(other, whole));
+  }
+}
+
+TEST(Paste, LeavesOutWhatLiesBeyondThePicture) {
+  const Picture part = with_numbered_samples(8, 8, Chroma::k420);
+  Picture picture = with_numbered_samples(16, 16, Chroma::k420);
+  const Picture before = picture.clone();
+  paste(picture, part, 20, -8);
+  EXPECT_TRUE(identical(picture, before));
+  paste(picture, part, -4, 12);
+  EXPECT_EQ(picture.luma().row(13)[3], part.luma().row(1)[7]);
+  EXPECT_EQ(picture.planes[1].row(7)[1], part.planes[1].row(1)[3]);
+  EXPECT_EQ(picture.luma().row(13)[4], before.luma().row(13)[4]);
+}
+
 }  // namespace
 }  // namespace airtruth::image

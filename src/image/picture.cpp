@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/picture.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"
@@ -52,6 +53,54 @@ Picture Picture::clone() const {
           copy.planes[i].row(y), planes[i].row(y), static_cast<std::size_t>(planes[i].width));
   }
   return copy;
+}
+
+namespace {
+
+// How many halvings lie between the luma plane and plane i.
+int log2_width(const Picture& picture, std::size_t i) {
+  return i > 0 ? log2_chroma_width(picture.colour.chroma) : 0;
+}
+int log2_height(const Picture& picture, std::size_t i) {
+  return i > 0 ? log2_chroma_height(picture.colour.chroma) : 0;
+}
+
+}  // namespace
+
+Picture crop(const Picture& picture, const PixelBox& box) {
+  check(box.x >= 0 && box.y >= 0 && box.right() <= picture.width && box.bottom() <= picture.height,
+        "a crop lies inside its picture");
+  check(box.x % (1 << log2_width(picture, 1)) == 0 && box.y % (1 << log2_height(picture, 1)) == 0,
+        "a crop begins on a chroma sample");
+  Picture part = make_picture(box.width, box.height, picture.colour);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.plane_count); ++i) {
+    Plane& to = part.planes[i];
+    const int x = box.x >> log2_width(picture, i);
+    const int y = box.y >> log2_height(picture, i);
+    for (int row = 0; row < to.height; ++row)
+      std::memcpy(
+          to.row(row), picture.planes[i].row(y + row) + x, static_cast<std::size_t>(to.width));
+  }
+  return part;
+}
+
+void paste(Picture& picture, const Picture& part, int x, int y) {
+  check(picture.colour == part.colour, "what is pasted has the picture's colour");
+  check(x % (1 << log2_width(picture, 1)) == 0 && y % (1 << log2_height(picture, 1)) == 0,
+        "what is pasted begins on a chroma sample");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.plane_count); ++i) {
+    const Plane& from = part.planes[i];
+    Plane& to = picture.planes[i];
+    const int left = x >> log2_width(picture, i);
+    const int top = y >> log2_height(picture, i);
+    const int first = std::max(0, left);
+    const int last = std::min(to.width, left + from.width);
+    if (last <= first) continue;
+    for (int row = std::max(0, top); row < std::min(to.height, top + from.height); ++row)
+      std::memcpy(to.row(row) + first,
+                  from.row(row - top) + (first - left),
+                  static_cast<std::size_t>(last - first));
+  }
 }
 
 bool identical(const Picture& a, const Picture& b) {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "geometry/box.h"
+
 namespace airtruth::image {
 
 // How a picture's samples stand for colour. All 8-bit.
@@ -61,6 +63,12 @@ int log2_chroma_width(Chroma chroma);
 int log2_chroma_height(Chroma chroma);
 
 Picture make_picture(int width, int height, const Colour& colour);
+
+// The part of a picture within `box`, which lies inside it and begins on even numbers where chroma is halved.
+Picture crop(const Picture& picture, const PixelBox& box);
+// Writes `part` over `picture`, its corner at (x, y), which are even where chroma is halved; what
+// lies outside the picture is left out. Both have one colour.
+void paste(Picture& picture, const Picture& part, int x, int y);
 
 // Every sample equal (padding between rows does not count) and same size and colour.
 bool identical(const Picture& a, const Picture& b);

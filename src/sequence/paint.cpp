@@ -6,8 +6,10 @@
 #include "backdrop/backdrop.h"
 #include "base/error.h"
 #include "composite/chroma_key.h"
+#include "composite/codec_blocks.h"
 #include "composite/cover.h"
 #include "composite/spread.h"
+#include "sequence/frame_coder.h"
 #include "sequence/stopwatch.h"
 #include "video/still.h"
 
@@ -21,9 +23,15 @@ composite::Sensor sensor_of(const scene::CameraModel& model) {
   sensor.noise_gain = model.noise_gain.value_or(0);
   sensor.noise_floor = model.noise_floor.value_or(0);
   sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
-  sensor.codec_step = model.codec_step.value_or(0);
   sensor.tone = tone_of(model);
   return sensor;
+}
+
+bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_or(0) > 0; }
+
+// How far beyond the light that reaches it the layer's samples change.
+int margin_px(const scene::CameraModel& model) {
+  return sensor_of(model).halo_px() + (has_codec(model) ? composite::kCodecBlockPx - 1 : 0);
 }
 
 // Air and lens, after the light has left the intruder.
@@ -40,7 +48,7 @@ image::Layer through_air_and_lens(image::Layer layer,
   }
   return composite::spread(layer,
                            model.point_spread_px.value_or(0),
-                           sensor_of(model).halo_px(),
+                           margin_px(model),
                            size.width,
                            size.height);
 }
@@ -51,29 +59,29 @@ class Matte : public Painter {
         const World& world,
         const image::Mask* mask,
         std::stop_token stop)
-      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
+      : Painter(scene, world, mask, std::move(stop)) {}
 
-  Painted paint(image::Picture& picture,
-                const Moment& moment,
-                const Ambient& ambient) const override {
-    Painted painted;
-    const Stopwatch rendering;
-    painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
-    painted.render_s = rendering.seconds();
-    if (painted.layer.empty()) return painted;
-    composite::MatteOptions options{.own_aircraft = mask_};
-    options.sensor = sensor_of(scene_.camera_model);
-    options.seed = scene_.seed;
-    options.frame = moment.frame;
-    painted.visible = composite::composite_matte(picture, painted.layer, options);
-    return painted;
+  bool is_in_order() const override { return has_codec(scene_.camera_model); }
+
+  void compose(image::Picture& picture,
+               const Moment& moment,
+               const Ambient&,
+               Painted& painted) override {
+    if (has_codec(scene_.camera_model) && !coder_)
+      coder_.emplace(*scene_.camera_model.codec_step);
+    if (!painted.layer.empty()) {
+      composite::MatteOptions options{.own_aircraft = mask_};
+      options.sensor = sensor_of(scene_.camera_model);
+      options.seed = scene_.seed;
+      options.frame = moment.frame;
+      options.coder = coder_ ? &*coder_ : nullptr;
+      painted.visible = composite::composite_matte(picture, painted.layer, options);
+    }
+    if (coder_) coder_->finish_frame(picture);
   }
 
  private:
-  const scene::Scene& scene_;
-  const World& world_;
-  const image::Mask* mask_;
-  std::stop_token stop_;
+  std::optional<FrameCoder> coder_;
 };
 
 class ChromaKey : public Painter {
@@ -82,7 +90,7 @@ class ChromaKey : public Painter {
             const World& world,
             const image::Mask* mask,
             const Options& options)
-      : scene_(scene), world_(world), mask_(mask), stop_(options.stop) {
+      : Painter(scene, world, mask, options.stop) {
     check_method(scene, world.lens);
     backdrop::Options gl;
     gl.gpu = options.gpu;
@@ -91,13 +99,10 @@ class ChromaKey : public Painter {
     backdrop_ = std::make_unique<backdrop::Backdrop>(size.width, size.height, gl);
   }
 
-  Painted paint(image::Picture& picture,
-                const Moment& moment,
-                const Ambient& ambient) const override {
-    Painted painted;
-    const Stopwatch rendering;
-    painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
-    painted.render_s = rendering.seconds();
+  void compose(image::Picture& picture,
+               const Moment& moment,
+               const Ambient& ambient,
+               Painted& painted) override {
     const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
     std::vector<backdrop::Instance> instances;
     for (std::size_t i = 0; i < world_.actors.size(); ++i) {
@@ -105,7 +110,7 @@ class ChromaKey : public Painter {
       instances.push_back(
           {&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
     }
-    if (instances.empty()) return painted;
+    if (instances.empty()) return;
     const backdrop::Light light{
         render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
         ambient.sun,
@@ -120,7 +125,6 @@ class ChromaKey : public Painter {
     composite::composite_chroma_key(
         picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
     painted.visible = changed(before, picture, painted.layer, moment);
-    return painted;
   }
 
  private:
@@ -130,10 +134,6 @@ class ChromaKey : public Painter {
                                           const image::Layer& layer,
                                           const Moment& moment) const;
 
-  const scene::Scene& scene_;
-  const World& world_;
-  const image::Mask* mask_;
-  std::stop_token stop_;
   std::unique_ptr<backdrop::Backdrop> backdrop_;
 };
 
@@ -184,6 +184,20 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
 
 }  // namespace
 
+Painted Painter::draw(const Moment& moment, const Ambient& ambient) const {
+  Painted painted;
+  const Stopwatch rendering;
+  painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
+  painted.render_s = rendering.seconds();
+  return painted;
+}
+
+Painted Painter::paint(image::Picture& picture, const Moment& moment, const Ambient& ambient) {
+  Painted painted = draw(moment, ambient);
+  compose(picture, moment, ambient, painted);
+  return painted;
+}
+
 image::Layer render_layer(const scene::Scene& scene,
                           const World& world,
                           const Moment& moment,
@@ -226,6 +240,13 @@ void check_method(const scene::Scene& scene, const lens::Lens& lens) {
                             "alone; the lens is ") +
                     lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
                 scene.lens.where);
+}
+
+void check_codec(const scene::Scene& scene, const image::Colour& colour) {
+  if (has_codec(scene.camera_model) && !video::PatchCodec::can_code(colour))
+    throw Error("has 4:4:0 samples, which H.264 has no layout for; expected a clip in 4:2:0, 4:2:2 or 4:4:4, or "
+                "a scene without sensor.codec_step",
+                {scene.background.video.string()});
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "composite/matte.h"
@@ -24,10 +26,31 @@ struct Painted {
 class Painter {
  public:
   virtual ~Painter() = default;
-  // matte: any thread, any order. chroma-key: one thread.
-  virtual Painted paint(image::Picture& picture,
-                        const Moment& moment,
-                        const Ambient& ambient) const = 0;
+  // The layer of a moment. matte: any thread, any order. chroma-key: one thread.
+  Painted draw(const Moment& moment, const Ambient& ambient) const;
+  // Puts what was drawn into the picture, and adds what it did there to `painted`.
+  virtual void compose(image::Picture& picture,
+                       const Moment& moment,
+                       const Ambient& ambient,
+                       Painted& painted) = 0;
+  // True where a frame's picture depends on the one before it (a codec's mark): compose() then takes
+  // every frame, in order, one at a time. Known once the scene's values are.
+  virtual bool is_in_order() const { return false; }
+
+  // Both, for a picture by itself.
+  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient);
+
+ protected:
+  Painter(const scene::Scene& scene,
+          const World& world,
+          const image::Mask* mask,
+          std::stop_token stop)
+      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
+
+  const scene::Scene& scene_;
+  const World& world_;
+  const image::Mask* mask_;
+  std::stop_token stop_;
 };
 
 // The part of a frame's truth that geometry and compositing know: where the camera is, and every
@@ -39,6 +62,8 @@ void write_moment(const World& world,
 
 // Error where the scene's method cannot draw through the lens.
 void check_method(const scene::Scene& scene, const lens::Lens& lens);
+// Error where the scene has a codec_step and H.264 does not have the clip's layout (4:4:0).
+void check_codec(const scene::Scene& scene, const image::Colour& colour);
 
 // Error where check_method() refuses, and where chroma-key finds no OpenGL.
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

@@ -123,10 +123,12 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
     const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
     const Ambient light =
         ambient.next(before->picture, moment.sight, search_bounds(moment), before->begins_shot);
-    if (truth.frame % every != 0) continue;
+    const bool is_compared = truth.frame % every == 0;
+    if (!is_compared && !painter->is_in_order()) continue;
     annotation::Frame again = truth;
     again.time_s = before->time_s;
     const Painted painted = painter->paint(before->picture, moment, light);
+    if (!is_compared) continue;
     write_moment(world, moment, painted, again);
     if (!sequence.has_covered_boxes) as_older_truth(again);
     ++result.compared;

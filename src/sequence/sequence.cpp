@@ -50,6 +50,7 @@ struct Work {
   motion::FrameMotion motion;
   Ambient ambient;
   Moment moment;
+  Painted painted;
   annotation::Frame truth;
   std::vector<MaskFile> masks;
 };
@@ -104,6 +105,7 @@ class Run {
   // Exposure, noise and what else [realism] leaves to the clip.
   void measure_camera() {
     scene_ = resolved(stated_, size_, mask_ptr(), options_);
+    check_codec(scene_, reader_.info().colour);
     world_.shutter = shutter_of(scene_.camera_model);
     ambient_.emplace(scene_.light, tone_of(scene_.camera_model), mask_ptr());
   }
@@ -155,18 +157,24 @@ class Run {
         work.frame.picture, work.moment.sight, search_bounds(work.moment), work.frame.begins_shot);
   }
 
-  void paint(Work& work) {
-    const Stopwatch painting;
-    const Painted painted = painter_->paint(work.frame.picture, work.moment, work.ambient);
-    clocks_.render += painted.render_s;
+  void draw(Work& work) {
+    if (options_.stop.stop_requested()) return;
+    work.painted = painter_->draw(work.moment, work.ambient);
+    clocks_.render += work.painted.render_s;
+  }
+
+  void compose(Work& work) {
+    if (options_.stop.stop_requested()) return;
+    const Timed timed(clocks_.composite);
+    painter_->compose(work.frame.picture, work.moment, work.ambient, work.painted);
     annotation::Frame& truth = work.truth;
     truth.frame = work.frame.index;
     truth.time_s = work.frame.time_s;
     truth.damaged = work.frame.damaged;
     truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
-    write_moment(world_, work.moment, painted, truth);
-    if (scene_.output.masks) work.masks = mask_files(truth, painted.layer, mask_ptr(), size_);
-    clocks_.composite += painting.seconds() - painted.render_s;
+    write_moment(world_, work.moment, work.painted, truth);
+    if (scene_.output.masks) work.masks = mask_files(truth, work.painted.layer, mask_ptr(), size_);
+    work.painted = {};
   }
 
   void write(const Work& work) {
@@ -195,29 +203,34 @@ class Run {
     // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
     const bool one_thread = scene_.composite.method == "chroma-key";
     tbb::task_arena arena(one_thread ? 1 : threads);
-    const auto paint_mode =
-        one_thread ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
+    const auto in_order = tbb::filter_mode::serial_in_order;
+    const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
+    const auto compose_mode = painter_->is_in_order() ? in_order : draw_mode;
     arena.execute([&] {
       tbb::parallel_pipeline(
           in_flight,
-          tbb::make_filter<void, WorkPtr>(tbb::filter_mode::serial_in_order,
+          tbb::make_filter<void, WorkPtr>(in_order,
                                           [&](tbb::flow_control& control) {
                                             WorkPtr work = read();
                                             if (!work) control.stop();
                                             return work;
                                           }) &
-              tbb::make_filter<WorkPtr, WorkPtr>(tbb::filter_mode::serial_in_order,
+              tbb::make_filter<WorkPtr, WorkPtr>(in_order,
                                                  [&](WorkPtr work) {
                                                    move(*work);
                                                    return work;
                                                  }) &
-              tbb::make_filter<WorkPtr, WorkPtr>(paint_mode,
+              tbb::make_filter<WorkPtr, WorkPtr>(draw_mode,
                                                  [&](WorkPtr work) {
-                                                   if (!options_.stop.stop_requested())
-                                                     paint(*work);
+                                                   draw(*work);
                                                    return work;
                                                  }) &
-              tbb::make_filter<WorkPtr, void>(tbb::filter_mode::serial_in_order,
+              tbb::make_filter<WorkPtr, WorkPtr>(compose_mode,
+                                                 [&](WorkPtr work) {
+                                                   compose(*work);
+                                                   return work;
+                                                 }) &
+              tbb::make_filter<WorkPtr, void>(in_order,
                                               [&](const WorkPtr& work) {
                                                 // A frame that was not painted comes after the
                                                 // stop.
