@@ -15,7 +15,8 @@ image::Picture grainy_sky(image::Chroma chroma) {
   for (std::size_t p = 0; p < static_cast<std::size_t>(picture.plane_count); ++p)
     for (int y = 0; y < picture.planes[p].height; ++y)
       for (int x = 0; x < picture.planes[p].width; ++x)
-        picture.planes[p].row(y)[x] = static_cast<std::uint8_t>((p == 0 ? 150 : 120) + (7 * x + 3 * y) % 5);
+        picture.planes[p].row(y)[x] =
+            static_cast<std::uint8_t>((p == 0 ? 150 : 120) + (7 * x + 3 * y) % 5);
   return picture;
 }
 
@@ -118,14 +119,16 @@ TEST(Codec, ReplacesWhatIsHiddenAndShiftsWhatIsNotAndLeavesTheOtherBlocksAlone) 
     if (chroma == image::Chroma::kNone) continue;
     const int log2 = image::log2_chroma_width(chroma);
     EXPECT_EQ(after.planes[1].row(34 >> log2)[44 >> log2], 40);  // its whole block is hidden
-    EXPECT_EQ(after.planes[2].row(40 >> log2)[44 >> log2], before.planes[2].row(40 >> log2)[44 >> log2]);
+    EXPECT_EQ(after.planes[2].row(40 >> log2)[44 >> log2],
+              before.planes[2].row(40 >> log2)[44 >> log2]);
   }
 }
 
 TEST(Codec, NeverReachesTheOwnAircraft) {
   const image::Picture before = grainy_sky(image::Chroma::k444);
   image::Picture after = before.clone();
-  image::Mask mask{kCodedWidth, kCodedHeight, std::vector<unsigned char>(kCodedWidth * kCodedHeight, 255)};
+  image::Mask mask{
+      kCodedWidth, kCodedHeight, std::vector<unsigned char>(kCodedWidth * kCodedHeight, 255)};
   for (int y = 0; y < kCodedHeight; ++y)
     for (int x = 0; x < 43; ++x) mask.free[static_cast<std::size_t>(y * kCodedWidth + x)] = 0;
   Levelling codec;

@@ -144,7 +144,10 @@ class Rippling : public PatchCoder {
              const image::Picture& background) override {
     image::Picture coded = with_layer.clone();
     for (int y = 0; y < coded.height; ++y)
-      for (int x = 0; x < coded.width; ++x) coded.planes[0].row(y)[x] += (x + y) % 2 == 0 ? 2 : 1;
+      for (int x = 0; x < coded.width; ++x) {
+        std::uint8_t& sample = coded.planes[0].row(y)[x];
+        sample = static_cast<std::uint8_t>(sample + ((x + y) % 2 == 0 ? 2 : 1));
+      }
     return {std::move(coded), background.clone()};
   }
 };

@@ -286,7 +286,8 @@ void Matte::take_coded_chroma(const CodedWindow& window, const Coded& coded) {
       bool moved = false;
       for (const std::size_t p : {1u, 2u}) {
         const std::uint8_t before = window.background.planes[p].row(v)[u];
-        const auto lost = static_cast<float>(int{before} - int{coded.background.planes[p].row(v)[u]});
+        const auto lost =
+            static_cast<float>(int{before} - int{coded.background.planes[p].row(v)[u]});
         std::uint8_t& sample = picture_.planes[p].row(top + v)[left + u];
         sample = code(static_cast<float>(coded.with_layer.planes[p].row(v)[u]) + shows * lost);
         moved = moved || sample != before;
@@ -299,8 +300,8 @@ void Matte::pass_codec(const std::vector<CodedWindow>& windows) {
   drawn_ = in_marked_blocks(layer_.patch, drawn_);
   for (std::size_t i = 0; i < drawn_.size(); ++i) drawn_[i] = drawn_[i] && free_[i];
   for (const CodedWindow& window : windows) {
-    const Coded coded = options_.coder->code(
-        window.box, image::crop(picture_, window.box), window.background);
+    const Coded coded =
+        options_.coder->code(window.box, image::crop(picture_, window.box), window.background);
     take_coded_luma(window, coded);
     if (picture_.plane_count == 3) take_coded_chroma(window, coded);
   }

@@ -17,8 +17,8 @@
 // the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
 // nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
 // the sample sits, and only where one of the pixels of its own block is under the layer. Every
-// other sample keeps its bits. A sensor's sharpening and noise change those changes; a codec changes the
-// samples that come of it (codec_blocks.h).
+// other sample keeps its bits. A sensor's sharpening and noise change those changes; a codec
+// changes the samples that come of it (codec_blocks.h).
 namespace airtruth::composite {
 
 // What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
@@ -34,8 +34,8 @@ struct Visible {
 };
 
 // What a codec makes of a part of the frame, `box`: of the picture with the layer in it, and of the
-// background alone. Coding both tells what the codec loses of the intruder from what it loses of the
-// background a second time.
+// background alone. Coding both tells what the codec loses of the intruder from what it loses of
+// the background a second time.
 struct Coded {
   image::Picture with_layer;
   image::Picture background;
@@ -56,8 +56,8 @@ struct MatteOptions {
   Sensor sensor;
   std::uint64_t seed = 1;  // of the noise ...
   std::int64_t frame = 0;  // ... which is another in each frame
-  // Where one is given, the samples of the blocks of 8 x 8 pixels that the layer reaches become what
-  // it makes of them.
+  // Where one is given, the samples of the blocks of 8 x 8 pixels that the layer reaches become
+  // what it makes of them.
   PatchCoder* coder = nullptr;
 };
 

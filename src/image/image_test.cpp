@@ -113,7 +113,8 @@ Picture with_numbered_samples(int width, int height, Chroma chroma) {
 }
 
 TEST(Crop, TakesEverySampleOfTheBoxAndPasteBringsItBack) {
-  for (const Chroma chroma : {Chroma::kNone, Chroma::k420, Chroma::k422, Chroma::k440, Chroma::k444}) {
+  for (const Chroma chroma :
+       {Chroma::kNone, Chroma::k420, Chroma::k422, Chroma::k440, Chroma::k444}) {
     const Picture whole = with_numbered_samples(37, 29, chroma);
     const PixelBox box{12, 8, 25, 21};  // reaches the odd-sized picture's far corner
     const Picture part = crop(whole, box);

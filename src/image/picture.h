@@ -64,7 +64,8 @@ int log2_chroma_height(Chroma chroma);
 
 Picture make_picture(int width, int height, const Colour& colour);
 
-// The part of a picture within `box`, which lies inside it and begins on even numbers where chroma is halved.
+// The part of a picture within `box`, which lies inside it and begins on even numbers where chroma
+// is halved.
 Picture crop(const Picture& picture, const PixelBox& box);
 // Writes `part` over `picture`, its corner at (x, y), which are even where chroma is halved; what
 // lies outside the picture is left out. Both have one colour.

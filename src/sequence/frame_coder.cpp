@@ -10,8 +10,7 @@ namespace {
 
 int quantiser_of(double codec_step) {
   constexpr double kStepAtQp0 = 0.625;
-  return static_cast<int>(
-      std::clamp(std::lround(6 * std::log2(codec_step / kStepAtQp0)), 1L, 51L));
+  return static_cast<int>(std::clamp(std::lround(6 * std::log2(codec_step / kStepAtQp0)), 1L, 51L));
 }
 
 // How far beyond a window the last frame's samples are kept: what moves faster, in pixels a frame,
@@ -31,7 +30,7 @@ FrameCoder::FrameCoder(double codec_step) : codec_(quantiser_of(codec_step)) {}
 
 image::Picture FrameCoder::reference(const PixelBox& box,
                                      const image::Picture& now,
-                                     image::Picture Past::* part) const {
+                                     image::Picture Past::*part) const {
   image::Picture result = now.clone();
   for (const Past& past : past_)
     image::paste(result, past.*part, past.box.x - box.x, past.box.y - box.y);

@@ -9,9 +9,9 @@
 
 // The mark of the clip's codec on what is inserted, frame after frame.
 //
-// A video encoder predicts a frame from the one before it, as it was decoded. So each part of a frame
-// is coded with what the last finished frame showed there as its reference: with the intruder as the
-// codec left it, and the background alone likewise. Frames are handed over in their order.
+// A video encoder predicts a frame from the one before it, as it was decoded. So each part of a
+// frame is coded with what the last finished frame showed there as its reference: with the intruder
+// as the codec left it, and the background alone likewise. Frames are handed over in their order.
 namespace airtruth::sequence {
 
 class FrameCoder final : public composite::PatchCoder {
@@ -40,7 +40,7 @@ class FrameCoder final : public composite::PatchCoder {
   };
   image::Picture reference(const PixelBox& box,
                            const image::Picture& now,
-                           image::Picture Past::* part) const;
+                           image::Picture Past::*part) const;
 
   video::PatchCodec codec_;
   std::vector<Past> past_;

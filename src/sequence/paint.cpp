@@ -46,11 +46,8 @@ image::Layer through_air_and_lens(image::Layer layer,
       airlight[c] = model.airlight ? (*model.airlight)[c] : double(ambient.airlight[c]);
     composite::add_haze(layer, *model.extinction_per_km, airlight);
   }
-  return composite::spread(layer,
-                           model.point_spread_px.value_or(0),
-                           margin_px(model),
-                           size.width,
-                           size.height);
+  return composite::spread(
+      layer, model.point_spread_px.value_or(0), margin_px(model), size.width, size.height);
 }
 
 class Matte : public Painter {
@@ -67,8 +64,7 @@ class Matte : public Painter {
                const Moment& moment,
                const Ambient&,
                Painted& painted) override {
-    if (has_codec(scene_.camera_model) && !coder_)
-      coder_.emplace(*scene_.camera_model.codec_step);
+    if (has_codec(scene_.camera_model) && !coder_) coder_.emplace(*scene_.camera_model.codec_step);
     if (!painted.layer.empty()) {
       composite::MatteOptions options{.own_aircraft = mask_};
       options.sensor = sensor_of(scene_.camera_model);
@@ -244,9 +240,11 @@ void check_method(const scene::Scene& scene, const lens::Lens& lens) {
 
 void check_codec(const scene::Scene& scene, const image::Colour& colour) {
   if (has_codec(scene.camera_model) && !video::PatchCodec::can_code(colour))
-    throw Error("has 4:4:0 samples, which H.264 has no layout for; expected a clip in 4:2:0, 4:2:2 or 4:4:4, or "
-                "a scene without sensor.codec_step",
-                {scene.background.video.string()});
+    throw Error(
+        "has 4:4:0 samples, which H.264 has no layout for; expected a clip in 4:2:0, 4:2:2 or "
+        "4:4:4, or "
+        "a scene without sensor.codec_step",
+        {scene.background.video.string()});
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

@@ -33,8 +33,8 @@ class Painter {
                        const Moment& moment,
                        const Ambient& ambient,
                        Painted& painted) = 0;
-  // True where a frame's picture depends on the one before it (a codec's mark): compose() then takes
-  // every frame, in order, one at a time. Known once the scene's values are.
+  // True where a frame's picture depends on the one before it (a codec's mark): compose() then
+  // takes every frame, in order, one at a time. Known once the scene's values are.
   virtual bool is_in_order() const { return false; }
 
   // Both, for a picture by itself.

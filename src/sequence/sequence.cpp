@@ -208,34 +208,24 @@ class Run {
     const auto compose_mode = painter_->is_in_order() ? in_order : draw_mode;
     arena.execute([&] {
       tbb::parallel_pipeline(
-          in_flight,
-          tbb::make_filter<void, WorkPtr>(in_order,
-                                          [&](tbb::flow_control& control) {
-                                            WorkPtr work = read();
-                                            if (!work) control.stop();
-                                            return work;
-                                          }) &
-              tbb::make_filter<WorkPtr, WorkPtr>(in_order,
-                                                 [&](WorkPtr work) {
-                                                   move(*work);
-                                                   return work;
-                                                 }) &
-              tbb::make_filter<WorkPtr, WorkPtr>(draw_mode,
-                                                 [&](WorkPtr work) {
-                                                   draw(*work);
-                                                   return work;
-                                                 }) &
-              tbb::make_filter<WorkPtr, WorkPtr>(compose_mode,
-                                                 [&](WorkPtr work) {
-                                                   compose(*work);
-                                                   return work;
-                                                 }) &
-              tbb::make_filter<WorkPtr, void>(in_order,
-                                              [&](const WorkPtr& work) {
-                                                // A frame that was not painted comes after the
-                                                // stop.
-                                                if (!options_.stop.stop_requested()) write(*work);
-                                              }));
+          in_flight, tbb::make_filter<void, WorkPtr>(in_order, [&](tbb::flow_control& control) {
+                       WorkPtr work = read();
+                       if (!work) control.stop();
+                       return work;
+                     }) & tbb::make_filter<WorkPtr, WorkPtr>(in_order, [&](WorkPtr work) {
+                       move(*work);
+                       return work;
+                     }) & tbb::make_filter<WorkPtr, WorkPtr>(draw_mode, [&](WorkPtr work) {
+                       draw(*work);
+                       return work;
+                     }) & tbb::make_filter<WorkPtr, WorkPtr>(compose_mode, [&](WorkPtr work) {
+                       compose(*work);
+                       return work;
+                     }) & tbb::make_filter<WorkPtr, void>(in_order, [&](const WorkPtr& work) {
+                       // A frame that was not painted comes after the
+                       // stop.
+                       if (!options_.stop.stop_requested()) write(*work);
+                     }));
     });
   }
 

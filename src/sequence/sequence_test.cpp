@@ -345,8 +345,8 @@ TEST_F(Sequence, WithEverythingOnTheBackgroundKeepsItsSamplesAndTruthItsWord) {
     const annotation::Intruder& seen = truth.intruders[0];
     if (!seen.visible_box_px || seen.cut_by_frame > 0) continue;
     ++visible;
-    // The box from pixels holds the one from geometry, and goes beyond it by blur (3 px), halo (3 px)
-    // and the rest of a codec's block (7 px) alone.
+    // The box from pixels holds the one from geometry, and goes beyond it by blur (3 px), halo (3
+    // px) and the rest of a codec's block (7 px) alone.
     const Box& exact = *seen.exact_box_px;
     EXPECT_GE(exact.x, seen.visible_box_px->x - 1) << k;
     EXPECT_LE(exact.right(), seen.visible_box_px->right() + 1) << k;

@@ -5,8 +5,8 @@
 
 #include "image/picture.h"
 
-// What an H.264 encoder makes of a part of a frame: encoded by libx264 at a constant quantiser, as a
-// picture predicted from another (a P picture), and decoded again.
+// What an H.264 encoder makes of a part of a frame: encoded by libx264 at a constant quantiser, as
+// a picture predicted from another (a P picture), and decoded again.
 //
 // The result depends on the two pictures, the quantiser and the version of libx264 alone: every
 // call begins a stream of its own, and libx264 runs on one thread with the code that is the same on
@@ -21,7 +21,8 @@ class PatchCodec {
   PatchCodec(PatchCodec&&) noexcept;
   PatchCodec& operator=(PatchCodec&&) noexcept;
 
-  // True for grey, 4:2:0, 4:2:2 and 4:4:4 (RGB's planes are taken as one of luma and two of chroma).
+  // True for grey, 4:2:0, 4:2:2 and 4:4:4 (RGB's planes are taken as one of luma and two of
+  // chroma).
   static bool can_code(const image::Colour& colour);
 
   // `patch` as a decoder gives it back. `reference` is what it is predicted from, of the same size

@@ -24,8 +24,8 @@ Picture bar_at(int x, int width, int height, Chroma chroma) {
     for (int v = 0; v < picture.planes[i].height; ++v)
       for (int u = 0; u < picture.planes[i].width; ++u) {
         const bool in_bar = u >= x >> shift && u < (x + 20) >> shift && v > 8 && v < 14;
-        picture.planes[i].row(v)[u] =
-            static_cast<std::uint8_t>((i == 0 ? 170 + v / 4 : 120) - (in_bar ? 60 + 3 * (u % 5) : 0));
+        picture.planes[i].row(v)[u] = static_cast<std::uint8_t>((i == 0 ? 170 + v / 4 : 120) -
+                                                                (in_bar ? 60 + 3 * (u % 5) : 0));
       }
   }
   return picture;
@@ -71,9 +71,8 @@ std::string by_the_ffmpeg_program(const Picture& reference,
 
 TEST(PatchCodec, MakesWhatTheFfmpegProgramMakes) {
   // Grey is left out: the program stretches its range on the way.
-  const std::pair<Chroma, const char*> layouts[] = {{Chroma::k420, "yuv420p"},
-                                                    {Chroma::k422, "yuv422p"},
-                                                    {Chroma::k444, "yuv444p"}};
+  const std::pair<Chroma, const char*> layouts[] = {
+      {Chroma::k420, "yuv420p"}, {Chroma::k422, "yuv422p"}, {Chroma::k444, "yuv444p"}};
   for (const auto& [chroma, name] : layouts) {
     const Picture reference = bar_at(13, 96, 48, chroma);
     const Picture patch = bar_at(16, 96, 48, chroma);
