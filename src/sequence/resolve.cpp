@@ -87,8 +87,8 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
   return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
 }
 
-// The codec's quantiser is put to use only where the scene names it: beside real aircraft it makes
-// inserted ones less like them (docs/realism.md).
+// The codec is put to use only where the scene names it: a measured point spread has its softness
+// already (docs/decisions/0017).
 constexpr const char* kOnlyByName = "sensor.codec_step";
 
 bool is_named(const scene::Scene& scene, const std::string& key) {
