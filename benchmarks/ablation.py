@@ -29,12 +29,12 @@ SUN = {"cumulus_a4": (150, 50), "overcast_b4": (0, 60), "V_AIRPLANE_008": (180, 
 OTHER_SUN = (0, 50)
 # Each stage has the tables of those before it; None: another method.
 STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ air", ["air"]), ("+ optics", ["optics"]),
-          ("+ noise", ["noise"]), ("+ codec (all)", ["codec"])]
+          ("+ noise", ["noise"]), ("+ chroma", ["chroma"]), ("+ codec (all)", ["codec"])]
 # The clips from the ground are of one camera (data/camera-profiles): what one of them cannot tell, as a clip of sky alone
 # cannot tell its sharpness, the camera's profile does. The onboard clips show enough edges of their own.
 GROUND_PROFILE = "ground-zoom"
 CHANCE_DRAWS = 10  # of which aircraft of a clip is called real: what `judge --by-chance` says
-NOISE = ("noise_gain", "noise_floor", "noise_correlation_px")
+SENSOR = {"noise": ("noise_gain", "noise_floor", "noise_correlation_px"), "chroma": ("chroma_spread_px",), "codec": ("codec_step",)}
 
 
 def run(command):
@@ -71,9 +71,8 @@ def tables_of(camera, parts):
             tables[part] = dict(camera.get(part, {}))
             tables[part].pop("airlight", None)  # the background around the intruder knows better
         else:
-            keys = NOISE if part == "noise" else ("codec_step",)
             values = camera.get("sensor", {})
-            tables.setdefault("sensor", {}).update({key: values[key] for key in keys if key in values})
+            tables.setdefault("sensor", {}).update({key: values[key] for key in SENSOR[part] if key in values})
     return "".join(toml_table(name, values) for name, values in tables.items() if values)
 
 

@@ -184,11 +184,22 @@ class Session {
           fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
                       result_.edge.spread_px,
                       result_.edge.edges);
+      take_chroma(*found);
     } else {
-      for (const char* key :
-           {"optics.point_spread_px", "optics.sharpening", "optics.sharpening_px"})
+      for (const char* key : {"optics.point_spread_px",
+                              "optics.sharpening",
+                              "optics.sharpening_px",
+                              "sensor.chroma_spread_px"})
         lack(key, why);
     }
+  }
+
+  void take_chroma(const StepResponse& response) {
+    std::string why;
+    if (const auto found = edges_.chroma(response, why))
+      put("sensor.chroma_spread_px", {*found});
+    else
+      lack("sensor.chroma_spread_px", why);
   }
 
   void take_shutter() {

@@ -119,6 +119,23 @@ TEST(Calibrate, MeasuresWhatBecomesOfEdgesOverTheGroundAlone) {
   }
 }
 
+// Fields, woods and roads have colours of their own, whose edges are where luma's are.
+TEST(Calibrate, MeasuresHowSoftChromaIs) {
+  for (const double spread_px : {1.5, 3.0}) {
+    synthetic::FlightOptions o = ideal(7);
+    o.width *= 2, o.height *= 2;
+    o.frame_count = 16;
+    Injected what;
+    what.finer = 2;
+    what.point_spread_px = 0.8;
+    what.sensor.noise_gain = 1e-4;
+    what.sensor.chroma_spread_px = spread_px;
+    Clip clip;
+    clip.write(synthetic::Flight(o), what);
+    expect_within(calibrate(clip.path(), {}), "sensor.chroma_spread_px", spread_px, 0.15);
+  }
+}
+
 TEST(Calibrate, ReadsTheCodecsStep) {
   synthetic::FlightOptions o = ideal(4);
   o.width = 320, o.height = 240, o.frame_count = 24;

@@ -297,6 +297,7 @@ void EdgeMeter::add(const image::Picture& frame,
   const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
   cv::Mat taken(grey.size(), CV_8UC1, cv::Scalar(0));
   int count = 0;
+  std::size_t with_chroma = 0;
   for (const Strong& place : strong_places(grey)) {
     if (count >= kMostPerFrame) break;
     const cv::Point at = place.at;
@@ -323,10 +324,14 @@ void EdgeMeter::add(const image::Picture& frame,
     edge.x = found->line.x, edge.y = found->line.y;
     edge.nx = found->line.nx, edge.ny = found->line.ny;
     if (is_known(edge)) continue;
+    edge.chroma =
+        chroma_steps(frame, {edge.x, edge.y, edge.nx, edge.ny, double(found->half_length)});
+    with_chroma += edge.chroma.empty() ? 0 : 1;
     edges_.push_back(std::move(edge));
     ++count;
   }
   most_at_once_ = std::max(most_at_once_, count);
+  most_chroma_at_once_ = std::max(most_chroma_at_once_, with_chroma);
 }
 
 // What stays where it is in the picture, as the own aircraft does, is one edge in all frames.
@@ -387,6 +392,13 @@ std::optional<StepResponse> EdgeMeter::result(std::string& why) {
   profile_ = profile_of(nearest_to_camera(edges, response), response, tone_);
   profile_.edges = static_cast<int>(edges.size());
   return response;
+}
+
+std::optional<Estimate> EdgeMeter::chroma(const StepResponse& response, std::string& why) const {
+  std::vector<LumaAndChroma> both;
+  for (const Edge* edge : usable())
+    if (!edge->chroma.empty()) both.push_back({&edge->step, &edge->chroma});
+  return chroma_spread(both, most_chroma_at_once_, response, tone_, why);
 }
 
 }  // namespace airtruth::calibration

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/calibration.h"
+#include "calibration/chroma.h"
 #include "calibration/step_response.h"
 #include "geometry/transform.h"
 
@@ -26,6 +27,8 @@ class EdgeMeter {
   // frame are different ones, those of other frames may be the same again, as those of one aircraft
   // before the sky are.
   std::optional<StepResponse> result(std::string& why);
+  // What chroma has beyond luma across edges that are as sharp as `response`, which is of result().
+  std::optional<Estimate> chroma(const StepResponse& response, std::string& why) const;
   const EdgeProfile& profile() const { return profile_; }
 
  private:
@@ -37,6 +40,7 @@ class EdgeMeter {
     double moved_px = 0;    // across itself, since the frame before; NaN: not known
     bool is_long = false;
     StepEdge step;
+    std::vector<ChromaStep> chroma;
   };
   bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable() const;
@@ -44,7 +48,8 @@ class EdgeMeter {
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;
-  int most_at_once_ = 0;  // edges in one frame
+  int most_at_once_ = 0;                 // edges in one frame
+  std::size_t most_chroma_at_once_ = 0;  // those that show a step of colour too
   EdgeProfile profile_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -83,6 +84,59 @@ TEST(Edges, LinesAlongSomeOfThemAreNoSharpening) {
   const StepResponse found = measured(0.15);
   EXPECT_NEAR(found.point_spread_px.value, kSpreadPx, 0.05);
   EXPECT_LT(found.sharpening.value, 0.05);
+}
+
+// Cb rises as luma's light does through a wider Gaussian, whatever luma's sharpness is.
+TEST(Edges, ChromaThatIsSofterThanLuma) {
+  for (const double beyond_px : {1.5, 3.0}) {
+    EdgeMeter meter(nullptr, {});
+    Random noise(3);
+    for (const double shift_px : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5}) {
+      image::Picture picture = bars(0, shift_px);
+      // Light and luma's spread are of whole pixels each, the Gaussian beyond of whole samples, and
+      // a sample on a column is the mean of a quarter, a half and a quarter of three.
+      const double grids_px2 = 1.0 / 12 + 1.0 / 12 + 4.0 / 12 + 0.5;
+      const double spread_px = std::hypot(kSpreadPx, beyond_px, std::sqrt(grids_px2));
+      // Siting: left, on the block's first column and between its rows.
+      for (int cy = 0; cy < picture.planes[1].height; ++cy)
+        for (int cx = 0; cx < picture.planes[1].width; ++cx) {
+          double height = 0;
+          for (int edge = 0; edge < 12; ++edge) {
+            const double across = (2 * cx - 20.0 - shift_px - 50 * edge) * std::cos(0.1) +
+                                  (2 * cy + 0.5) * std::sin(0.1);
+            const double risen = 0.5 * (1 + std::erf(across / (spread_px * std::sqrt(2.0))));
+            height += edge % 2 == 0 ? risen : -risen;
+          }
+          picture.planes[1].row(cy)[cx] =
+              static_cast<std::uint8_t>(110 + 24 * height + noise.uniform(0, 1));
+        }
+      meter.add(picture, std::nullopt);
+    }
+    std::string why;
+    const auto luma = meter.result(why);
+    ASSERT_TRUE(luma) << why;
+    const auto found = meter.chroma(*luma, why);
+    ASSERT_TRUE(found) << why;
+    std::printf(
+        "chroma beyond luma: %.2f +- %.2f px (%.2f)\n", found->value, found->sigma, beyond_px);
+    EXPECT_NEAR(found->value, beyond_px, 0.1 * beyond_px);
+  }
+}
+
+TEST(Edges, WithoutColourSayNothingOfChroma) {
+  EdgeMeter meter(nullptr, {});
+  for (const double shift_px : {0.0, 1.3}) {
+    image::Picture picture = bars(0, shift_px);
+    for (const std::size_t p : {1U, 2U})
+      for (int y = 0; y < picture.planes[p].height; ++y)
+        std::fill_n(picture.planes[p].row(y), picture.planes[p].width, std::uint8_t{128});
+    meter.add(picture, std::nullopt);
+  }
+  std::string why;
+  const auto luma = meter.result(why);
+  ASSERT_TRUE(luma) << why;
+  EXPECT_FALSE(meter.chroma(*luma, why));
+  EXPECT_EQ(why, "the clip shows 0 sharp edges with a clean step of colour; it takes 12");
 }
 
 // What does not move, as the own aircraft, says no more in ten frames than in one.

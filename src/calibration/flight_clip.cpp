@@ -62,9 +62,15 @@ std::vector<float> coded_of(std::vector<float> luma, int width, const Injected& 
 image::Picture taken(const image::Picture& fine, const Injected& what, std::int64_t frame) {
   const int width = fine.width / what.finer, height = fine.height / what.finer;
   image::Picture picture = image::make_picture(width, height, fine.colour);
-  for (const std::size_t p : {1U, 2U})
-    put(in_larger_pixels(samples_of(fine.planes[p]), fine.planes[p].width, what.finer),
-        picture.planes[p]);
+  for (const std::size_t p : {1U, 2U}) {
+    image::Plane& plane = picture.planes[p];
+    auto samples = in_larger_pixels(samples_of(fine.planes[p]), fine.planes[p].width, what.finer);
+    // In chroma samples of two luma pixels; light of luma's spread is in chroma too.
+    const double spread_px = std::hypot(what.sensor.chroma_spread_px, what.point_spread_px);
+    if (what.sensor.chroma_spread_px > 0)
+      composite::blur(samples, plane.width, plane.height, composite::gaussian(spread_px / 2));
+    put(samples, plane);
+  }
   const image::ColourCode code(picture.colour);
   const float dark = code.ycc_from_rgb({0, 0, 0}).y;
   const float unit = code.ycc_from_rgb({1, 1, 1}).y - dark;

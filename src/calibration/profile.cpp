@@ -15,15 +15,18 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr std::array<const char*, 3> kOptics = {
-    "optics.point_spread_px", "optics.sharpening", "optics.sharpening_px"};
+constexpr std::array<const char*, 4> kOptics = {"optics.point_spread_px",
+                                                "optics.sharpening",
+                                                "optics.sharpening_px",
+                                                "sensor.chroma_spread_px"};
 // What a profile may say: all that belongs to the camera and not to one flight's light.
-constexpr std::array<const char*, 7> kProfileKeys = {"optics.point_spread_px",
+constexpr std::array<const char*, 8> kProfileKeys = {"optics.point_spread_px",
                                                      "optics.sharpening",
                                                      "optics.sharpening_px",
                                                      "sensor.noise_gain",
                                                      "sensor.noise_floor",
                                                      "sensor.noise_correlation_px",
+                                                     "sensor.chroma_spread_px",
                                                      "shutter.readout_s"};
 constexpr const char* kReadout = "shutter.readout_s";
 // Of the weight of a value: more is the clip's own, less the profile's.

@@ -34,7 +34,7 @@ struct Key {
   const char* words;
 };
 
-constexpr std::array<Key, 13> kKeys = {{
+constexpr std::array<Key, 14> kKeys = {{
     {"shutter", "exposure_s", "seconds that a row is exposed"},
     {"shutter", "readout_s", "seconds from the first row to the last; 0: no sign of any"},
     {"air", "extinction_per_km", "red, green, blue"},
@@ -45,6 +45,7 @@ constexpr std::array<Key, 13> kKeys = {{
     {"sensor", "noise_gain", "variance of linear light is gain x light ..."},
     {"sensor", "noise_floor", "... + floor"},
     {"sensor", "noise_correlation_px", "white noise under a Gaussian of this width"},
+    {"sensor", "chroma_spread_px", "standard deviation that chroma has beyond luma's"},
     {"sensor", "codec_step", "of the quantiser, in code values"},
     {"light", "sun_azimuth_deg", "from north, if the heading given was the camera's"},
     {"light", "sun_elevation_deg", "above the horizon"},

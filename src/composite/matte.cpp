@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "composite/codec_blocks.h"
 #include "composite/cover.h"
+#include "composite/spread.h"
 #include "composite/transfer_curve.h"
 #include "image/colour.h"
 
@@ -43,6 +44,16 @@ Footprint footprint(int log2_size, bool on_a_pixel) {
   return {2, 0, 2, {0.5f, 0.5f, 0}};
 }
 
+// What of a kernel about `place` is on an axis of `count` samples: a picture goes on beyond its
+// rim.
+float weight_inside(const std::vector<float>& kernel, int place, int count) {
+  const int reach = static_cast<int>(kernel.size()) / 2;
+  float sum = 0;
+  for (int k = std::max(-reach, -place); k <= std::min(reach, count - 1 - place); ++k)
+    sum += kernel[static_cast<std::size_t>(k + reach)];
+  return sum;
+}
+
 // One call of composite_matte: the patch's own picture of what is under the layer and what has
 // changed.
 class Matte {
@@ -58,7 +69,11 @@ class Matte {
   // What the layer adds to a pixel whose background has this chroma.
   image::Ycc change(std::size_t index, float cb, float cr) const;
   image::Ycc chroma_at(int cx, int cy) const;
+  // Does `holds` hold for any pixel of a chroma sample's block?
+  template <typename Holds>
+  bool any_of_block(int cx, int cy, const Holds& holds) const;
   bool block_is_drawn(int cx, int cy) const;
+  bool block_is_free(int cx, int cy) const;
   void find_luma_changes();
   void pass_sensor();
   void write_luma();
@@ -68,6 +83,10 @@ class Matte {
   void take_coded_chroma(const CodedWindow& window, const Coded& coded);
   float chroma_alpha(int cx, int cy) const;
   image::Ycc chroma_change(int cx, int cy) const;
+  bool chroma_is_soft() const {  // red, green and blue planes are alike
+    return options_.sensor.chroma_spread_px > 0 && picture_.colour.matrix != image::Matrix::kRgb;
+  }
+  void soften(std::vector<float>& plane, const PixelBox& samples) const;
   bool move_chroma(int cx, int cy, const image::Ycc& change);
   void mark_block(int cx, int cy);
   std::vector<std::uint8_t> with_halo(const std::vector<float>& coverage) const;
@@ -191,12 +210,23 @@ void Matte::write_luma() {
   }
 }
 
-bool Matte::block_is_drawn(int cx, int cy) const {
+template <typename Holds>
+bool Matte::any_of_block(int cx, int cy, const Holds& holds) const {
   for (int y = cy << log2_height_; y < (cy + 1) << log2_height_; ++y) {
     for (int x = cx << log2_width_; x < (cx + 1) << log2_width_; ++x)
-      if (drawn(x, y)) return true;
+      if (holds(x, y)) return true;
   }
   return false;
+}
+
+bool Matte::block_is_drawn(int cx, int cy) const {
+  return any_of_block(cx, cy, [&](int x, int y) { return drawn(x, y); });
+}
+
+bool Matte::block_is_free(int cx, int cy) const {
+  return !any_of_block(cx, cy, [&](int x, int y) {
+    return !layer_.patch.contains(x, y) || free_[layer_.index(x, y)] == 0;
+  });
 }
 
 // The weighted mean over the sample's footprint, every pixel of it taken over this very sample: so
@@ -233,20 +263,50 @@ bool Matte::move_chroma(int cx, int cy, const image::Ycc& change) {
   return after.cb != before.cb || after.cr != before.cr;
 }
 
+// Where chroma is soft, what it reaches belongs to the intruder as a halo of sharpening does.
 void Matte::mark_block(int cx, int cy) {
-  for (int y = cy << log2_height_; y < (cy + 1) << log2_height_; ++y) {
-    for (int x = cx << log2_width_; x < (cx + 1) << log2_width_; ++x)
-      if (drawn(x, y)) changed_[layer_.index(x, y)] = 1;
-  }
+  const bool reaches = chroma_is_soft();
+  any_of_block(cx, cy, [&](int x, int y) {
+    if (drawn(x, y) || (reaches && layer_.patch.contains(x, y) && free_[layer_.index(x, y)] != 0))
+      changed_[layer_.index(x, y)] = 1;
+    return false;
+  });
+}
+
+void Matte::soften(std::vector<float>& plane, const PixelBox& samples) const {
+  const double spread_px = options_.sensor.chroma_spread_px;
+  const std::vector<float> across = gaussian(spread_px / (1 << log2_width_));
+  const std::vector<float> down = gaussian(spread_px / (1 << log2_height_));
+  blur(plane, samples.width, samples.height, across, down);
+  const image::Plane& frame = picture_.planes[1];
+  std::size_t i = 0;
+  for (int cy = samples.y; cy < samples.bottom(); ++cy)
+    for (int cx = samples.x; cx < samples.right(); ++cx)
+      plane[i++] /= weight_inside(across, cx, frame.width) * weight_inside(down, cy, frame.height);
 }
 
 void Matte::blend_chroma() {
   const PixelBox& patch = layer_.patch;
-  for (int cy = patch.y >> log2_height_; cy <= (patch.bottom() - 1) >> log2_height_; ++cy) {
-    for (int cx = patch.x >> log2_width_; cx <= (patch.right() - 1) >> log2_width_; ++cx) {
-      if (block_is_drawn(cx, cy) && move_chroma(cx, cy, chroma_change(cx, cy))) mark_block(cx, cy);
+  const int left = patch.x >> log2_width_, top = patch.y >> log2_height_;
+  const PixelBox samples{left,
+                         top,
+                         ((patch.right() - 1) >> log2_width_) - left + 1,
+                         ((patch.bottom() - 1) >> log2_height_) - top + 1};
+  std::vector<float> cb, cr;
+  for (int cy = top; cy < samples.bottom(); ++cy)
+    for (int cx = left; cx < samples.right(); ++cx) {
+      const image::Ycc change =
+          block_is_drawn(cx, cy) ? chroma_change(cx, cy) : image::Ycc{0, 0, 0};
+      cb.push_back(change.cb), cr.push_back(change.cr);
     }
-  }
+  const bool is_soft = chroma_is_soft();
+  if (is_soft) soften(cb, samples), soften(cr, samples);
+  std::size_t i = 0;
+  for (int cy = top; cy < samples.bottom(); ++cy)
+    for (int cx = left; cx < samples.right(); ++cx, ++i)
+      if ((block_is_drawn(cx, cy) || (is_soft && block_is_free(cx, cy))) &&
+          move_chroma(cx, cy, {0, cb[i], cr[i]}))
+        mark_block(cx, cy);
 }
 
 // The sum of what the codec makes of the layer and of what is left of the background's grain.
@@ -297,6 +357,7 @@ void Matte::take_coded_chroma(const CodedWindow& window, const Coded& coded) {
 }
 
 void Matte::pass_codec(const std::vector<CodedWindow>& windows) {
+  for (std::size_t i = 0; i < drawn_.size(); ++i) drawn_[i] = drawn_[i] || changed_[i];
   drawn_ = in_marked_blocks(layer_.patch, drawn_);
   for (std::size_t i = 0; i < drawn_.size(); ++i) drawn_[i] = drawn_[i] && free_[i];
   for (const CodedWindow& window : windows) {
@@ -310,7 +371,7 @@ void Matte::pass_codec(const std::vector<CodedWindow>& windows) {
 void Matte::blend() {
   std::vector<CodedWindow> windows;
   if (options_.coder != nullptr)
-    windows = coded_windows(picture_, layer_, options_.sensor.halo_px());
+    windows = coded_windows(picture_, layer_, options_.sensor.reach_px());
   find_luma_changes();
   pass_sensor();
   write_luma();
@@ -318,10 +379,10 @@ void Matte::blend() {
   if (options_.coder != nullptr) pass_codec(windows);
 }
 
-// Where the intruder can have changed samples: the pixels that it covers, those that sharpening
-// reaches from there, and all others of a codec's blocks.
+// Where the intruder can have changed samples: the pixels that it covers, those that sharpening and
+// soft chroma reach from there, and all others of a codec's blocks.
 std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) const {
-  const int halo = options_.sensor.halo_px();
+  const int halo = options_.sensor.reach_px();
   std::vector<std::uint8_t> reached(coverage.size(), 0);
   const PixelBox& patch = layer_.patch;
   for (int y = patch.y; y < patch.bottom(); ++y)

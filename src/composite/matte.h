@@ -17,8 +17,8 @@
 // the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
 // nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
 // the sample sits, and only where one of the pixels of its own block is under the layer. Every
-// other sample keeps its bits. A sensor's sharpening and noise change those changes; a codec
-// changes the samples that come of it (codec_blocks.h).
+// other sample keeps its bits. A sensor's sharpening, noise and soft chroma change those changes; a
+// codec changes the samples that come of it (codec_blocks.h).
 namespace airtruth::composite {
 
 // What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
@@ -50,9 +50,9 @@ class PatchCoder {
 
 struct MatteOptions {
   const image::Mask* own_aircraft = nullptr;  // where not free, nothing is drawn
-  // What the camera does to the samples. Sharpening puts a halo around the layer, inside its patch:
-  // spread() makes room. Each pixel's own noise makes way for as much as the light that is there
-  // now would have.
+  // What the camera does to the samples. Sharpening and soft chroma reach beyond the layer, inside
+  // its patch: spread() makes room. Each pixel's own noise makes way for as much as the light that
+  // is there now would have.
   Sensor sensor;
   std::uint64_t seed = 1;  // of the noise ...
   std::int64_t frame = 0;  // ... which is another in each frame

@@ -191,6 +191,63 @@ TEST(Matte, ChromaMovesByTheWeightOfItsSiting) {
   EXPECT_EQ(moved(Siting::kTopLeft, 3), std::lround(full / 8));
 }
 
+// A red half plane on grey: chroma crosses its edge as the normal distribution does, luma at once.
+TEST(Matte, SoftChromaCrossesAnEdgeAsAGaussianDoes) {
+  constexpr int kSize = 96, kEdge = 48;
+  constexpr double kSpreadPx = 3;
+  Picture picture = image::make_picture(
+      kSize, kSize, {Chroma::k420, Matrix::kBt601, Range::kFull, Siting::kCenter});
+  for (auto& plane : picture.planes)
+    for (int y = 0; y < plane.height; ++y)
+      std::fill_n(plane.row(y), plane.width, std::uint8_t{128});
+  Layer layer = plain_layer({0, 0, kSize, kSize}, {0, 0, 0, 0});
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kEdge; ++x) {
+      layer.pixels[layer.index(x, y)] = {0.5f, 0.1f, 0.1f, 1};
+      layer.coverage[0][layer.index(x, y)] = 1;
+    }
+  MatteOptions options;
+  options.sensor.chroma_spread_px = kSpreadPx;
+  const auto visible = composite_matte(picture, layer, options);
+  const double full = picture.planes[2].row(24)[2] - 128;
+  ASSERT_GT(full, 40);
+  double last_changed = 0;
+  for (int cx = 14; cx < 34; ++cx) {
+    const double past_px = 2 * cx + 1 - kEdge;
+    const double share = 0.5 * std::erfc(past_px / (kSpreadPx * std::sqrt(2.0)));
+    // Whole samples add their own width; a code value is rounded.
+    EXPECT_NEAR(picture.planes[2].row(24)[cx] - 128, full * share, 0.015 * full + 1) << cx;
+    if (picture.planes[2].row(24)[cx] != 128) last_changed = 2 * cx + 2;
+  }
+  EXPECT_EQ(picture.planes[0].row(48)[kEdge], 128);
+  EXPECT_NE(picture.planes[0].row(48)[kEdge - 1], 128);
+  EXPECT_EQ(visible.at(0).box->right(), last_changed);
+  EXPECT_LE(last_changed, kEdge + options.sensor.chroma_px());
+}
+
+TEST(Matte, SoftChromaKeepsOffTheOwnAircraft) {
+  Picture picture = image::make_picture(64, 64, {Chroma::k420, Matrix::kBt601, Range::kFull});
+  for (auto& plane : picture.planes)
+    for (int y = 0; y < plane.height; ++y)
+      std::fill_n(plane.row(y), plane.width, std::uint8_t{128});
+  image::Mask mask{64, 64, std::vector<unsigned char>(64 * 64, 255)};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 33; x < 64; ++x) mask.free[static_cast<std::size_t>(64 * y + x)] = 0;
+  Layer layer = plain_layer({0, 0, 64, 64}, {0, 0, 0, 0});
+  for (int y = 20; y < 40; ++y)
+    for (int x = 10; x < 30; ++x) {
+      layer.pixels[layer.index(x, y)] = {0.5f, 0.1f, 0.1f, 1};
+      layer.coverage[0][layer.index(x, y)] = 1;
+    }
+  MatteOptions options;
+  options.own_aircraft = &mask;
+  options.sensor.chroma_spread_px = 3;
+  composite_matte(picture, layer, options);
+  EXPECT_NE(picture.planes[2].row(15)[15], 128);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 16; x < 32; ++x) ASSERT_EQ(picture.planes[2].row(y)[x], 128) << x << ' ' << y;
+}
+
 TEST(Matte, OwnAircraftHidesTheLayerAndTheSumsSaySo) {
   Picture picture = image::make_picture(8, 8, {Chroma::k444, Matrix::kBt601, Range::kFull});
   for (auto& plane : picture.planes) {
@@ -324,6 +381,11 @@ TEST(MatteProperty, NothingOutsideTheVisibleBoxesChangesAndTheBoxesAreTight) {
       const Difference difference{before, picture};
       expect_only_inside(difference, visible);
       for (std::size_t i = 0; i < 2; ++i) expect_tight(difference, layer, i, visible.at(i));
+      MatteOptions soft;
+      soft.sensor.chroma_spread_px = 1.5;
+      picture = before.clone();
+      const auto seen = composite_matte(picture, layer, soft);
+      expect_only_inside({before, picture}, seen);
     }
   }
 }

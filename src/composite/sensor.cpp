@@ -37,6 +37,13 @@ int Sensor::halo_px() const {
   return sharpening > 0 ? static_cast<int>(gaussian(sharpening_px).size() / 2) : 0;
 }
 
+// A Gaussian in chroma samples, each up to two pixels wide and at an odd or an even one.
+int Sensor::chroma_px() const {
+  if (!(chroma_spread_px > 0)) return 0;
+  constexpr int kSample = 2;
+  return kSample * static_cast<int>(gaussian(chroma_spread_px / kSample).size() / 2) + 1;
+}
+
 void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor) {
   if (!(sensor.sharpening > 0)) return;
   std::vector<float> soft = change;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/box.h"
 #include "image/tone_curve.h"
 
-// What a camera does to its samples after the light has come: sharpening and noise. All on luma, in
-// code values, on a patch of the frame.
+// What a camera does to its samples after the light has come: sharpening and noise, on luma;
+// softness, on chroma. In code values, on a patch of the frame.
 namespace airtruth::composite {
 
 struct Sensor {
@@ -22,9 +23,14 @@ struct Sensor {
   double noise_floor = 0;
   double noise_correlation_px = 0;
   image::ToneCurve tone;
+  // Standard deviation of a Gaussian that chroma goes through beyond what luma does, in luma
+  // pixels.
+  double chroma_spread_px = 0;
 
   bool has_noise() const { return noise_gain > 0 || noise_floor > 0; }
-  int halo_px() const;  // how far sharpening reaches
+  int halo_px() const;    // how far sharpening reaches
+  int chroma_px() const;  // how far soft chroma reaches
+  int reach_px() const { return std::max(halo_px(), chroma_px()); }
 };
 
 // change + sharpening (change - G change). Sharpening is linear, and the background has been

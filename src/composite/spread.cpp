@@ -56,28 +56,37 @@ std::vector<float> gaussian(double sigma_px) {
   return kernel;
 }
 
-void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel) {
+void blur(std::vector<float>& values,
+          int width,
+          int height,
+          const std::vector<float>& across,
+          const std::vector<float>& down) {
   check(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
         "a plane of the size that it says");
-  const int reach = static_cast<int>(kernel.size()) / 2;
-  if (reach == 0) return;
-  std::vector<float> line(static_cast<std::size_t>(std::max(width, height) + 2 * reach), 0.0F);
-  const auto along = [&](std::size_t start, std::size_t step, int count) {
-    std::fill(line.begin(), line.end(), 0.0F);
-    for (int i = 0; i < count; ++i)
-      line[static_cast<std::size_t>(i + reach)] =
-          values[start + static_cast<std::size_t>(i) * step];
-    for (int i = 0; i < count; ++i) {
-      float sum = 0;
-      const float* from = line.data() + i;
-      for (std::size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * from[k];
-      values[start + static_cast<std::size_t>(i) * step] = sum;
-    }
-  };
+  std::vector<float> line;
+  const auto along =
+      [&](std::size_t start, std::size_t step, int count, const std::vector<float>& kernel) {
+        const int reach = static_cast<int>(kernel.size()) / 2;
+        if (reach == 0) return;
+        line.assign(static_cast<std::size_t>(count + 2 * reach), 0.0F);
+        for (int i = 0; i < count; ++i)
+          line[static_cast<std::size_t>(i + reach)] =
+              values[start + static_cast<std::size_t>(i) * step];
+        for (int i = 0; i < count; ++i) {
+          float sum = 0;
+          const float* from = line.data() + i;
+          for (std::size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * from[k];
+          values[start + static_cast<std::size_t>(i) * step] = sum;
+        }
+      };
   for (int y = 0; y < height; ++y)
-    along(static_cast<std::size_t>(y) * static_cast<std::size_t>(width), 1, width);
+    along(static_cast<std::size_t>(y) * static_cast<std::size_t>(width), 1, width, across);
   for (int x = 0; x < width; ++x)
-    along(static_cast<std::size_t>(x), static_cast<std::size_t>(width), height);
+    along(static_cast<std::size_t>(x), static_cast<std::size_t>(width), height, down);
+}
+
+void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel) {
+  blur(values, width, height, kernel, kernel);
 }
 
 image::Layer spread(

@@ -25,8 +25,14 @@ image::Layer spread(
 // A Gaussian on pixels: the integral over each, so that it adds up to 1. Odd length; {1} for 0.
 std::vector<float> gaussian(double sigma_px);
 
-// Convolves one plane of values, rows of `width`, with a symmetric kernel along both axes; values
-// outside count as 0.
+// Convolves one plane of values, rows of `width`, with symmetric kernels along its rows and its
+// columns; values outside count as 0.
+void blur(std::vector<float>& values,
+          int width,
+          int height,
+          const std::vector<float>& across,
+          const std::vector<float>& down);
+// The same along both axes.
 void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel);
 
 }  // namespace airtruth::composite

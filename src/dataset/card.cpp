@@ -27,7 +27,7 @@ struct Effect {
   bool (*is_in)(const scene::CameraModel&);
 };
 
-const std::array<Effect, 8> kEffects = {{
+const std::array<Effect, 9> kEffects = {{
     {"motion blur of the exposure",
      [](const scene::CameraModel& m) {
        return is_positive(m.exposure_s) || is_positive(m.angle_deg);
@@ -45,6 +45,7 @@ const std::array<Effect, 8> kEffects = {{
      [](const scene::CameraModel& m) {
        return is_positive(m.noise_gain) || is_positive(m.noise_floor);
      }},
+    {"soft chroma", [](const scene::CameraModel& m) { return is_positive(m.chroma_spread_px); }},
     {"the codec's quantiser",
      [](const scene::CameraModel& m) { return is_positive(m.codec_step); }},
     {"a tone curve other than sRGB's",

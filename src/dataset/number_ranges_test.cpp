@@ -325,7 +325,7 @@ std::vector<std::string> scenes() {
           "[shutter]\nexposure_s = 0.004\nreadout_s = 0.01\n[air]\nextinction_per_km = [1, 1, 1]\n"
           "airlight = [0.5, 0.5, 0.5]\n[optics]\npoint_spread_px = 0.7\nsharpening = 0.4\n"
           "sharpening_px = 1\n[sensor]\nnoise_gain = 1e-4\nnoise_floor = 1e-5\n"
-          "noise_correlation_px = 0.5\ncodec_step = 4\ngamma = 2.2\n" +
+          "noise_correlation_px = 0.5\nchroma_spread_px = 2\ncodec_step = 4\ngamma = 2.2\n" +
           kIntruder + "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\ntimes_s = [0, 1]\n",
       head + "[lens]\nfile = 'lens.json'\n[shutter]\nangle_deg = 180\n" + light + kIntruder +
           "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\nspeed_mps = 20\n"};

@@ -17,7 +17,7 @@ struct CameraKey {
   std::variant<Number, Colour> member;
 };
 
-inline constexpr std::array<CameraKey, 11> kCameraKeys = {{
+inline constexpr std::array<CameraKey, 12> kCameraKeys = {{
     {"shutter.exposure_s", &CameraModel::exposure_s},
     {"shutter.readout_s", &CameraModel::readout_s},
     {"air.extinction_per_km", &CameraModel::extinction_per_km},
@@ -28,6 +28,7 @@ inline constexpr std::array<CameraKey, 11> kCameraKeys = {{
     {"sensor.noise_gain", &CameraModel::noise_gain},
     {"sensor.noise_floor", &CameraModel::noise_floor},
     {"sensor.noise_correlation_px", &CameraModel::noise_correlation_px},
+    {"sensor.chroma_spread_px", &CameraModel::chroma_spread_px},
     {"sensor.codec_step", &CameraModel::codec_step},
 }};
 

@@ -48,7 +48,7 @@ struct Camera {
 };
 
 struct Motion {
-  // auto: rotation for a fisheye and for views wider than 90 degrees, else homography
+  // auto: rotation, but homography for the method chroma-key
   std::string model = "auto";             // auto | rotation | homography | none
   std::string reference = "first_frame";  // first_frame | smoothed
   double smoothing_s = 1.0;
@@ -89,8 +89,9 @@ struct CameraModel {
   std::optional<double> noise_gain;   // variance of linear light is noise_gain * light
   std::optional<double> noise_floor;  // + noise_floor
   std::optional<double> noise_correlation_px;
-  std::optional<double> codec_step;  // of the quantiser, in luma code values
-  std::optional<double> gamma;       // exponent of the tone curve; else sRGB's curve
+  std::optional<double> chroma_spread_px;  // standard deviation, beyond luma's
+  std::optional<double> codec_step;        // of the quantiser, in luma code values
+  std::optional<double> gamma;             // exponent of the tone curve; else sRGB's curve
   // Keys that said "auto", as "air.airlight".
   std::vector<std::string> automatic;
 };

@@ -167,12 +167,18 @@ CameraModel camera_model_in(const TableReader& parent) {
   model.sharpening = in_optics.number("sharpening", kSharpening);
   model.sharpening_px = in_optics.number("sharpening_px", kSpread);
 
-  const TableReader sensor = parent.table(
-      "sensor", {"noise_gain", "noise_floor", "noise_correlation_px", "codec_step", "gamma"});
+  const TableReader sensor = parent.table("sensor",
+                                          {"noise_gain",
+                                           "noise_floor",
+                                           "noise_correlation_px",
+                                           "chroma_spread_px",
+                                           "codec_step",
+                                           "gamma"});
   AutoReader in_sensor(sensor, "sensor", model.automatic);
   model.noise_gain = in_sensor.number("noise_gain", kVariance);
   model.noise_floor = in_sensor.number("noise_floor", kVariance);
   model.noise_correlation_px = in_sensor.number("noise_correlation_px", kSpread);
+  model.chroma_spread_px = in_sensor.number("chroma_spread_px", kSpread);
   model.codec_step = in_sensor.number("codec_step", kCodecStep);
   model.gamma = sensor.number("gamma", kGamma);
   return model;

@@ -131,6 +131,7 @@ void add_camera_model(Text& text, const CameraModel& model) {
   add_or_auto(text, model, "sensor", "noise_gain", model.noise_gain);
   add_or_auto(text, model, "sensor", "noise_floor", model.noise_floor);
   add_or_auto(text, model, "sensor", "noise_correlation_px", model.noise_correlation_px);
+  add_or_auto(text, model, "sensor", "chroma_spread_px", model.chroma_spread_px);
   add_or_auto(text, model, "sensor", "codec_step", model.codec_step);
   text.add("gamma", model.gamma);
 }

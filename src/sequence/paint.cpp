@@ -23,6 +23,7 @@ composite::Sensor sensor_of(const scene::CameraModel& model) {
   sensor.noise_gain = model.noise_gain.value_or(0);
   sensor.noise_floor = model.noise_floor.value_or(0);
   sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
+  sensor.chroma_spread_px = model.chroma_spread_px.value_or(0);
   sensor.tone = tone_of(model);
   return sensor;
 }
@@ -31,7 +32,7 @@ bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_
 
 // How far beyond the light that reaches it the layer's samples change.
 int margin_px(const scene::CameraModel& model) {
-  return sensor_of(model).halo_px() + (has_codec(model) ? composite::kCodecBlockPx - 1 : 0);
+  return sensor_of(model).reach_px() + (has_codec(model) ? composite::kCodecBlockPx - 1 : 0);
 }
 
 // Air and lens, after the light has left the intruder.

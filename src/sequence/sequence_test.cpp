@@ -320,7 +320,9 @@ constexpr const char* kEverything =
     "[motion]\nmodel = \"rotation\"\n[shutter]\nangle_deg = 180\nreadout_s = 0.02\n"
     "[air]\nextinction_per_km = [0.2, 0.25, 0.3]\n[optics]\npoint_spread_px = 0.8\nsharpening = "
     "0.5\n"
-    "[sensor]\nnoise_gain = 4e-4\nnoise_floor = 2e-5\nnoise_correlation_px = 0.5\ncodec_step = 6\n";
+    "[sensor]\nnoise_gain = 4e-4\nnoise_floor = 2e-5\nnoise_correlation_px = 0.5\nchroma_spread_px "
+    "= 1.5\n"
+    "codec_step = 6\n";
 
 TEST_F(Sequence, WithEverythingOnTheBackgroundKeepsItsSamplesAndTruthItsWord) {
   const scene::Scene scene =

@@ -173,7 +173,8 @@ const std::string kEverything =
     kStill +
     "[shutter]\nexposure_s = 0.01\n[air]\nextinction_per_km = [0.2, 0.25, 0.3]\n"
     "[optics]\npoint_spread_px = 0.8\nsharpening = 0.5\n"
-    "[sensor]\nnoise_gain = 4e-4\nnoise_floor = 2e-5\nnoise_correlation_px = 0.5\n";
+    "[sensor]\nnoise_gain = 4e-4\nnoise_floor = 2e-5\nnoise_correlation_px = 0.5\n"
+    "chroma_spread_px = 1.5\n";
 
 // Sharpening, noise and the codec's quantiser move samples far around; the covered box stays.
 TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {

@@ -180,6 +180,7 @@ sharpening_px = 1.0
 noise_gain = 1e-4
 noise_floor = 1e-5
 noise_correlation_px = 0.5
+chroma_spread_px = 2
 codec_step = 4
 [light]
 sun_azimuth_deg = 10.0
