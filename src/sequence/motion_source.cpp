@@ -34,12 +34,7 @@ std::string sha256_of_video(const fs::path& video) {
   return sha256_of(all);
 }
 
-bool is_wide(const lens::Lens& lens) {
-  constexpr double kWideDeg = 90;
-  return lens.horizontal_fov_deg() > kWideDeg || lens.vertical_fov_deg() > kWideDeg;
-}
-
-std::string motion_model(const scene::Scene& scene, const lens::Lens& lens) {
+std::string motion_model(const scene::Scene& scene) {
   const bool paper = scene.composite.method == "chroma-key";
   if (scene.motion.model == "rotation" && paper)
     throw Error(
@@ -47,8 +42,7 @@ std::string motion_model(const scene::Scene& scene, const lens::Lens& lens) {
         "expected model = \"homography\" or method = \"matte\"",
         scene.motion.where);
   if (scene.motion.model != "auto") return scene.motion.model;
-  const bool fisheye = std::holds_alternative<lens::Fisheye>(lens.model());
-  return (fisheye || is_wide(lens)) && !paper ? "rotation" : "homography";
+  return paper ? "homography" : "rotation";
 }
 
 MotionSource::MotionSource(const scene::Scene& scene,
@@ -58,7 +52,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
                            const image::Mask* mask,
                            const fs::path& cache)
     : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
-  const std::string model = motion_model(scene, lens);
+  const std::string model = motion_model(scene);
   none_ = model == "none";
   smoothed_ = !none_ && scene.motion.reference == "smoothed";
   needs_change_ = needs_change;

@@ -86,10 +86,9 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
-// The scene's model of motion, with "auto" made out: "rotation" for a fisheye and for views wider
-// than 90 degrees (but not for chroma-key, the paper's method), else "homography".
-std::string motion_model(const scene::Scene& scene, const lens::Lens& lens);
-bool is_wide(const lens::Lens& lens);
+// The scene's model of motion, with "auto" made out: "rotation", since a scene states its lens, but
+// "homography" for chroma-key, the paper's method.
+std::string motion_model(const scene::Scene& scene);
 
 // What a video's own gyroscope told (a GoPro's telemetry); empty where it has none.
 std::vector<motion::GyroSample> gyro_of(const fs::path& video);

@@ -13,7 +13,7 @@ void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   read_mask(scene, size);
   const StatedScene with_camera = stated(scene, info);
   const lens::Lens lens = lens_of(scene.lens, size);
-  motion_model(scene, lens);
+  motion_model(scene);
   check_method(scene, lens);
   check_paths(with_camera.scene, info);
 }

@@ -69,7 +69,7 @@ class Run {
         scene_(stated_.scene),
         world_(load_world(scene_, size_, options.warn, options.stop)),
         painter_(make_painter(scene_, world_, mask_ptr(), options)) {
-    scene_.motion.model = stated_.scene.motion.model = motion_model(scene_, world_.lens);
+    scene_.motion.model = stated_.scene.motion.model = motion_model(scene_);
     // What was drawn is recorded: the same scene gives the same sizes whatever the table becomes.
     for (std::size_t i = 0; i < world_.actors.size(); ++i)
       if (const double scale = world_.actors[i].type->catalogue_scale; scale != 1)

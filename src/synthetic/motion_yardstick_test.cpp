@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -30,6 +31,16 @@ double corner_error_px(const Homography& measured,
   return sum / 4;
 }
 
+// The plane motion of a pinhole that turns.
+Homography of_pinhole(const lens::Lens& lens, const Quaternion& cam_from_reference) {
+  const auto [width, height] = lens.size();
+  Homography camera = Homography::Identity();
+  camera(0, 0) = camera(1, 1) = lens.focal_px();
+  camera(0, 2) = width / 2.0, camera(1, 2) = height / 2.0;
+  return camera * cam_from_reference.toRotationMatrix() * camera.inverse();
+}
+
+// Both models through a pinhole that only turns.
 TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
   FlightOptions options;
   options.width = 640;
@@ -38,32 +49,48 @@ TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
   options.clutter = 0.2;
   options.translate = false;
   const Flight flight(options);
-  motion::Estimator estimator(options.width, options.height, {}, &flight.own_aircraft());
-  std::vector<double> between_frames;
-  Homography measured_before = Homography::Identity();
+  struct Model {
+    const char* name;
+    motion::Estimator estimator;
+    std::vector<double> between_frames_px;
+    Homography before = Homography::Identity();
+  };
+  std::array<Model, 2> models = {
+      {{"homography",
+        motion::Estimator(options.width, options.height, {}, &flight.own_aircraft()),
+        {}},
+       {"rotation", motion::Estimator(flight.lens(), {}, &flight.own_aircraft()), {}}}};
   Homography truth_before = Homography::Identity();
   for (int k = 0; k < kFrames; ++k) {
-    const double time_s = k / options.frame_rate_hz;
-    const Homography measured = estimator.next(flight.frame(k), time_s).frame_from_reference;
+    const image::Picture picture = flight.frame(k);
     const Homography truth = flight.frame_from_first(k);
-    if (k > 0)
-      between_frames.push_back(corner_error_px(measured * measured_before.inverse(),
-                                               truth * truth_before.inverse(),
-                                               options.width,
-                                               options.height));
-    measured_before = measured;
+    for (Model& model : models) {
+      const motion::FrameMotion moved = model.estimator.next(picture, k / options.frame_rate_hz);
+      const Homography measured =
+          moved.rotation ? of_pinhole(flight.lens(), *moved.rotation) : moved.frame_from_reference;
+      if (k > 0)
+        model.between_frames_px.push_back(corner_error_px(measured * model.before.inverse(),
+                                                          truth * truth_before.inverse(),
+                                                          options.width,
+                                                          options.height));
+      model.before = measured;
+      if (k == 10 || k == 100 || k == 300 || k == kFrames - 1)
+        std::printf("%s against the first frame at %4d: %.2f px\n",
+                    model.name,
+                    k,
+                    corner_error_px(measured, truth, options.width, options.height));
+    }
     truth_before = truth;
-    if (k == 10 || k == 100 || k == 300 || k == kFrames - 1)
-      std::printf("against the first frame at %4d: %.2f px\n",
-                  k,
-                  corner_error_px(measured, truth, options.width, options.height));
   }
-  std::sort(between_frames.begin(), between_frames.end());
-  const double middle_px = median(between_frames);
-  std::printf("frame to frame: median %.3f px, 95 %% below %.3f px\n",
-              middle_px,
-              between_frames[between_frames.size() * 95 / 100]);
-  EXPECT_LT(middle_px, 0.3);
+  for (Model& model : models) {
+    std::vector<double>& errors_px = model.between_frames_px;
+    std::sort(errors_px.begin(), errors_px.end());
+    std::printf("%s, frame to frame: median %.3f px, 95 %% below %.3f px\n",
+                model.name,
+                median(errors_px),
+                errors_px[errors_px.size() * 95 / 100]);
+    EXPECT_LT(median(errors_px), 0.3) << model.name;
+  }
 }
 
 // Where a far point at the image's edge is predicted, from where it was in the first frame, and
