@@ -134,18 +134,43 @@ TEST(LightAround, APlateOverBrightGroundGetsWhatItFaces) {
   }
 }
 
-TEST(LightAround, APlateSquareToTheSunGivesItsLightBack) {
+// From 60 degrees aside, whose glint goes elsewhere.
+TEST(LightAround, APlateInTheSunGivesItsLightBack) {
   const Stage stage;
   Light light = only(even(0));
-  light.to_sun_in_world = {-1, 0, 0};
+  light.to_sun_in_world = {-0.5, 0, -std::sqrt(0.75)};
   light.sun = {0.8f, 0.7f, 0.6f};
   const image::LayerPixel pixel = stage.middle(plate(10), light, at_distance(100));
-  EXPECT_NEAR(pixel.red, (1 - kCoat) * 0.8f, 0.002);
-  EXPECT_NEAR(pixel.blue, (1 - kCoat) * 0.6f, 0.002);
+  EXPECT_NEAR(pixel.red, (1 - kCoat) * 0.5f * 0.8f, 0.002);
+  EXPECT_NEAR(pixel.blue, (1 - kCoat) * 0.5f * 0.6f, 0.002);
 }
 
-// At the foot of a wall that is far longer than it, a plate sees half of the light; what the wall
-// hides it gives back in part.
+// A ball that mirrors all light sends the sun's evenly into all directions, so that its disc has a
+// mean radiance of the sun's irradiance over 4 pi. Of a clear coat's it has the share that is
+// mirrored where the disc shows the sun: at half the angle between sun and camera (Schlick 1994).
+TEST(LightAround, ABlackSphereMirrorsTheSun) {
+  aircraft::Mesh black = sphere(4);
+  black.materials[0].diffuse = {0, 0, 0};
+  const Stage stage;
+  Light light = only(even(0));
+  light.sun = {1, 1, 1};
+  for (const double between_deg : {30.0, 90.0, 120.0}) {
+    const double a = radians(between_deg);
+    light.to_sun_in_world = {-std::cos(a), 0, -std::sin(a)};
+    const image::Layer layer = stage.whole(black, light, at_distance(100));
+    double sum = 0;
+    double covered = 0;
+    for (const image::LayerPixel& pixel : layer.pixels) {
+      sum += static_cast<double>(pixel.red);
+      covered += static_cast<double>(pixel.alpha);
+    }
+    const double share = 0.04 + 0.96 * std::pow(1 - std::cos(a / 2), 5);
+    EXPECT_NEAR(sum / covered / (share / 4), 1, 0.12) << between_deg;
+  }
+}
+
+// At the foot of a wall that is far longer than it, a plate sees half of the light. The wall, which
+// the small plate hardly hides, gives back what a light paint does: 0.6 of what it hides.
 TEST(LightAround, AWallHidesHalfOfTheLight) {
   aircraft::Mesh mesh = plate(0.5f);
   add_triangles(mesh,
@@ -159,8 +184,79 @@ TEST(LightAround, AWallHidesHalfOfTheLight) {
   const image::LayerPixel alone = stage.middle(plate(0.5f), only(even(1)), at_distance(40));
   const image::LayerPixel pixel = stage.middle(mesh, only(even(1)), at_distance(40));
   EXPECT_NEAR(alone.red, 1, 0.01);
-  EXPECT_GT(pixel.red, 0.5);   // hidden, with nothing given back
-  EXPECT_LT(pixel.red, 0.75);  // half of it given back by a wall as light as the plate
+  EXPECT_NEAR(pixel.red, 0.5 + 0.5 * 0.6, 0.03);
+}
+
+// The sun shines along a plate, square on a wall at its edge that is half of what the plate looks
+// at: the plate gets half of the wall's 0.6. It is found to a sixteenth of all directions.
+TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
+  aircraft::Mesh mesh = plate(0.5f);
+  add_triangles(mesh,
+                {{Eigen::Vector3f(0, -50, 0.5f),
+                  Eigen::Vector3f(-50, -50, 0.5f),
+                  Eigen::Vector3f(-50, 50, 0.5f)},
+                 {Eigen::Vector3f(0, -50, 0.5f),
+                  Eigen::Vector3f(-50, 50, 0.5f),
+                  Eigen::Vector3f(0, 50, 0.5f)}});
+  const Stage stage;
+  Light light = only(even(0));
+  light.to_sun_in_world = Vector3(1e-3, 0, -1).normalized();
+  light.sun = {1, 1, 1};
+  EXPECT_EQ(stage.middle(plate(0.5f), light, at_distance(40)).red, 0);
+  const image::LayerPixel pixel = stage.middle(mesh, light, at_distance(40));
+  EXPECT_NEAR(pixel.red, (1 - kCoat) * 0.5f * 0.6f, 0.6f / 16);
+}
+
+// Bare metal of albedo 1 mirrors all that comes: in a furnace it is invisible too.
+TEST(LightAround, AWhiteMetalSphereInAFurnaceIsInvisible) {
+  aircraft::Mesh metal = sphere(4);
+  metal.materials[0].finish = aircraft::Finish::kMetal;
+  const Stage stage;
+  const image::Layer layer = stage.whole(metal, only(even(1)), at_distance(100));
+  for (const image::LayerPixel& pixel : layer.pixels) EXPECT_NEAR(pixel.red, pixel.alpha, 0.001);
+}
+
+// And it gives back the sun by its colour, from wherever the sun shines.
+TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
+  aircraft::Mesh copper = sphere(4);
+  copper.materials[0].finish = aircraft::Finish::kMetal;
+  copper.materials[0].diffuse = {0.9f, 0.6f, 0.4f};
+  const Stage stage;
+  Light light = only(even(0));
+  light.sun = {1, 1, 1};
+  light.to_sun_in_world = {-std::sqrt(0.75), 0, -0.5};
+  const image::Layer layer = stage.whole(copper, light, at_distance(100));
+  double red = 0, blue = 0, covered = 0;
+  for (const image::LayerPixel& pixel : layer.pixels) {
+    red += static_cast<double>(pixel.red);
+    blue += static_cast<double>(pixel.blue);
+    covered += static_cast<double>(pixel.alpha);
+  }
+  EXPECT_NEAR(red / covered, 0.9 / 4, 0.03);
+  EXPECT_NEAR(blue / red, 0.4 / 0.9, 0.02);
+}
+
+// A pane that hides a quarter of what is behind it mirrors as much as one that hides all; what it
+// hides is a dark inside.
+TEST(LightAround, AClearPaneMirrorsAsAnOpaqueOneDoes) {
+  const Stage stage;
+  for (const float opacity : {0.25f, 1.0f}) {
+    aircraft::Mesh pane = plate(10);
+    pane.materials[0].finish = aircraft::Finish::kGlass;
+    pane.materials[0].opacity = opacity;
+    const image::LayerPixel pixel = stage.middle(pane, only(even(1)), at_distance(100));
+    EXPECT_NEAR(pixel.alpha, opacity, 1e-4);
+    EXPECT_NEAR(pixel.red, kCoat + (1 - kCoat) * opacity * 0.05f, 0.003) << opacity;
+  }
+}
+
+// What stands for turning blades is mat.
+TEST(LightAround, AMatPlateMirrorsNothing) {
+  aircraft::Mesh mat = plate(10);
+  mat.materials[0].finish = aircraft::Finish::kMat;
+  mat.materials[0].diffuse = {0, 0, 0};
+  const Stage stage;
+  EXPECT_EQ(stage.middle(mat, only(even(1)), at_distance(100)).red, 0);
 }
 
 // Light of one direction on a Lambert surface: order 2 keeps the cosine within 9 % of its height

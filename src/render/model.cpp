@@ -165,6 +165,30 @@ bool is_blocked(const Model::Impl& model,
   return false;
 }
 
+std::optional<Hit> nearest_blocker(const Model::Impl& model,
+                                   const Eigen::Vector3f& origin,
+                                   const Eigen::Vector3f& direction,
+                                   float reach_m) {
+  RTCRayHit query{};
+  query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
+  query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
+  query.ray.dir_z = direction.z();
+  query.ray.tnear = 0;
+  query.ray.tfar = reach_m;  // becomes that of the nearest hit so far
+  query.ray.mask = 0xffffffffu;
+  std::optional<Hit> best;
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].spins) continue;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(model.scenes[i].get(), &context, &query);
+    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
+  }
+  return best;
+}
+
 Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = mesh;
   impl_->device.reset(new_device());
@@ -195,7 +219,7 @@ Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
     }
   }
   impl_->radius_m = impl_->radius_m * 1.01 + 0.01;
-  impl_->openness = openness_of(*impl_);
+  impl_->openness = model_openness(*impl_);
 }
 Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -22,9 +23,30 @@ struct ReleaseScene {
 };
 
 // See openness.h.
+struct Openness {
+  float share = 1;  // 0..1
+  // The sum of the open unit directions as a share of all, by cosine: 2/3 of the normal where
+  // nothing is hidden.
+  Eigen::Vector3f towards{0, 0, 0};
+  // What hides the rest gives light back: this share (its length) of the irradiance on a surface
+  // that faces this way.
+  Eigen::Vector3f given_back{0, 0, 0};
+};
+struct SideOpenness {
+  std::array<Openness, 3> corner;
+
+  Openness at(float u, float v) const {  // barycentric, as of Hit
+    const auto mean = [&](const auto& of) {
+      return (1 - u - v) * of(corner[0]) + u * of(corner[1]) + v * of(corner[2]);
+    };
+    return {mean([](const Openness& o) { return o.share; }),
+            mean([](const Openness& o) -> const Eigen::Vector3f& { return o.towards; }),
+            mean([](const Openness& o) -> const Eigen::Vector3f& { return o.given_back; })};
+  }
+};
 struct TriangleOpenness {
-  std::array<float, 3> front = {1, 1, 1};  // the side that the triangle's own normal is on
-  std::array<float, 3> back = {1, 1, 1};
+  SideOpenness front;  // the side that the triangle's own normal is on
+  SideOpenness back;
 };
 
 struct Model::Impl {
@@ -55,5 +77,11 @@ bool is_blocked(const Model::Impl& model,
                 const Eigen::Vector3f& origin,
                 const Eigen::Vector3f& direction,
                 float reach_m = INFINITY);
+
+// The nearest thing that is_blocked() counts, by its distance from the origin, if any.
+std::optional<Hit> nearest_blocker(const Model::Impl& model,
+                                   const Eigen::Vector3f& origin,
+                                   const Eigen::Vector3f& direction,
+                                   float reach_m);
 
 }  // namespace airtruth::render

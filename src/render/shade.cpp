@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/coat.h"
+
 namespace airtruth::render {
 namespace {
 
@@ -81,7 +83,7 @@ namespace {
 struct Surface {
   Eigen::Vector3f face;    // unit, towards the viewer
   Eigen::Vector3f normal;  // unit, smooth, on the face's side
-  float openness = 1;      // 0..1
+  Openness openness;
 };
 
 Surface surface_at(const Placed& placed, const BodyRay& ray, const Hit& hit) {
@@ -102,8 +104,8 @@ Surface surface_at(const Placed& placed, const BodyRay& ray, const Hit& hit) {
   surface.normal.normalize();
   if (surface.normal.dot(surface.face) < 0) surface.normal = -surface.normal;
   const TriangleOpenness& openness = placed.model->openness[part][hit.triangle];
-  const auto& side = is_back ? openness.back : openness.front;
-  surface.openness = weights[0] * side[0] + weights[1] * side[1] + weights[2] * side[2];
+  const SideOpenness& side = is_back ? openness.back : openness.front;
+  surface.openness = side.at(hit.u, hit.v);
   return surface;
 }
 
@@ -134,32 +136,107 @@ float glint_of(const Surface& surface,
 struct Around {
   Rgb diffuse{};
   Rgb mirrored{};
-  float mirror_share = 0;
 };
 
+// What the aircraft's own paint gives back to the surface, over pi.
+Rgb given_back(const Placed& placed, const Eigen::Vector3f& share_towards, const Light& light) {
+  const float share = share_towards.norm();
+  if (!(share > 1e-3f)) return {};
+  Rgb result =
+      light.surroundings->irradiance_over_pi(placed.world_from_body * (share_towards / share));
+  const float sun = std::max(0.0f, share_towards.dot(placed.to_sun_in_body));
+  for (std::size_t i = 0; i < 3; ++i) result[i] = share * result[i] + sun * light.sun[i];
+  return result;
+}
+
+// Of the light from all around an aircraft hides a share, and gives back some of its own. What
+// remains comes about a direction that leans away from what hides the rest.
 Around light_around(const Placed& placed,
                     const Surface& surface,
-                    const Eigen::Vector3f& view,
+                    const Eigen::Vector3f& mirror,
                     const Light& light) {
+  constexpr float kNothingHidden = 0.999f;  // share
+  const float open = surface.openness.share;
   Around around;
-  if (!light.surroundings) {
-    const float upward = 0.5f * (1 + surface.normal.dot(placed.up_in_body));
-    for (std::size_t i = 0; i < 3; ++i)
-      around.diffuse[i] = light.ground[i] + upward * (light.sky[i] - light.ground[i]);
+  around.mirrored = light.surroundings->radiance(placed.world_from_body * mirror);
+  if (open > kNothingHidden) {
+    around.diffuse =
+        light.surroundings->irradiance_over_pi(placed.world_from_body * surface.normal);
     return around;
   }
-  // Of what the aircraft hides, its own paint gives back some: a light paint (0.6), half of it lit.
-  constexpr float kBounced = 0.3f;
-  constexpr float kCoatAtNormal = 0.04f;  // a dielectric of refractive index 1.5
-  const float lit = surface.openness + kBounced * (1 - surface.openness);
-  around.diffuse = light.surroundings->irradiance_over_pi(placed.world_from_body * surface.normal);
-  const float cosine = std::clamp(-surface.normal.dot(view), 0.0f, 1.0f);
-  const Eigen::Vector3f mirror = view + 2 * cosine * surface.normal;
-  const float off = 1 - cosine;
-  around.mirror_share = kCoatAtNormal + (1 - kCoatAtNormal) * off * off * off * off * off;
-  around.mirrored = light.surroundings->radiance(placed.world_from_body * mirror.normalized());
-  for (std::size_t i = 0; i < 3; ++i) around.diffuse[i] *= lit, around.mirrored[i] *= lit;
+  // As the face's own directions lean from the face's normal, so do those of the smooth normal.
+  const Eigen::Vector3f lean =
+      surface.openness.towards + 2 * open / 3 * (surface.normal - surface.face);
+  const Eigen::Vector3f towards = lean.norm() > 1e-6f ? lean.normalized() : surface.normal;
+  around.diffuse = light.surroundings->irradiance_over_pi(placed.world_from_body * towards);
+  const Rgb own = given_back(placed, surface.openness.given_back, light);
+  for (std::size_t i = 0; i < 3; ++i) {
+    around.diffuse[i] = open * around.diffuse[i] + own[i];
+    around.mirrored[i] = open * around.mirrored[i] + own[i];
+  }
   return around;
+}
+
+// A sky that goes evenly from ground to zenith colour (hemisphere lighting).
+Rgb hemisphere(const Placed& placed, const Surface& surface, const Light& light) {
+  const float upward = 0.5f * (1 + surface.normal.dot(placed.up_in_body));
+  Rgb result;
+  for (std::size_t i = 0; i < 3; ++i)
+    result[i] = light.ground[i] + upward * (light.sky[i] - light.ground[i]);
+  return result;
+}
+
+// Irradiance over pi of the sun on the paint, of a sun of 1.
+float sun_on(const Placed& placed, const Surface& surface, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f& to_sun = placed.to_sun_in_body;
+  const float cosine = surface.normal.dot(to_sun);
+  if (!(cosine > 0) || !(surface.face.dot(to_sun) > 0)) return 0;
+  return is_blocked(*placed.model, point + 0.01f * surface.face, to_sun) ? 0 : cosine;
+}
+
+Rgb as_opengl(const Placed& placed,
+              const Surface& surface,
+              const aircraft::Material& material,
+              const Texel& texel,
+              float sun,
+              const Eigen::Vector3f& view,
+              const Light& light) {
+  constexpr float kGlossShare =
+      0.08f;  // painted metal; the files' own specular colours are the game's taste
+  const float glint =
+      sun > 0 ? sun * glint_of(surface, placed.to_sun_in_body, view, material.shininess) : 0;
+  const Rgb around = hemisphere(placed, surface, light);
+  Rgb rgb;
+  for (std::size_t i = 0; i < 3; ++i)
+    rgb[i] =
+        material.opacity * (material.diffuse[i] * texel[i] * (sun * light.sun[i] + around[i]) +
+                            texel[3] * kGlossShare * material.specular[i] * glint * light.sun[i]);
+  return rgb;
+}
+
+// A surface that mirrors a share of the light and scatters some of the rest. Premultiplied.
+Rgb coated(const Placed& placed,
+           const Surface& surface,
+           const aircraft::Material& material,
+           const Texel& texel,
+           float sun,
+           const Eigen::Vector3f& view,
+           const Light& light) {
+  const Coat coat = coat_of(material, texel);
+  const float cosine = std::clamp(-surface.normal.dot(view), 0.0f, 1.0f);
+  const Eigen::Vector3f mirror = (view + 2 * cosine * surface.normal).normalized();
+  const Around around = light_around(placed, surface, mirror, light);
+  const Glint glint =
+      sun > 0 ? sun_glint(surface.normal, placed.to_sun_in_body, view, coat.roughness) : Glint{};
+  Rgb rgb;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float share = coat.mirrors ? mirror_share(coat.at_normal[i], cosine) : 0;
+    const float of_sun =
+        coat.mirrors ? mirror_share(coat.at_normal[i], glint.cosine) * glint.strength : 0;
+    rgb[i] = coat.scattered[i] * (1 - share) * (sun * light.sun[i] + around.diffuse[i]) +
+             coat.cover * (share * around.mirrored[i] + of_sun * light.sun[i]);
+  }
+  return rgb;
 }
 
 }  // namespace
@@ -173,29 +250,11 @@ std::array<float, 3> shade(const Placed& placed,
   const auto& triangle = mesh.parts[static_cast<std::size_t>(hit.part)].triangles[hit.triangle];
   const aircraft::Material& material = mesh.materials[triangle.material];
   const Surface surface = surface_at(placed, ray, hit);
-  const Eigen::Vector3f point = ray.origin + hit.t * ray.direction;
-  const Eigen::Vector3f& to_sun = placed.to_sun_in_body;
-  float sun = 0;
-  const float cosine = surface.normal.dot(to_sun);
-  if (cosine > 0 && surface.face.dot(to_sun) > 0 &&
-      !is_blocked(*placed.model, point + 0.01f * surface.face, to_sun))
-    sun = cosine;
-  const float glint =
-      sun > 0 ? sun * glint_of(surface, to_sun, ray.direction, material.shininess) : 0;
-  const Around around = light_around(placed, surface, ray.direction, light);
+  const float sun = sun_on(placed, surface, ray.origin + hit.t * ray.direction);
   const Texel texel = albedo_texel(placed, hit, footprint_m);
-  std::array<float, 3> rgb{};
-  constexpr float kGlossShare =
-      0.08f;  // painted metal; the files' own specular colours are the game's taste
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float albedo = material.diffuse[i] * texel[i];
-    const float paint = albedo * (sun * light.sun[i] + around.diffuse[i]);
-    rgb[i] =
-        material.opacity * ((1 - around.mirror_share) * paint +
-                            texel[3] * (around.mirror_share * around.mirrored[i] +
-                                        kGlossShare * material.specular[i] * glint * light.sun[i]));
-  }
-  return rgb;
+  if (light.surroundings)
+    return coated(placed, surface, material, texel, sun, ray.direction, light);
+  return as_opengl(placed, surface, material, texel, sun, ray.direction, light);
 }
 
 }  // namespace airtruth::render
