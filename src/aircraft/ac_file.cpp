@@ -147,7 +147,7 @@ class AcParser {
       tokens_.fail(fmt::format("holds more than {} materials", kMaxAcMaterials));
     AcMaterial material;
     std::array<float, 3> ambient{};
-    tokens_.string();
+    material.finish = finish_named(tokens_.string());
     const auto colour = [&](const char* what, std::array<float, 3>& value) {
       tokens_.expect(what);
       for (float& channel : value) channel = tokens_.number(what, kLargestCoordinate);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "aircraft/finish.h"
+
 // An AC3D text file (.ac) as it says itself, checked:
 // https://www.inivis.com/ac3d/man/ac3dfileformat.html
 namespace airtruth::aircraft {
@@ -26,6 +28,7 @@ struct AcMaterial {
   std::array<float, 3> specular{};
   float shininess = 0;     // 0..128
   float transparency = 0;  // 0..1
+  Finish finish = Finish::kPaint;
 };
 
 struct AcCorner {

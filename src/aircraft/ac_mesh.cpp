@@ -154,6 +154,7 @@ class BatchBuilder {
     batch_.specular = material.specular;
     batch_.shininess = material.shininess;
     batch_.opacity = 1 - material.transparency;
+    batch_.finish = material.finish;
     if (object_.has_texture) {
       batch_.texture = object_.texture;
       batch_.texture_line = object_.texture_line;

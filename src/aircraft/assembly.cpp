@@ -16,7 +16,8 @@ constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 
 bool look_the_same(const Material& a, const Material& b) {
   return a.diffuse == b.diffuse && a.emission == b.emission && a.specular == b.specular &&
-         a.shininess == b.shininess && a.opacity == b.opacity && a.texture == b.texture;
+         a.shininess == b.shininess && a.opacity == b.opacity && a.texture == b.texture &&
+         a.finish == b.finish;
 }
 
 std::array<float, 3> linear_colour(const std::array<float, 3>& srgb) {
@@ -44,6 +45,7 @@ void make_propeller_disc(Material& material, const Picture* picture) {
   material.emission = {};
   material.specular = {};
   material.shininess = 0;
+  material.finish = Finish::kMat;
 }
 
 std::string listed_folders(const ModelFiles& files, const std::vector<fs::path>& folders) {
@@ -113,6 +115,7 @@ std::uint32_t Assembly::material_of(const Batch& batch, const PartChoice& choice
   material.shininess = std::clamp(batch.shininess, 0.0f, 128.0f);
   material.opacity = choice.opacity * std::clamp(batch.opacity, 0.0f, 1.0f);
   material.texture = texture;
+  material.finish = batch.finish;
   if (choice.is_propeller_disc)
     make_propeller_disc(
         material,

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "aircraft/finish.h"
+
 namespace airtruth::aircraft {
 
 // Triangles of a model file that look alike, in the file's own frame, whatever the format.
@@ -21,6 +23,7 @@ struct Batch {
   std::array<float, 3> specular{};                 // sRGB
   float shininess = 0;
   float opacity = 1;
+  Finish finish = Finish::kPaint;
   std::string texture;   // the file's name for it; empty: none
   int texture_line = 0;  // where the file names it; 0: unknown
   int picture = -1;      // index into RawModel::pictures, in place of `texture`: inside the file

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "aircraft/finish.h"
 #include "geometry/transform.h"
 
 // An aircraft as triangles with what they look like. Body frame: x forward, y right, z down,
@@ -38,6 +39,7 @@ struct Material {
   float shininess = 0;                        // Blinn-Phong exponent, 0..128
   float opacity = 1;
   int texture = -1;  // index into Mesh::textures, -1: none
+  Finish finish = Finish::kPaint;
 };
 
 struct Triangle {

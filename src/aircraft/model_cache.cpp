@@ -10,7 +10,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr int kReaderVersion = 2;  // raised whenever a reader's arrays change
+constexpr int kReaderVersion = 3;  // raised whenever a reader's arrays change
 constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 constexpr std::size_t kMaxQuestionsKept = 10'000;
 constexpr std::size_t kMaxKeptText = 65536;

@@ -40,6 +40,7 @@ void put_material(WireWriter& out, const Material& material) {
   out.put(material.shininess);
   out.put(material.opacity);
   out.put(static_cast<std::int32_t>(material.texture));
+  out.put(static_cast<std::uint8_t>(material.finish));
 }
 
 Material get_material(WireReader& in) {
@@ -50,10 +51,11 @@ Material get_material(WireReader& in) {
   material.shininess = in.get<float>();
   material.opacity = in.get<float>();
   material.texture = in.get<std::int32_t>();
+  material.finish = static_cast<Finish>(in.get<std::uint8_t>());
   return material;
 }
 
-constexpr std::size_t kMaterialBytes = 12 * 4;
+constexpr std::size_t kMaterialBytes = 12 * 4 + 1;
 
 static_assert(sizeof(Triangle) == 4 * sizeof(std::uint32_t));
 

@@ -56,6 +56,7 @@ void check_materials(const RawModel& model) {
                      is_share(m.opacity) && m.shininess >= 0 && m.shininess <= 128,
                  "a material out of range");
     expect_sound(m.texture >= -1 && m.texture < pictures, "a material without its texture");
+    expect_sound(static_cast<std::uint8_t>(m.finish) < kFinishes, "a finish that there is not");
   }
 }
 

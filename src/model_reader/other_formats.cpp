@@ -116,6 +116,9 @@ class SceneReader {
       batch.emission = colour_of(colour, is_linear);
     if (material.Get(AI_MATKEY_COLOR_SPECULAR, colour) == aiReturn_SUCCESS)
       batch.specular = colour_of(colour, is_linear);
+    aiString name;
+    if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS)
+      batch.finish = aircraft::finish_named(name.C_Str());
     float value = 0;
     if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
       batch.opacity = std::min(value, 1.0f);
