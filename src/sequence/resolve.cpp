@@ -91,8 +91,8 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
 // already (docs/decisions/0017).
 constexpr const char* kOnlyByName = "sensor.codec_step";
 
-// A clip that shows no edges of colour is measured in all else.
-constexpr const char* kFromOthers = "sensor.chroma_spread_px";
+// A clip that shows no edges of colour, as many do, is measured in all else.
+constexpr const char* kMayBeMissing = "sensor.chroma_spread_px";
 
 bool is_named(const scene::Scene& scene, const std::string& key) {
   const auto& named = scene.camera_model.automatic;
@@ -191,7 +191,7 @@ void take_measured(scene::Scene& scene,
         const auto horizon = untold.find("horizon");
         if (key == std::string_view("air.airlight") && horizon != untold.end())
           what += " (" + horizon->second + ")";
-        if (!stated.realism.fallback && (key != std::string_view(kFromOthers) || !value))
+        if (!stated.realism.fallback && key != std::string_view(kMayBeMissing))
           throw Error(
               what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
                               "= true to take what cameras have in the median"

@@ -128,6 +128,24 @@ TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
       calibration::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
 }
 
+TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
+  constexpr const char* kKey = "sensor.chroma_spread_px";
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  found.missing[kKey] = "no colour";
+  keep(found);
+  scene_.camera_model.automatic = {kKey};
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(resolve().camera_model.chroma_spread_px,
+            calibration::usual_camera().values.at(kKey).value);
+  scene_.realism.profile = "none";
+  EXPECT_FALSE(resolve().camera_model.chroma_spread_px);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("no colour; it is of the median over"), std::string::npos);
+  EXPECT_NE(warnings[1].find("no colour; it is left out"), std::string::npos) << warnings[1];
+}
+
 TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
   scene_.realism.where = {"s.toml", 7, 1};
   scene_.realism.profile = "fixed-wing-nos";
