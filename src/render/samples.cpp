@@ -86,10 +86,12 @@ SampleCounts counts_for(int quality, double size_px) {
     case 2:
       return {16, 128, 256, 8, 4};
     case 3:
-      if (size_px <= 24) return {64, 1024, 1024, 16, 8};
-      if (size_px <= 64) return {16, 512, 512, 16, 4};
+      // The smaller, the more of a livery is in one pixel, and the fewer pixels there are to pay
+      // for.
+      if (size_px <= 24) return {64, 1024, 1024, 64, 64};
+      if (size_px <= 64) return {16, 512, 512, 32, 16};
       // The larger, the more pixels of outline there are for one to be unlucky.
-      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 4};
+      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8};
     case 4:
       return {64, 1024, 4096, 16, 16};
     case 5:
