@@ -173,9 +173,15 @@ class Session {
     put("sensor.codec_step", {{steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}});
   }
 
+  // In code values; 0: none is known.
+  double codec_step() const {
+    const auto found = result_.values.find("sensor.codec_step");
+    return found == result_.values.end() ? 0 : found->second[0].value;
+  }
+
   void take_edges() {
     std::string why;
-    if (const auto found = edges_.result(why)) {
+    if (const auto found = edges_.result(why, codec_step())) {
       put("optics.point_spread_px", {found->point_spread_px});
       put("optics.sharpening", {found->sharpening});
       put("optics.sharpening_px", {found->sharpening_px});
@@ -196,7 +202,7 @@ class Session {
 
   void take_chroma(const StepResponse& response) {
     std::string why;
-    if (const auto found = edges_.chroma(response, why))
+    if (const auto found = edges_.chroma(response, why, codec_step()))
       put("sensor.chroma_spread_px", {*found});
     else
       lack("sensor.chroma_spread_px", why);

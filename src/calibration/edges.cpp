@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>
@@ -33,6 +34,11 @@ constexpr double kSharp = 1.4;  // times the sharpest
 constexpr double kSymmetricShare = 0.25;
 constexpr std::size_t kFewestSymmetric = 60;
 constexpr std::size_t kMostFitted = 150;
+// Height of an edge, in steps of the codec's quantiser, that rounding leaves as sharp as it is. In
+// a transform of 8 x 8 samples a step of height h through a spread of 0.7 px has a coefficient of
+// 0.55 h at a quarter of a cycle a pixel (closed form of the DCT-II); half a quantiser's step is a
+// sixth of that.
+constexpr double kStepsForSharpness = 6;
 constexpr double kShown = 1.1;  // times the camera's spread
 constexpr std::size_t kFewestShown = 8;
 // Between frames, across the edge: what that blurs is not sharp.
@@ -313,6 +319,7 @@ void EdgeMeter::add(const image::Picture& frame,
     Edge edge;
     edge.width_px = step.width_px;
     edge.asymmetry = step.asymmetry;
+    edge.height = step.high - step.low;
     edge.is_long = found->half_length == kLong;
     edge.step = {(step.low - dark) / unit, (step.high - dark) / unit, std::move(step.samples)};
     // The own aircraft's edges are as good as others for sharpness; its mask says that they do not
@@ -343,19 +350,24 @@ bool EdgeMeter::is_known(const Edge& edge) const {
   });
 }
 
-std::vector<const EdgeMeter::Edge*> EdgeMeter::usable() const {
-  std::vector<const Edge*> slow, long_ones, all;
+std::vector<const EdgeMeter::Edge*> EdgeMeter::usable(double codec_step) const {
+  std::vector<const Edge*> all, slow, clear, long_ones;
   for (const Edge& edge : edges_) {
     all.push_back(&edge);
     if (edge.moved_px > kMostMoved) continue;
     slow.push_back(&edge);
-    if (edge.is_long) long_ones.push_back(&edge);
+    if (edge.height >= kStepsForSharpness * codec_step) clear.push_back(&edge);
   }
-  return long_ones.size() >= kEnoughLong ? long_ones : slow.size() >= kFewestEdges ? slow : all;
+  if (slow.size() < kFewestEdges) return all;
+  const std::vector<const Edge*>& chosen = clear.size() >= kFewestSymmetric ? clear : slow;
+  std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(long_ones), [](const Edge* edge) {
+    return edge->is_long;
+  });
+  return long_ones.size() >= kEnoughLong ? long_ones : chosen;
 }
 
-std::vector<const StepEdge*> EdgeMeter::sharp_ones() const {
-  std::vector<const Edge*> edges = usable();
+std::vector<const StepEdge*> EdgeMeter::sharp_ones(double codec_step) const {
+  std::vector<const Edge*> edges = usable(codec_step);
   const auto keep = [&](std::size_t count, std::size_t fewest) {
     edges.resize(std::min(edges.size(), std::max(count, fewest)));
   };
@@ -379,13 +391,13 @@ std::vector<const StepEdge*> EdgeMeter::sharp_ones() const {
   return sharp;
 }
 
-std::optional<StepResponse> EdgeMeter::result(std::string& why) {
+std::optional<StepResponse> EdgeMeter::result(std::string& why, double codec_step) {
   if (edges_.size() < kFewestEdges) {
     why = "the clip shows " + std::to_string(edges_.size()) + " clean straight edges; it takes " +
           std::to_string(kFewestEdges);
     return std::nullopt;
   }
-  const auto edges = sharp_ones();
+  const auto edges = sharp_ones(codec_step);
   StepResponse response = fit_step_response(edges, tone_);
   Estimate& spread = response.point_spread_px;
   spread.sigma = std::hypot(spread.sigma, spread.value * kSofterInWorld / most_at_once_);
@@ -394,9 +406,11 @@ std::optional<StepResponse> EdgeMeter::result(std::string& why) {
   return response;
 }
 
-std::optional<Estimate> EdgeMeter::chroma(const StepResponse& response, std::string& why) const {
+std::optional<Estimate> EdgeMeter::chroma(const StepResponse& response,
+                                          std::string& why,
+                                          double codec_step) const {
   std::vector<LumaAndChroma> both;
-  for (const Edge* edge : usable())
+  for (const Edge* edge : usable(codec_step))
     if (!edge->chroma.empty()) both.push_back({&edge->step, &edge->chroma});
   return chroma_spread(both, most_chroma_at_once_, response, tone_, why);
 }

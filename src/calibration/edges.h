@@ -26,9 +26,14 @@ class EdgeMeter {
   // The spread's error holds that the sharpest of few edges may be soft in the world: edges of one
   // frame are different ones, those of other frames may be the same again, as those of one aircraft
   // before the sky are.
-  std::optional<StepResponse> result(std::string& why);
-  // What chroma has beyond luma across edges that are as sharp as `response`, which is of result().
-  std::optional<Estimate> chroma(const StepResponse& response, std::string& why) const;
+  // codec_step: of the quantiser, in code values; 0: none is known. A codec takes sharpness from
+  // weak edges: where enough stand out from its step, they alone are taken.
+  std::optional<StepResponse> result(std::string& why, double codec_step = 0);
+  // What chroma has beyond luma across edges that are as sharp as `response`, which is of result()
+  // with the same codec_step.
+  std::optional<Estimate> chroma(const StepResponse& response,
+                                 std::string& why,
+                                 double codec_step = 0) const;
   const EdgeProfile& profile() const { return profile_; }
 
  private:
@@ -37,14 +42,15 @@ class EdgeMeter {
     double nx = 0, ny = 0;  // across it
     double width_px = 0;    // standard deviation of its derivative
     double asymmetry = 0;   // rms height that its two halves differ by
+    double height = 0;      // of the step, in code values
     double moved_px = 0;    // across itself, since the frame before; NaN: not known
     bool is_long = false;
     StepEdge step;
     std::vector<ChromaStep> chroma;
   };
   bool is_known(const Edge& edge) const;
-  std::vector<const Edge*> usable() const;
-  std::vector<const StepEdge*> sharp_ones() const;
+  std::vector<const Edge*> usable(double codec_step) const;
+  std::vector<const StepEdge*> sharp_ones(double codec_step) const;
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;

@@ -10,6 +10,7 @@
 
 #include "base/seed.h"
 #include "image/colour.h"
+#include "video/patch_codec.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -29,7 +30,7 @@ double step(double place_px, double spread_px = kSpreadPx) {
 }
 
 // Slanted bars; along half of their edges lies a line on the dark side.
-image::Picture bars(double line_depth, double shift_px) {
+image::Picture bars(double line_depth, double shift_px, double contrast = 0.25) {
   constexpr int kWidth = 640, kHeight = 200, kFine = 20;
   constexpr int kMost = 60;  // px from the edge that anything is seen of it
   std::vector<double> rise;  // of one edge's light and of its line, kFine places a pixel
@@ -56,7 +57,7 @@ image::Picture bars(double line_depth, double shift_px) {
         light += rises ? rise[i] : rise[i] - 1;
         if (edge % 4 < 2) light -= line_depth * line[i];
       }
-      const double linear = 0.25 + 0.25 * light;
+      const double linear = 0.25 + contrast * light;
       picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
           dark + unit * double(image::srgb_from_linear(static_cast<float>(linear))) +
           noise.uniform(0, 1));
@@ -150,6 +151,35 @@ TEST(Edges, ThatStayWhereTheyAreAreOne) {
   ASSERT_TRUE(once.result(why));
   EXPECT_GT(once.profile().edges, 10);
   EXPECT_EQ(meter.profile().edges, once.profile().edges);
+}
+
+// Clear and faint edges of one sharpness, through a real encoder: it takes sharpness from the faint
+// ones.
+TEST(Edges, ThatACodecSoftenedGiveWayToThoseThatStandOutFromItsStep) {
+  constexpr int kQuantiser = 27;
+  constexpr double kStep = 14.14;  // 0.625 * 2^(27/6)
+  video::PatchCodec codec(kQuantiser);
+  image::Picture grey = image::make_picture(640, 400, {});
+  for (const image::Plane& plane : grey.planes)
+    std::fill_n(plane.samples.get(), plane.stride * plane.height, std::uint8_t{128});
+  EdgeMeter meter(nullptr, {});
+  for (const double shift_px : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5}) {
+    image::Picture frame = grey.clone();
+    image::paste(frame, bars(0, shift_px, 0.7), 0, 0);
+    image::paste(frame, bars(0, shift_px, 0.18), 0, 200);
+    for (const std::size_t p : {1u, 2u})
+      std::fill_n(frame.planes[p].samples.get(),
+                  frame.planes[p].stride * frame.planes[p].height,
+                  std::uint8_t{128});
+    meter.add(codec.coded(frame, grey), std::nullopt);
+  }
+  std::string why;
+  const auto all = meter.result(why);
+  const auto clear = meter.result(why, kStep);
+  ASSERT_TRUE(all && clear) << why;
+  EXPECT_NEAR(clear->point_spread_px.value, kSpreadPx, 0.05);
+  EXPECT_GT(std::abs(all->point_spread_px.value - kSpreadPx),
+            std::abs(clear->point_spread_px.value - kSpreadPx));
 }
 
 TEST(Edges, NoneIsNoAnswer) {
