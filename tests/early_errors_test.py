@@ -128,6 +128,8 @@ class EarlyErrors(unittest.TestCase):
             (("synth", "-o", "new.mkv", "--mask", "m.txt"), "expected .png or .jpg"),
             (("evision", "nowhere", "--frames", "there.txt"), "exists already"),
             (("aircraft", "show", "c172/news", "-o", "there.txt"), "expected .png or .jpg"),
+            (("aircraft", "list", "--sheet", "new.png", "--sizes"), "--sizes excludes --sheet"),
+            (("aircraft", "list", "--sheet", "new.png", "--left-out"), "--left-out excludes --sheet"),
             (("overlay", "made/clip", "-o", "no/o.mp4"), "no folder no"),
             (("inspect", "made/clip", "--frame", "0", "-o", "i.txt"), "expected .png or .jpg"),
             (("dataset", "report", "made/clip", "-o", "no/r.html"), "no folder no"),

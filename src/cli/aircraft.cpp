@@ -155,14 +155,21 @@ void add_aircraft(CLI::App& app, Context& context) {
                            "Show only names that contain this, or that it fits with * and ?; "
                            "letter case does not matter");
   auto sizes = std::make_shared<bool>(false);
-  list_command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
+  CLI::Option* sizes_flag =
+      list_command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
   auto is_left_out = std::make_shared<bool>(false);
-  list_command->add_flag("--left-out",
-                         *is_left_out,
-                         "In their place: the names of the package that are not offered, and why");
+  CLI::Option* left_out_flag = list_command->add_flag(
+      "--left-out",
+      *is_left_out,
+      "In their place: the names of the package that are not offered, and why");
+  left_out_flag->excludes(sizes_flag);
   auto sheet = std::make_shared<std::string>();
-  list_command->add_option(
-      "--sheet", *sheet, "In their place: draw one aircraft of each type here (.png or .jpg)");
+  list_command
+      ->add_option("--sheet",
+                   *sheet,
+                   "In their place: draw one aircraft of each type here (.png or .jpg)")
+      ->excludes(sizes_flag)
+      ->excludes(left_out_flag);
   auto overwrite = std::make_shared<bool>(false);
   list_command->add_flag("--overwrite", *overwrite, "Replace the picture if it exists");
   list_command->callback([filter, sizes, is_left_out, sheet, overwrite, &context] {
