@@ -87,12 +87,11 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
   return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
 }
 
-// The codec is put to use only where the scene names it: a measured point spread has its softness
-// already (docs/decisions/0017).
-constexpr const char* kOnlyByName = "sensor.codec_step";
-
-// A clip that shows no edges of colour, as many do, is measured in all else.
-constexpr const char* kMayBeMissing = "sensor.chroma_spread_px";
+// A clip may show no edges of colour, as many do, and a decoder may not tell its quantiser where
+// [realism] auto asks for it: such a clip is measured in all else.
+bool may_be_missing(std::string_view key, const scene::Realism& realism) {
+  return key == "sensor.chroma_spread_px" || (key == "sensor.codec_step" && realism.automatic);
+}
 
 bool is_named(const scene::Scene& scene, const std::string& key) {
   const auto& named = scene.camera_model.automatic;
@@ -100,7 +99,7 @@ bool is_named(const scene::Scene& scene, const std::string& key) {
 }
 
 bool is_wanted(const scene::Scene& scene, const std::string& key) {
-  return is_named(scene, key) || (scene.realism.automatic && key != kOnlyByName);
+  return is_named(scene, key) || scene.realism.automatic;
 }
 
 // Fills what the scene does not state from its camera file; is a value that is wanted still
@@ -110,7 +109,7 @@ bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
   scene::CameraModel& model = scene.camera_model;
   scene::for_each_camera_key(
       [&](const char* key, auto& stated, const auto& filed) {
-        if (!stated && (key != std::string(kOnlyByName) || is_named(scene, key))) stated = filed;
+        if (!stated) stated = filed;
         is_missing = is_missing || (!stated && is_wanted(scene, key));
       },
       model,
@@ -191,7 +190,7 @@ void take_measured(scene::Scene& scene,
         const auto horizon = untold.find("horizon");
         if (key == std::string_view("air.airlight") && horizon != untold.end())
           what += " (" + horizon->second + ")";
-        if (!stated.realism.fallback && key != std::string_view(kMayBeMissing))
+        if (!stated.realism.fallback && !may_be_missing(key, stated.realism))
           throw Error(
               what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
                               "= true to take what cameras have in the median"

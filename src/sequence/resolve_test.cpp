@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "scene/camera_keys.h"
 #include "calibration/cache.h"
 #include "calibration/profile.h"
 #include "sequence/ambient.h"
@@ -144,6 +145,34 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[0].find("no colour; it is of the median over"), std::string::npos);
   EXPECT_NE(warnings[1].find("no colour; it is left out"), std::string::npos) << warnings[1];
+}
+
+// As of clips that are not H.264; `auto` asks for all that can be had, and takes the step where it is.
+TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
+  constexpr const char* kKey = "sensor.codec_step";
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  scene::for_each_camera_key(
+      [&](const std::string& key, const auto&) {
+        found.values[key].assign(key.starts_with("air.") ? 3 : 1, {0.1, 0.01});
+      },
+      scene_.camera_model);
+  found.notes["shutter.readout"] = "down";
+  found.values[kKey] = {{7, 1}};
+  keep(found);
+  scene_.camera_model.automatic.clear();
+  scene_.realism.automatic = true;
+  scene_.realism.profile = "none";
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(resolve().camera_model.codec_step, 7);
+  EXPECT_TRUE(warnings.empty());
+  found.values.erase(kKey);
+  found.missing[kKey] = "no quantiser";
+  keep(found);
+  EXPECT_FALSE(resolve().camera_model.codec_step);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("no quantiser; it is left out"), std::string::npos) << warnings[0];
 }
 
 TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
