@@ -82,10 +82,11 @@ def whole(text):
 
 
 class Clip:
-    def __init__(self, name, frames, cut=None):
+    def __init__(self, name, frames, cut=None, covered=None):
         self.name = name
         self.frames = frames  # of each frame: {track: (x, y, width, height)}
         self.cut = cut or set()  # (frame, track) that the picture's edge cuts
+        self.covered = covered or []  # of each frame, the bounds of what the only track covers; None: nothing
 
     def tracks(self):
         return sorted({track for frame in self.frames for track in frame})
@@ -128,14 +129,15 @@ class Readers(unittest.TestCase):
         cls.built = []
         sequences = sorted((cls.root / "built/sequences").iterdir())
         for sequence in sequences:
-            frames, cut = [], set()
+            frames, cut, covered = [], set(), []
             for i, line in enumerate((sequence / "truth.jsonl").read_text().splitlines()):
                 intruder = json.loads(line)["intruders"][0]
                 box = intruder.get("visible_box_px")
                 frames.append({1: tuple(box)} if box else {})
+                covered.append(intruder.get("covered_box_px"))
                 if box and intruder["cut_by_frame"] > 0:
                     cut.add((i, 1))
-            cls.built.append(Clip(sequence.name, frames, cut))
+            cls.built.append(Clip(sequence.name, frames, cut, covered))
         cls.media = next(path for path in sequences[0].iterdir() if path.suffix == ".mkv")
         (cls.root / "boxes.csv").write_text("frame,x,y,w,h\n" + "".join(
             ",".join(map(str, row)) + "\n" for row in IMPORTED))
@@ -228,7 +230,8 @@ class Readers(unittest.TestCase):
                     self.assertEqual(annotation["iscrowd"], 0)
                     x, y, w, h = annotation["bbox"]
                     if clips is self.built:
-                        self.check_run_lengths(annotation)
+                        clip = next(clip for clip in clips if clip.name == videos[image["video_id"]])
+                        self.check_run_lengths(annotation, clip.covered[image["frame_id"]])
                         got[videos[image["video_id"]]][image["frame_id"]][annotation["track_id"]] = (x, y, w, h)
                         continue
                     self.assertAlmostEqual(annotation["area"], w * h)
@@ -241,7 +244,7 @@ class Readers(unittest.TestCase):
                     got[videos[image["video_id"]]][image["frame_id"]][annotation["track_id"]] = (x, y, w, h)
             self.check_frames(got, clips)
 
-    def check_run_lengths(self, annotation):
+    def check_run_lengths(self, annotation, covered):
         """common/maskApi.c, rleFrString: run lengths of the columns, zeros first, of size [height, width]; as text five
         bits a character from '0' on, the lowest first, 32 where more follow, 16 in the last a sign; from the fourth on
         the difference to the last but one."""
@@ -264,8 +267,8 @@ class Readers(unittest.TestCase):
         pixels = numpy.repeat(values, counts).reshape((HEIGHT, WIDTH), order="F")
         self.assertEqual(annotation["area"], pixels.sum())
         rows, columns = pixels.nonzero()
-        x, y, w, h = annotation["bbox"]  # here of every pixel that changed, those of a small alpha too
-        self.assertTrue(x <= columns.min() <= columns.max() < x + w and y <= rows.min() <= rows.max() < y + h)
+        left, top = columns.min(), rows.min()
+        self.assertEqual([left, top, columns.max() - left + 1, rows.max() - top + 1], covered)
 
     def test_yolo(self):
         """ultralytics/data/utils.py: check_det_dataset, img2label_paths, verify_image_label."""

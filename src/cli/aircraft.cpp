@@ -165,9 +165,8 @@ void add_aircraft(CLI::App& app, Context& context) {
   left_out_flag->excludes(sizes_flag);
   auto sheet = std::make_shared<std::string>();
   list_command
-      ->add_option("--sheet",
-                   *sheet,
-                   "In their place: draw one aircraft of each type here (.png or .jpg)")
+      ->add_option(
+          "--sheet", *sheet, "In their place: draw one aircraft of each type here (.png or .jpg)")
       ->excludes(sizes_flag)
       ->excludes(left_out_flag);
   auto overwrite = std::make_shared<bool>(false);

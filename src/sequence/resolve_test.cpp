@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "scene/camera_keys.h"
 #include "calibration/cache.h"
 #include "calibration/profile.h"
+#include "scene/camera_keys.h"
 #include "sequence/ambient.h"
 #include "sequence/motion_source.h"
 #include "sequence/world.h"
@@ -147,7 +147,8 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   EXPECT_NE(warnings[1].find("no colour; it is left out"), std::string::npos) << warnings[1];
 }
 
-// As of clips that are not H.264; `auto` asks for all that can be had, and takes the step where it is.
+// As of clips that are not H.264; `auto` asks for all that can be had, and takes the step where it
+// is.
 TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   constexpr const char* kKey = "sensor.codec_step";
   calibration::Calibration found;
