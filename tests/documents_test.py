@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the documents promise, held against the repository: python3 documents_test.py AIRTRUTH SOURCE
 
-Links lead somewhere, every command of the program is named in the README, the versions of CMakeLists.txt, CITATION.cff,
-CHANGELOG.md and the program agree, the paper and its data set are named and linked, and no private idiom is left.
+Links lead somewhere, every command of the program is named in the README, docs/reference/commands.md is what the program's
+help says, the versions of CMakeLists.txt, CITATION.cff, CHANGELOG.md and the program agree, the paper and its data set are
+named and linked, and no private idiom is left.
 """
 
 import os
@@ -81,6 +82,10 @@ def main():
         for wanted in (TITLE, DATA_SET, "CITATION.cff"):
             if wanted not in flat(files[path]):
                 faults.append(f"{path} does not hold '{wanted}'")
+    reference = [sys.executable, os.path.join(source, "docs", "reference", "make_commands.py"), airtruth, "--check"]
+    checked = subprocess.run(reference, capture_output=True, text=True)
+    if checked.returncode != 0:
+        faults.append(checked.stderr.strip())
     if TITLE not in flat(files["CITATION.cff"]):
         faults.append("CITATION.cff does not name the paper")
     if faults:
