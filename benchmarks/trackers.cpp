@@ -15,9 +15,9 @@
 #include <opencv2/core.hpp>
 #include <sched.h>
 
-#include "base/seed.h"
-#include "image/picture.h"
-#include "tracking/tracker.h"
+#include "benchmark/tracking/tracker.h"
+#include "foundation/base/seed.h"
+#include "foundation/image/picture.h"
 
 namespace {
 

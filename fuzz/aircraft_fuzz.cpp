@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "aircraft/wrapper_text.h"
-#include "base/error.h"
+#include "aircraft/wrapper/wrapper_text.h"
+#include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

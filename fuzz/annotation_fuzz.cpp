@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "annotation/evision.h"
-#include "annotation/truth.h"
-#include "base/error.h"
+#include "foundation/base/error.h"
+#include "truth/annotation/evision.h"
+#include "truth/annotation/truth.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/error.h"
-#include "lens/calibration_file.h"
-#include "trajectory/path.h"
+#include "camera/lens/calibration_file.h"
+#include "foundation/base/error.h"
+#include "world/trajectory/path.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -9,9 +9,9 @@
 
 #include <unistd.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "exchange/exchange.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "truth/exchange/exchange.h"
 
 namespace {
 

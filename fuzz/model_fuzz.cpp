@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string_view>
 
-#include "aircraft/ac_file.h"
-#include "aircraft/ac_mesh.h"
-#include "aircraft/model_wire.h"
-#include "base/error.h"
+#include "aircraft/ac3d/ac_file.h"
+#include "aircraft/ac3d/ac_mesh.h"
+#include "aircraft/confined/model_wire.h"
+#include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace airtruth::aircraft;

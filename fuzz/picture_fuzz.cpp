@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "aircraft/picture.h"
-#include "base/error.h"
+#include "aircraft/texture_file/picture.h"
+#include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "trax/region.h"
-#include "trax/session.h"
+#include "benchmark/trax/region.h"
+#include "benchmark/trax/session.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace airtruth;

@@ -2,8 +2,8 @@
 // How many pixels an aircraft spans at a range, through a lens, with airtruth as a library.
 #include <cstdio>
 
-#include "lens/lens.h"
-#include "trajectory/path.h"
+#include "camera/lens/lens.h"
+#include "world/trajectory/path.h"
 
 int main() {
   const airtruth::lens::Lens lens = airtruth::lens::pinhole_from_vertical_fov(41.4, {640, 480});

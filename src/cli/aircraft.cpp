@@ -4,15 +4,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "aircraft/catalogue.h"
-#include "aircraft/left_out.h"
-#include "aircraft/scale.h"
-#include "base/error.h"
-#include "base/pattern.h"
+#include "aircraft/fleet/fleet.h"
+#include "aircraft/fleet/left_out.h"
+#include "aircraft/fleet/scale.h"
 #include "cli/commands.h"
-#include "report/tiles.h"
-#include "sequence/portrait.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/pattern.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/portrait.h"
+#include "show/report/tiles.h"
 
 namespace airtruth::cli {
 namespace {

@@ -6,18 +6,18 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/output_check.h"
-#include "calibration/calibration.h"
-#include "calibration/join.h"
-#include "calibration/own_aircraft.h"
-#include "calibration/profile.h"
+#include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
-#include "lens/calibration_file.h"
-#include "sequence/mask_picture.h"
-#include "video/reader.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "measure/calibration/calibration.h"
+#include "measure/calibration/join.h"
+#include "measure/calibration/own_aircraft.h"
+#include "measure/calibration/profile.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/mask_picture.h"
 
 namespace airtruth::cli {
 namespace {

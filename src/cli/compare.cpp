@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/output_check.h"
+#include "benchmark/comparison/comparison.h"
 #include "cli/commands.h"
-#include "comparison/comparison.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "picture/video/still.h"
 
 namespace airtruth::cli {
 namespace {

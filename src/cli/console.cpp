@@ -16,8 +16,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "base/error.h"
-#include "base/unfinished.h"
+#include "foundation/base/error.h"
+#include "foundation/base/unfinished.h"
 
 namespace airtruth::cli {
 namespace {

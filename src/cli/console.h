@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <string>
 
-#include "base/log.h"
+#include "foundation/base/log.h"
 
 // All that the program prints goes through here. Results go to standard output; warnings, errors
 // and progress to standard error. Progress is drawn on a terminal alone and is quiet in a pipe.

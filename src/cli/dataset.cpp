@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "cli/commands.h"
-#include "dataset/build.h"
-#include "dataset/check.h"
-#include "dataset/plan.h"
-#include "dataset/slurm.h"
-#include "dataset/verify.h"
+#include "dataset/build/build.h"
+#include "dataset/build/plan.h"
+#include "dataset/build/slurm.h"
+#include "dataset/build/verify.h"
+#include "dataset/catalogue/check.h"
+#include "foundation/base/error.h"
 
 namespace airtruth::cli {
 namespace {

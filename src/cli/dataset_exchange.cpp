@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "cli/commands.h"
 #include "cli/picture_size.h"
-#include "dataset/export.h"
-#include "dataset/import.h"
-#include "dataset/report.h"
+#include "dataset/labelled/export.h"
+#include "dataset/labelled/import.h"
+#include "dataset/page/report.h"
+#include "foundation/base/error.h"
 
 namespace airtruth::cli {
 namespace {

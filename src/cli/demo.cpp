@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/demo.h"
+#include "sequence/sequence/demo.h"
 
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "cli/commands.h"
-#include "scene/scene.h"
-#include "sequence/finished.h"
-#include "sequence/sequence.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "sequence/sequence/finished.h"
+#include "sequence/sequence/sequence.h"
+#include "world/scene/scene.h"
 
 namespace airtruth::cli {
 namespace {

@@ -2,9 +2,9 @@
 #include <memory>
 #include <string>
 
-#include "base/files.h"
 #include "cli/commands.h"
 #include "cli/manual.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::cli {
 

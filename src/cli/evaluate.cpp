@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/output_check.h"
+#include "benchmark/experiment/assess.h"
+#include "benchmark/experiment/figures.h"
+#include "benchmark/experiment/page.h"
 #include "cli/commands.h"
-#include "experiment/assess.h"
-#include "experiment/figures.h"
-#include "experiment/page.h"
+#include "foundation/base/error.h"
+#include "foundation/base/output_check.h"
 
 namespace airtruth::cli {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "base/files.h"
-#include "base/output_check.h"
 #include "cli/commands.h"
-#include "sequence/evision_table.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "sequence/sequence/evision_table.h"
 
 namespace airtruth::cli {
 namespace {

@@ -3,16 +3,16 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/output_check.h"
+#include "camera/focal_length/lens_estimate.h"
+#include "camera/lens/calibration_file.h"
+#include "camera/lens/calibration_write.h"
 #include "cli/commands.h"
 #include "cli/picture_size.h"
-#include "lens/calibration_file.h"
-#include "lens/calibration_write.h"
-#include "motion/lens_estimate.h"
-#include "video/reader.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
 
 namespace airtruth::cli {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <malloc.h>
 
-#include "base/error.h"
-#include "base/suggest.h"
-#include "base/version.h"
 #include "cli/commands.h"
+#include "foundation/base/error.h"
+#include "foundation/base/suggest.h"
+#include "foundation/base/version.h"
 
 namespace {
 

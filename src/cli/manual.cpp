@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/version.h"
+#include "foundation/base/version.h"
 
 namespace airtruth::cli {
 namespace {

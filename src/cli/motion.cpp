@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/motion.h"
+#include "camera/motion/motion.h"
 
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/output_check.h"
+#include "camera/lens/calibration_file.h"
+#include "camera/motion/plot.h"
+#include "camera/motion/reach.h"
+#include "camera/motion/stabilise.h"
 #include "cli/commands.h"
-#include "lens/calibration_file.h"
-#include "motion/plot.h"
-#include "motion/reach.h"
-#include "motion/stabilise.h"
-#include "sequence/motion_source.h"
-#include "video/still.h"
-#include "video/writer.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "picture/video/still.h"
+#include "picture/video/writer.h"
+#include "sequence/sequence/motion_source.h"
 
 namespace airtruth::cli {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "cli/commands.h"
-#include "sequence/finished.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/finished.h"
 
 namespace airtruth::cli {
 namespace {

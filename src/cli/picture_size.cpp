@@ -3,7 +3,7 @@
 
 #include <charconv>
 
-#include "base/error.h"
+#include "foundation/base/error.h"
 
 namespace airtruth::cli {
 

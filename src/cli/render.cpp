@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "cli/commands.h"
-#include "scene/scene.h"
-#include "sequence/sequence.h"
+#include "foundation/base/error.h"
+#include "sequence/sequence/sequence.h"
+#include "world/scene/scene.h"
 
 namespace airtruth::cli {
 namespace {

@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/output_check.h"
+#include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
-#include "lens/calibration_file.h"
-#include "sequence/mask_picture.h"
-#include "sequence/virtual_flight.h"
-#include "video/still.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/mask_picture.h"
+#include "sequence/sequence/virtual_flight.h"
 
 namespace airtruth::cli {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/output_check.h"
+#include "benchmark/experiment/run.h"
+#include "benchmark/tracking/tracker.h"
 #include "cli/commands.h"
-#include "experiment/run.h"
-#include "tracking/tracker.h"
+#include "foundation/base/error.h"
+#include "foundation/base/output_check.h"
 
 namespace airtruth::cli {
 namespace {

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/ac3d/ac_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "aircraft/ac3d/ac_tokens.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+constexpr std::size_t kMaxAcMaterials = 4096;
+constexpr std::size_t kMaxAcObjects = 100'000;
+constexpr int kMaxKidsDepth = 64;
+constexpr std::uint32_t kMaxCornersOfSurface = 10'000;
+constexpr float kLargestCreaseDeg = 60;  // 179, as many models have, smooths over wing edges and
+                                         // leaves normals that oppose their face
+constexpr double kLargestUv = 1e5;       // a texture repeated that often
+constexpr std::uint32_t kLineKinds = 3;  // flags of a surface: a closed or an open line
+constexpr std::uint32_t kSmooth = 1u << 4;
+constexpr std::uint32_t kTwoSided = 1u << 5;
+constexpr std::uint64_t kAnyFlags = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kBytesOfVertex = 6;   // "0 0 0\n"
+constexpr std::size_t kBytesOfSurface = 6;  // "SURF 0"
+constexpr std::size_t kBytesOfCorner = 6;   // "0 0 0\n"
+
+// Row-major rotation and shift: file = turn * local + shift.
+struct Placement {
+  std::array<double, 9> turn{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  std::array<double, 3> shift{};
+};
+
+Placement combined(const Placement& outer, const Placement& inner) {
+  Placement result;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += outer.turn[3 * row + k] * inner.turn[3 * k + column];
+      result.turn[3 * row + column] = sum;
+    }
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += outer.turn[3 * row + k] * inner.shift[k];
+    result.shift[row] = sum + outer.shift[row];
+  }
+  return result;
+}
+
+struct InheritedTexture {
+  bool present = false;
+  std::string name;
+  int line = 0;
+};
+
+class AcParser {
+ public:
+  AcParser(std::string_view text, const fs::path& name) : tokens_(text, name), name_(name) {}
+
+  AcFile parse() {
+    const std::string_view head = tokens_.word();
+    if (head.empty()) throw Error("is empty; expected a 3D model", {name_.string()});
+    if (!head.starts_with("AC3D"))
+      throw Error("is no AC3D file (it does not begin with AC3D)", {name_.string(), 1});
+    read_object({}, {}, -1, 0);
+    return std::move(file_);
+  }
+
+ private:
+  struct State {
+    Placement own;
+    InheritedTexture texture;
+    std::array<float, 2> repeat{1, 1};
+    std::array<float, 2> offset{0, 0};
+  };
+
+  AcObject& object(std::size_t index) { return file_.objects[index]; }
+
+  // One OBJECT with its kids; materials come before the first.
+  void read_object(const Placement& outer, const InheritedTexture& texture, int parent, int depth) {
+    if (depth > kMaxKidsDepth)
+      tokens_.fail(fmt::format("nests objects more than {} deep", kMaxKidsDepth));
+    if (file_.objects.size() >= kMaxAcObjects)
+      tokens_.fail(fmt::format("holds more than {} objects", kMaxAcObjects));
+    const std::size_t index = file_.objects.size();
+    file_.objects.emplace_back().parent = parent;
+    State state;
+    state.texture = texture;
+    bool is_begun = false;
+    for (;;) {
+      const std::string_view word = tokens_.word();
+      if (word.empty()) return at_the_end(depth, is_begun);
+      is_begun = true;
+      if (word == "kids") return read_kids(combined(outer, state.own), state, index, depth);
+      read_line(word, outer, state, index);
+    }
+  }
+
+  // Aircraft of FlightGear's own (c172p.ac) count more kids than follow: objects that have not
+  // begun when the text ends are none.
+  void at_the_end(int depth, bool is_begun) {
+    if (depth > 0 && is_begun) tokens_.fail("ends inside an object");
+    if (depth > 0) file_.objects.pop_back();
+  }
+
+  void read_kids(const Placement& placement, const State& state, std::size_t index, int depth) {
+    const std::uint32_t kids = tokens_.count("kids", kMaxAcObjects);
+    for (std::uint32_t i = 0; i < kids && tokens_.bytes_left() > 0; ++i)
+      read_object(placement, state.texture, static_cast<int>(index), depth + 1);
+  }
+
+  void read_line(std::string_view word, const Placement& outer, State& state, std::size_t index) {
+    if (word == "MATERIAL") {
+      read_material();
+    } else if (word == "OBJECT") {
+      tokens_.word();
+    } else if (word == "name") {
+      object(index).name = tokens_.string();
+    } else if (word == "texture") {
+      read_texture(state.texture);
+    } else if (word == "texrep" || word == "texoff") {
+      for (float& value : word == "texrep" ? state.repeat : state.offset)
+        value = tokens_.number("a texture's repetition or offset", kLargestUv);
+    } else if (word == "crease") {
+      object(index).crease_deg =
+          std::min(tokens_.number("crease", kLargestCoordinate), kLargestCreaseDeg);
+    } else if (word == "rot") {
+      for (double& value : state.own.turn) value = tokens_.number("rot", kLargestCoordinate);
+    } else if (word == "loc") {
+      for (double& value : state.own.shift) value = tokens_.number("loc", kLargestCoordinate);
+    } else if (word == "data") {
+      skip_data();
+    } else if (word == "numvert") {
+      read_vertices(combined(outer, state.own), object(index));
+    } else if (word == "numsurf") {
+      read_surfaces(state, object(index));
+    } else {
+      tokens_.skip_line();  // subdiv, url, hidden, locked, folded and what editors add
+    }
+  }
+
+  void read_material() {
+    if (file_.materials.size() >= kMaxAcMaterials)
+      tokens_.fail(fmt::format("holds more than {} materials", kMaxAcMaterials));
+    AcMaterial material;
+    std::array<float, 3> ambient{};
+    material.finish = finish_named(tokens_.string());
+    const auto colour = [&](const char* what, std::array<float, 3>& value) {
+      tokens_.expect(what);
+      for (float& channel : value) channel = tokens_.number(what, kLargestCoordinate);
+    };
+    colour("rgb", material.rgb);
+    colour("amb", ambient);
+    colour("emis", material.emission);
+    colour("spec", material.specular);
+    tokens_.expect("shi");
+    material.shininess = std::clamp(tokens_.number("shi", kLargestCoordinate), 0.0f, 128.0f);
+    tokens_.expect("trans");
+    material.transparency = std::clamp(tokens_.number("trans", kLargestCoordinate), 0.0f, 1.0f);
+    file_.materials.push_back(material);
+  }
+
+  void read_texture(InheritedTexture& texture) {
+    const std::string name = tokens_.string();
+    texture = {!name.empty(), name, tokens_.line()};
+  }
+
+  void skip_data() {
+    const std::uint32_t bytes = tokens_.count("data", tokens_.bytes_left());
+    tokens_.skip_line();
+    tokens_.skip_bytes(std::size_t{bytes} + 1);
+  }
+
+  // A count of things that take at least so many bytes each.
+  std::uint32_t count_of(const char* what, std::size_t bytes_each, std::uint64_t most) {
+    const std::uint32_t count = tokens_.count(what, most);
+    const std::uint64_t possible = (tokens_.bytes_left() + bytes_each) / bytes_each;
+    if (count > possible)
+      tokens_.fail(fmt::format(
+          "{} is {}, but the rest of the file can hold {} at most", what, count, possible));
+    return count;
+  }
+
+  void read_vertices(const Placement& placement, AcObject& target) {
+    const std::uint32_t count = count_of("numvert", kBytesOfVertex, kMaxCorners);
+    target.vertices.reserve(target.vertices.size() + count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::array<double, 3> local{};
+      for (double& value : local) value = tokens_.number("a coordinate", kLargestCoordinate);
+      std::array<float, 3> vertex{};
+      for (std::size_t row = 0; row < 3; ++row) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) sum += placement.turn[3 * row + k] * local[k];
+        sum += placement.shift[row];
+        if (!(std::abs(sum) <= kLargestCoordinate))
+          tokens_.fail(fmt::format(
+              "rot and loc put a vertex at {:g}; expected at most {:g}", sum, kLargestCoordinate));
+        vertex[row] = static_cast<float>(sum);
+      }
+      target.vertices.push_back(vertex);
+    }
+  }
+
+  void read_surfaces(const State& state, AcObject& target) {
+    const std::uint32_t count = count_of("numsurf", kBytesOfSurface, kMaxTriangles);
+    target.has_texture = state.texture.present;
+    target.texture = state.texture.name;
+    target.texture_line = state.texture.line;
+    target.surfaces.reserve(target.surfaces.size() + count);
+    for (std::uint32_t i = 0; i < count; ++i) read_surface(state, target);
+  }
+
+  void read_surface(const State& state, AcObject& target) {
+    tokens_.expect("SURF");
+    const std::uint32_t flags = tokens_.count("SURF", kAnyFlags);
+    tokens_.expect("mat");
+    const std::uint32_t material = tokens_.count("mat", kMaxAcMaterials);
+    if (material >= file_.materials.size())
+      tokens_.fail(fmt::format(
+          "mat is {}, but the file has {} materials", material, file_.materials.size()));
+    tokens_.expect("refs");
+    const std::uint32_t count = count_of("refs", kBytesOfCorner, kMaxCornersOfSurface);
+    const auto first = static_cast<std::uint32_t>(target.corners.size());
+    for (std::uint32_t i = 0; i < count; ++i) target.corners.push_back(corner(state, target));
+    corners_ += count;
+    if (corners_ > kMaxCorners)
+      tokens_.fail(fmt::format("holds surfaces of more than {} corners", kMaxCorners));
+    if ((flags & kLineKinds) != 0 || count < 3) {
+      target.corners.resize(first);
+      return;
+    }
+    triangles_ += count - 2;
+    if (triangles_ > kMaxTriangles)
+      tokens_.fail(fmt::format("holds more than {} triangles", kMaxTriangles));
+    target.surfaces.push_back(
+        {(flags & kSmooth) != 0, (flags & kTwoSided) != 0, material, first, count});
+  }
+
+  AcCorner corner(const State& state, const AcObject& target) {
+    AcCorner result;
+    result.vertex = tokens_.count("a vertex's index", kAnyFlags);
+    if (result.vertex >= target.vertices.size())
+      tokens_.fail(fmt::format("names the vertex {}, but its object has {} (they count from 0)",
+                               result.vertex,
+                               target.vertices.size()));
+    const float u = tokens_.number("a texture coordinate", kLargestUv);
+    const float v = tokens_.number("a texture coordinate", kLargestUv);
+    result.u = state.offset[0] + u * state.repeat[0];
+    result.v = state.offset[1] + v * state.repeat[1];
+    if (!(std::abs(result.u) <= kLargestUv && std::abs(result.v) <= kLargestUv))
+      tokens_.fail("texrep makes a texture coordinate too large");
+    return result;
+  }
+
+  AcTokens tokens_;
+  fs::path name_;
+  AcFile file_;
+  std::size_t corners_ = 0;
+  std::size_t triangles_ = 0;
+};
+
+}  // namespace
+
+AcFile parse_ac(std::string_view text, const fs::path& name) {
+  return AcParser(text, name).parse();
+}
+
+std::vector<std::string> names_of(const AcFile& file, std::size_t object) {
+  std::vector<std::string> names;
+  for (int at = static_cast<int>(object); at >= 0;
+       at = file.objects[static_cast<std::size_t>(at)].parent) {
+    const AcObject& here = file.objects[static_cast<std::size_t>(at)];
+    if (here.parent < 0) {
+      names.emplace_back("World");
+    } else if (!here.name.empty()) {
+      names.push_back(here.name);
+    }
+  }
+  std::reverse(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace airtruth::aircraft

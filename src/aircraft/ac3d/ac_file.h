@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "aircraft/model/finish.h"
+#include "aircraft/model/model_limits.h"
+
+// An AC3D text file (.ac) as it says itself, checked:
+// https://www.inivis.com/ac3d/man/ac3dfileformat.html
+namespace airtruth::aircraft {
+
+namespace fs = std::filesystem;
+
+struct AcMaterial {
+  std::array<float, 3> rgb{};  // sRGB, 0..1
+  std::array<float, 3> emission{};
+  std::array<float, 3> specular{};
+  float shininess = 0;     // 0..128
+  float transparency = 0;  // 0..1
+  Finish finish = Finish::kPaint;
+};
+
+struct AcCorner {
+  std::uint32_t vertex = 0;
+  float u = 0;  // texrep and texoff applied
+  float v = 0;
+};
+
+struct AcSurface {
+  bool smooth = false;
+  bool two_sided = false;
+  std::uint32_t material = 0;
+  std::uint32_t first_corner = 0;
+  std::uint32_t corners = 0;  // at least 3
+};
+
+struct AcObject {
+  int parent = -1;  // index into AcFile::objects
+  std::string name;
+  bool has_texture = false;  // its own, or that of an object around it
+  std::string texture;       // as the file names it
+  int texture_line = 0;
+  float crease_deg = 61;                       // AC3D's own where the file states none
+  std::vector<std::array<float, 3>> vertices;  // in the file's frame: rot and loc applied
+  std::vector<AcSurface> surfaces;             // lines are left out
+  std::vector<AcCorner> corners;
+};
+
+// Objects in the order of the file: one comes before what it holds.
+struct AcFile {
+  std::vector<AcMaterial> materials;
+  std::vector<AcObject> objects;
+};
+
+// Throws Error with `name` and line: no AC3D file, cut short, an index beyond what the file holds,
+// a number that is not finite or not sensible, or more of anything than the limits.
+// Kids that are counted, but do not begin before the text ends, are left out.
+AcFile parse_ac(std::string_view text, const fs::path& name);
+
+// The names around an object, outermost first; objects without a name are left out, and the
+// outermost is called World, as FlightGear's animations expect.
+std::vector<std::string> names_of(const AcFile& file, std::size_t object);
+
+}  // namespace airtruth::aircraft

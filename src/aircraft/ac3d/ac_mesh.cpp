@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/ac3d/ac_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+#include "aircraft/ac3d/polygon.h"
+#include "foundation/geometry/transform.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+// Written out: the same sums in the same order with every compiler.
+float scalar_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
+float length_of(const Eigen::Vector3f& v) { return std::sqrt(scalar_product(v, v)); }
+
+Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
+  const float length = length_of(v);
+  return length > 0 ? Eigen::Vector3f(v * (1.0f / length)) : v;
+}
+
+// How a surface becomes triangles.
+enum class Cut { kEars, kTriangle, kQuad, kFan };
+
+struct Facet {
+  std::vector<Eigen::Vector3f> positions;
+  Eigen::Vector3f weighted_normal{0, 0, 0};
+  Cut cut = Cut::kFan;
+};
+
+Eigen::Vector3f vertex_of(const AcObject& object, const AcCorner& corner) {
+  const auto& v = object.vertices[corner.vertex];
+  return {v[0], v[1], v[2]};
+}
+
+Facet facet_of(const AcObject& object, const AcSurface& surface) {
+  Facet facet;
+  for (std::uint32_t i = 0; i < surface.corners; ++i)
+    facet.positions.push_back(vertex_of(object, object.corners[surface.first_corner + i]));
+  facet.weighted_normal = area_normal(facet.positions);
+  facet.cut = is_concave(facet.positions) ? Cut::kEars
+              : surface.corners == 3      ? Cut::kTriangle
+              : surface.corners == 4      ? Cut::kQuad
+                                          : Cut::kFan;
+  return facet;
+}
+
+// One corner of a smooth surface, at the vertex that it shares with others.
+struct Meeting {
+  std::uint32_t corner = 0;
+  Eigen::Vector3f normal{0, 0, 0};  // weighted by area
+  float length = 0;
+};
+
+// Averages over the corners that are joined by less than the crease angle, one set at a time.
+void smooth_vertex(std::vector<Meeting>& meetings,
+                   float cos_crease,
+                   std::vector<Eigen::Vector3f>& normal_of_corner) {
+  const std::size_t count = meetings.size();
+  std::vector<bool> taken(count, false);
+  std::vector<std::size_t> set;
+  for (std::size_t first = 0; first < count; ++first) {
+    if (taken[first]) continue;
+    set.assign(1, first);
+    taken[first] = true;
+    for (std::size_t at = 0; at < set.size(); ++at) {
+      const Meeting& a = meetings[set[at]];
+      for (std::size_t i = 0; i < count; ++i) {
+        if (taken[i]) continue;
+        const Meeting& b = meetings[i];
+        if (!(cos_crease * (b.length * a.length) <= scalar_product(b.normal, a.normal))) continue;
+        taken[i] = true;
+        set.push_back(i);
+      }
+    }
+    std::sort(set.begin(), set.end());
+    Eigen::Vector3f sum(0, 0, 0);
+    for (const std::size_t i : set) sum += meetings[i].normal;
+    const Eigen::Vector3f normal = unit_or_zero(sum);
+    for (const std::size_t i : set) normal_of_corner[meetings[i].corner] = normal;
+  }
+}
+
+float cosine_of_crease(float crease_deg) {
+  if (crease_deg <= 0) return 1;
+  if (crease_deg >= 180) return -1;
+  return std::cos(static_cast<float>(radians(static_cast<double>(crease_deg))));
+}
+
+// A normal for each corner of the object.
+std::vector<Eigen::Vector3f> corner_normals(const AcObject& object,
+                                            const std::vector<Facet>& facets) {
+  std::vector<Eigen::Vector3f> result(object.corners.size(), Eigen::Vector3f::Zero());
+  std::vector<std::uint32_t> first(object.vertices.size() + 1, 0);  // of each vertex's meetings
+  for (const AcSurface& surface : object.surfaces)
+    for (std::uint32_t i = 0; surface.smooth && i < surface.corners; ++i)
+      ++first[object.corners[surface.first_corner + i].vertex + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> next(first.begin(), first.end());
+  std::vector<Meeting> sorted(first.back());
+  for (std::size_t s = 0; s < object.surfaces.size(); ++s) {
+    const AcSurface& surface = object.surfaces[s];
+    const Eigen::Vector3f& weighted = facets[s].weighted_normal;
+    for (std::uint32_t i = 0; i < surface.corners; ++i) {
+      const std::uint32_t corner = surface.first_corner + i;
+      if (surface.smooth) {
+        sorted[next[object.corners[corner].vertex]++] = {corner, weighted, length_of(weighted)};
+      } else {
+        result[corner] = unit_or_zero(weighted);
+      }
+    }
+  }
+  const float cos_crease = cosine_of_crease(object.crease_deg);
+  std::vector<Meeting> here;
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    here.assign(sorted.begin() + first[v], sorted.begin() + first[v + 1]);
+    smooth_vertex(here, cos_crease, result);
+  }
+  return result;
+}
+
+struct Vertex {
+  std::array<std::uint32_t, 8> bits;
+  bool operator==(const Vertex&) const = default;
+};
+
+struct VertexHash {
+  std::size_t operator()(const Vertex& vertex) const {
+    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+    for (const std::uint32_t word : vertex.bits) hash = (hash ^ word) * 0x100000001b3u;
+    return static_cast<std::size_t>(hash ^ (hash >> 29));
+  }
+};
+
+class BatchBuilder {
+ public:
+  BatchBuilder(const AcObject& object,
+               const std::vector<Facet>& facets,
+               const std::vector<Eigen::Vector3f>& normals)
+      : object_(object), facets_(facets), normals_(normals) {}
+
+  void begin(const AcMaterial& material) {
+    batch_ = {};
+    index_.clear();
+    batch_.diffuse = material.rgb;
+    batch_.emission = material.emission;
+    batch_.specular = material.specular;
+    batch_.shininess = material.shininess;
+    batch_.opacity = 1 - material.transparency;
+    batch_.finish = material.finish;
+    if (object_.has_texture) {
+      batch_.texture = object_.texture;
+      batch_.texture_line = object_.texture_line;
+    }
+  }
+
+  void add(std::size_t surface_index) {
+    const AcSurface& surface = object_.surfaces[surface_index];
+    const Facet& facet = facets_[surface_index];
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t i = 0; i < surface.corners; ++i)
+      vertices.push_back(vertex(facet.positions[i], surface.first_corner + i));
+    if (facet.cut == Cut::kEars) {
+      for (const auto& [a, b, c] : ear_clipped(facet.positions, facet.weighted_normal))
+        batch_.triangles.push_back({vertices[a], vertices[b], vertices[c]});
+      return;
+    }
+    for (std::size_t i = 2; i < vertices.size(); ++i)
+      batch_.triangles.push_back({vertices[0], vertices[i - 1], vertices[i]});
+  }
+
+  Batch take() { return std::move(batch_); }
+
+ private:
+  std::uint32_t vertex(const Eigen::Vector3f& position, std::uint32_t corner_index) {
+    const AcCorner& corner = object_.corners[corner_index];
+    const Eigen::Vector3f& normal = normals_[corner_index];
+    const Eigen::Vector2f uv =
+        object_.has_texture ? Eigen::Vector2f(corner.u, corner.v) : Eigen::Vector2f(0, 0);
+    const Vertex key{{std::bit_cast<std::uint32_t>(position.x()),
+                      std::bit_cast<std::uint32_t>(position.y()),
+                      std::bit_cast<std::uint32_t>(position.z()),
+                      std::bit_cast<std::uint32_t>(normal.x()),
+                      std::bit_cast<std::uint32_t>(normal.y()),
+                      std::bit_cast<std::uint32_t>(normal.z()),
+                      std::bit_cast<std::uint32_t>(uv.x()),
+                      std::bit_cast<std::uint32_t>(uv.y())}};
+    const auto [known, is_new] =
+        index_.try_emplace(key, static_cast<std::uint32_t>(batch_.positions.size()));
+    if (is_new) {
+      batch_.positions.push_back(position);
+      batch_.normals.push_back(normal);
+      batch_.uvs.push_back(uv);
+    }
+    return known->second;
+  }
+
+  const AcObject& object_;
+  const std::vector<Facet>& facets_;
+  const std::vector<Eigen::Vector3f>& normals_;
+  Batch batch_;
+  std::unordered_map<Vertex, std::uint32_t, VertexHash> index_;
+};
+
+// By material; then smooth before flat, two-sided before one-sided; then by how they are cut. Of
+// triangles that lie in the same place the first is kept, so that the order shows.
+std::vector<std::size_t> drawing_order(const AcObject& object, const std::vector<Facet>& facets) {
+  std::vector<std::size_t> order(object.surfaces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) {
+    const AcSurface& surface = object.surfaces[i];
+    return std::tuple(surface.material, !surface.smooth, !surface.two_sided, facets[i].cut);
+  };
+  std::stable_sort(
+      order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  return order;
+}
+
+}  // namespace
+
+std::vector<Batch> batches_of(const AcFile& file, const AcObject& object) {
+  std::vector<Facet> facets;
+  facets.reserve(object.surfaces.size());
+  for (const AcSurface& surface : object.surfaces) facets.push_back(facet_of(object, surface));
+  const std::vector<Eigen::Vector3f> normals = corner_normals(object, facets);
+  std::vector<Batch> result;
+  BatchBuilder builder(object, facets, normals);
+  const std::vector<std::size_t> order = drawing_order(object, facets);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t material = object.surfaces[order[i]].material;
+    if (i == 0 || material != object.surfaces[order[i - 1]].material)
+      builder.begin(file.materials[material]);
+    builder.add(order[i]);
+    if (i + 1 == order.size() || material != object.surfaces[order[i + 1]].material)
+      result.push_back(builder.take());
+  }
+  return result;
+}
+
+}  // namespace airtruth::aircraft

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "aircraft/model/load_options.h"
+#include "foundation/base/error.h"
+
+// What the program and airtruth-model-reader say to each other over one socket: messages of a kind,
+// a length and bytes. The reader asks for each file by name and gets its bytes; it never opens one.
+namespace airtruth::aircraft {
+
+enum class Message : std::uint8_t {
+  kJob = 1,  // to the reader: bytes_of(ReaderJob)
+  kAskKind,  // from the reader: a path; the answer is kKind
+  kAskFile,  // from the reader: a limit in bytes and a path; the answer is kFile or kError
+  kKind,     // to the reader: one byte, ModelFiles::Kind
+  kFile,     // to the reader: the file's bytes
+  kModel,    // from the reader, last: bytes_of(RawModel)
+  kError,    // an Error: of the model (from the reader, last), or of a file (to the reader)
+};
+
+struct ReaderJob {
+  std::string file;          // below the folder
+  std::string shown_folder;  // for messages
+  std::string in_data_root;  // ModelFiles::in_data_root
+  LoadOptions options;
+};
+
+std::string bytes_of(const ReaderJob& job);
+ReaderJob job_from_bytes(std::string_view bytes);
+std::string bytes_of(const Error& error);
+Error error_from_bytes(std::string_view bytes);
+
+// Either end of the socket.
+class Channel {
+ public:
+  virtual ~Channel() = default;
+  struct Received {
+    Message message{};
+    std::string bytes;
+    bool closed = false;  // the other end is gone
+  };
+  // Throws Error for a message longer than `most`.
+  Received receive(std::size_t most);
+  // False: the other end is gone.
+  bool send(Message message, std::string_view bytes);
+
+ protected:
+  // At least one byte; 0 when the other end is gone.
+  virtual std::size_t read_some(char* data, std::size_t size) = 0;
+  virtual std::size_t write_some(const char* data, std::size_t size) = 0;
+
+ private:
+  bool read_all(char* data, std::size_t size);
+  bool write_all(const char* data, std::size_t size);
+};
+
+}  // namespace airtruth::aircraft

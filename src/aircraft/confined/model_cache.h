@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "aircraft/model/load_options.h"
+#include "aircraft/model/raw_model.h"
+#include "aircraft/wrapper/model_files.h"
+
+// Converted models of strangers, kept by content: the model file's bytes and the options name the
+// entry, which lists every other file that was asked for with the SHA-256 of what was read. It is
+// taken where all of them are still the same, and is checked as what a reader hands back.
+namespace airtruth::aircraft {
+
+struct ModelCache {
+  std::filesystem::path folder;  // cache_folder() / "models"
+  std::string name;              // of the entry; empty: the model file cannot be read
+};
+
+// Asks `files` for the model file's bytes.
+ModelCache model_cache(DiskFiles& files, const fs::path& file, const LoadOptions& options);
+
+// Nothing where there is no entry, or it is not whole, or a file has changed. The files that it was
+// made of are among files.sources() then.
+std::optional<RawModel> cached_model(const ModelCache& cache, DiskFiles& files);
+
+// Keeps what was read from `files`, whose questions were remembered. A cache that cannot be written
+// is no fault: the model is read anew the next time.
+void keep_model(const ModelCache& cache, const DiskFiles& files, const RawModel& model);
+
+}  // namespace airtruth::aircraft

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "aircraft/fleet/fleet.h"
+#include "aircraft/model/texture.h"
+#include "aircraft/wrapper/wrapper.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+class Models : public testing::Test {
+ protected:
+  Models()
+      : folder_(fs::temp_directory_path() / ("airtruth_aircraft_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Models() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+std::string error_of(const std::string& name, const LoadOptions& options = {}) {
+  try {
+    load_aircraft(name, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// A tetrahedron-like shape with three unequal arms: 10 towards -x (nose), 4
+// towards +y (up in AC3D), 2 towards -z (the right wing: x back, y up makes z
+// point left).
+std::string asymmetric_ac() {
+  return "AC3Db\nMATERIAL \"m\" rgb 1 0.5 0 amb 1 1 1 emis 0 0 0 spec 0 0 0 "
+         "shi 0 trans 0\nOBJECT "
+         "world\nkids 1\n"
+         "OBJECT poly\nname \"body\"\nnumvert 4\n0 0 0\n-10 0 0\n0 4 0\n0 0 "
+         "-2\nnumsurf 3\n"
+         "SURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nSURF 0x20\nmat "
+         "0\nrefs 3\n0 0 0\n2 0 0\n3 "
+         "0 0\n"
+         "SURF 0x20\nmat 0\nrefs 3\n0 0 0\n3 0 0\n1 0 0\nkids 0\n";
+}
+
+TEST_F(Models, NoseUpAndRightWingPointWhereTheyShould) {
+  write_file(folder_ / "a.ac", asymmetric_ac());
+  const Extents size = extents(load_aircraft((folder_ / "a.ac").string()).mesh);
+  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0))) << size.high_in_body.transpose();
+  EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4))) << size.low_in_body.transpose();
+}
+
+TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {
+  fs::create_directories(folder_ / "AI/Aircraft/t");
+  write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());
+  write_file(folder_ / "AI/Aircraft/t/a.xml",
+             "<PropertyList><path>a.ac</path><offsets><x-m>1</x-m><y-m>2</"
+             "y-m><z-m>3</z-m></"
+             "offsets></PropertyList>");
+  const Extents size = extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh);
+  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(9, 4, -3))) << size.high_in_body.transpose();
+}
+
+TEST_F(Models, AnObjFileTakesStatedAxesAndScale) {
+  write_file(folder_ / "a.obj", "v 0 0 0\nv 0 5 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+  LoadOptions options;
+  options.axes = ModelAxes{"y", "z", 2};
+  const Extents size = extents(load_aircraft((folder_ / "a.obj").string(), options).mesh);
+  EXPECT_NEAR(size.high_in_body.x(), 10, 1e-5);  // y is the nose
+  EXPECT_NEAR(size.high_in_body.y(), 4, 1e-5);   // x is right
+  EXPECT_NEAR(size.low_in_body.z(), -2, 1e-5);   // z is up
+  options.axes = ModelAxes{"y", "-y", 1};
+  EXPECT_THAT(error_of((folder_ / "a.obj").string(), options), testing::HasSubstr("the same axis"));
+}
+
+// A disc that stands for a turning propeller lets nine tenths of the light through and is dark,
+// whatever the file makes of it; a jet engine's fan is a disc of its own.
+TEST_F(Models, APropellersDiscIsFaintAndDark) {
+  const auto named = [&](const std::string& name) {
+    std::string text = asymmetric_ac();
+    text.replace(text.find("body"), 4, name);
+    write_file(folder_ / "a.ac", text);
+    return load_aircraft((folder_ / "a.ac").string()).mesh.materials.at(0);
+  };
+  for (const char* disc :
+       {"Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk.noshadow", "dh4_blur"}) {
+    EXPECT_FLOAT_EQ(named(disc).opacity, 0.1f) << disc;
+    EXPECT_LT(named(disc).diffuse[0], 0.1f) << disc;
+  }
+  for (const char* other :
+       {"body", "right_fan_disk", "no2engdisks", "Propeller", "ArCanopy-doublure"})
+    EXPECT_EQ(named(other).opacity, 1) << other;
+}
+
+TEST_F(Models, SelectRotateAndSpinAreHonoured) {
+  fs::create_directories(folder_ / "AI/Aircraft/t");
+  write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());
+  const auto with = [&](const std::string& animation) {
+    write_file(folder_ / "AI/Aircraft/t/a.xml",
+               "<PropertyList><path>a.ac</path>" + animation + "</PropertyList>");
+    return (folder_ / "AI/Aircraft/t/a.xml").string();
+  };
+  const std::string hide =
+      "<animation><type>select</type><object-name>body</"
+      "object-name><condition><less-than>"
+      "<property>velocities/true-airspeed-kt</property><value>180</value></"
+      "less-than></condition></"
+      "animation>";
+  EXPECT_THAT(error_of(with(hide), {.airspeed_kt = 250}), testing::HasSubstr("no triangles"));
+  EXPECT_EQ(load_aircraft(with(hide), {.airspeed_kt = 100}).mesh.triangle_count(), 3u);
+  const std::string spin =
+      "<animation><type>spin</type><object-name>body</"
+      "object-name><property>engines/engine[0]/rpm</"
+      "property>"
+      "<center><x-m>-10</x-m></center><axis><x>1</x></axis></animation>";
+  const Mesh mesh = load_aircraft(with(spin)).mesh;
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  EXPECT_TRUE(mesh.parts[1].spins);
+  EXPECT_TRUE(mesh.parts[1].centre_in_body.isApprox(Eigen::Vector3f(10, 0, 0)));
+  EXPECT_NEAR(mesh.parts[1].revolutions_per_s, 2300.0 / 60, 1e-9);
+  const std::string rotate =
+      "<animation><type>rotate</type><object-name>body</"
+      "object-name><offset-deg>90</"
+      "offset-deg><axis><z>1</z></axis></animation>";
+  // A quarter turn about up, right-handed: the nose goes from forward to the
+  // right (x back, y right, z up).
+  EXPECT_NEAR(extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
+}
+
+TEST_F(Models, SaysWhatIsWrong) {
+  EXPECT_THAT(error_of("738/738-Ryanar"), testing::HasSubstr("738/738-Ryanair"));
+  EXPECT_THAT(error_of((folder_ / "none.ac").string()), testing::HasSubstr("does not exist"));
+  write_file(folder_ / "t.ac",
+             "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 "
+             "shi 0 trans "
+             "0\nOBJECT world\nkids 1\n"
+             "OBJECT poly\ntexture \"gone.png\"\nnumvert 3\n0 0 0\n1 0 0\n0 1 "
+             "0\nnumsurf 1\nSURF 0x20\nmat 0\n"
+             "refs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n");
+  EXPECT_THAT(error_of((folder_ / "t.ac").string()),
+              testing::HasSubstr("t.ac:6: wants the texture gone.png"));
+  write_file(folder_ / "e.ac", "AC3Db\nOBJECT world\nkids 0\n");
+  EXPECT_THAT(error_of((folder_ / "e.ac").string()), testing::HasSubstr("e.ac: "));
+  write_file(folder_ / "g.ac", "garbage");
+  EXPECT_THAT(error_of((folder_ / "g.ac").string()), testing::HasSubstr("no AC3D file"));
+}
+
+TEST(Texture, DecodesPremultipliesAndAverages) {
+  const Texture texture =
+      texture_from_srgb(2, 1, {{1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f}}, true, true);
+  EXPECT_TRUE(texture.has_translucency);
+  EXPECT_NEAR(texture.levels[0].texels[1][0],
+              0.5f * 0.2158605f,
+              1e-5f);  // 128/255 decoded, times alpha
+  ASSERT_EQ(texture.levels.size(), 2u);
+  EXPECT_NEAR(texture.levels[1].texels[0][3], 0.75f, 1e-6f);
+}
+
+// Boeing's published figures for the 737-800 with winglets: 39.5 m long, 35.8 m
+// span, 12.5 m high on its wheels.
+TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
+  const Aircraft aircraft = load_aircraft("738/738-Ryanair", {.airspeed_kt = 270});
+  const Extents size = extents(aircraft.mesh);
+  EXPECT_NEAR(size.length_m(), 39.5, 0.8);
+  EXPECT_NEAR(size.span_m(), 35.8, 1.2);
+  EXPECT_GT(size.height_m(), 9);
+  EXPECT_LT(size.height_m(), 12.6);
+  EXPECT_NEAR(static_cast<double>(aircraft.mesh.triangle_count()), 2996, 900);
+  // The fin is aft and high: the highest point of all lies in the last fifth.
+  double fin_x = 0;
+  double top = 1e9;
+  for (const auto& part : silhouette_points(aircraft.mesh))
+    for (const auto& p : part)
+      if (p.z() < top) top = p.z(), fin_x = p.x();
+  EXPECT_LT(fin_x, size.low_in_body.x() + 0.25 * size.length_m());
+}
+
+// The model's file holds 9.63 m of span (wing vertices from z = -4.82 to 4.81), where Cessna's
+// handbook states 11.00 m.
+TEST(Catalogue, TheCessnaIsBroughtToItsPublishedSpan) {
+  const Aircraft as_it_is = load_aircraft("c172/news", {.airspeed_kt = 110, .catalogue_scale = 1});
+  EXPECT_NEAR(extents(as_it_is.mesh).length_m(), 8.2, 0.6);
+  EXPECT_NEAR(extents(as_it_is.mesh).span_m(), 9.63, 0.02);
+  const Aircraft scaled = load_aircraft("c172/news", {.airspeed_kt = 110});
+  EXPECT_NEAR(extents(scaled.mesh).span_m(), 11.00, 1e-3);
+  EXPECT_NEAR(scaled.catalogue_scale, 11.00 / 9.63, 0.003);
+  EXPECT_THAT(error_of("a.ac", {.catalogue_scale = 2}), testing::HasSubstr("a.ac"));
+}
+
+TEST(Catalogue, ListsHundredsAndTheirLiveries) {
+  const auto entries = list_aircraft();
+  EXPECT_GT(entries.size(), 900u);
+  EXPECT_THAT(liveries("738/738-Ryanair"), testing::Contains("738/738-KLM"));
+}
+
+}  // namespace
+}  // namespace airtruth::aircraft

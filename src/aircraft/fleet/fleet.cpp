@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/fleet/fleet.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "aircraft/fleet/left_out.h"
+#include "aircraft/wrapper/model_files.h"
+#include "aircraft/wrapper/reader.h"
+#include "aircraft/wrapper/wrapper.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/suggest.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+constexpr std::size_t kMaxSketchBytes = std::size_t{8} << 20;
+
+std::vector<fs::path> folders() {
+  const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
+  std::vector<fs::path> result;
+  std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianAircraft);
+  for (std::string folder; std::getline(list, folder, ':');)
+    if (!folder.empty() && fs::is_directory(folder)) result.emplace_back(folder);
+  if (result.empty())
+    throw Error(
+        "no aircraft are installed: install the package "
+        "flightgear-data-ai, or set "
+        "AIRTRUTH_AIRCRAFT_PATH");
+  return result;
+}
+
+// What the catalogue must know of a wrapper.
+struct Sketch {
+  fs::path file;
+  bool deep = false;  // in a folder below the aircraft's own
+  fs::path includes;  // normal form; empty: none
+  std::vector<fs::path> nests;
+  std::string path;  // of its model; empty: none of its own
+  bool animated = false;
+};
+
+using Sketches = std::map<fs::path, Sketch>;
+
+// No answer for what is no wrapper: other XML lies in these folders too.
+std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const fs::path& root) {
+  const std::string name = file.filename().string();
+  if (is_effect_path(name)) return std::nullopt;
+  try {
+    const WrapperText text = parse_wrapper(read_file(file, kMaxSketchBytes), file);
+    Sketch sketch;
+    sketch.file = file;
+    const fs::path folder = file.parent_path();
+    if (!text.include.empty()) sketch.includes = (folder / text.include).lexically_normal();
+    for (const WrapperText::Nested& nested : text.nested) {
+      if (is_effect_path(nested.path)) continue;
+      const fs::path found = find_named_file(files, nested.path, folder.lexically_relative(root));
+      if (!found.empty()) sketch.nests.push_back((root / found).lexically_normal());
+    }
+    sketch.path = text.path;
+    sketch.animated = !text.animations.empty();
+    return sketch;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+// The wrappers of one aircraft's folder and of the folders right below it.
+Sketches sketches_in(const fs::path& folder) {
+  Sketches sketches;
+  const fs::path root = data_root_of(folder.parent_path());
+  DiskFiles files(root, {});
+  const auto add = [&](const fs::path& file, bool deep) {
+    if (file.extension() != ".xml") return;
+    if (auto sketch = sketch_of(file, files, root)) {
+      sketch->deep = deep;
+      sketches[file.lexically_normal()] = std::move(*sketch);
+    }
+  };
+  for (const auto& at : fs::directory_iterator(folder)) {
+    add(at.path(), false);
+    if (!at.is_directory() || is_effect_path(at.path().filename().string() + "/")) continue;
+    for (const auto& below : fs::directory_iterator(at.path())) add(below.path(), true);
+  }
+  return sketches;
+}
+
+// What a wrapper says itself or, failing that, through what it includes.
+template <typename Value>
+Value inherited(const Sketches& sketches, const Sketch& sketch, Value Sketch::*field) {
+  const Sketch* at = &sketch;
+  for (std::size_t i = 0; at->*field == Value{} && i < sketches.size(); ++i) {
+    const auto base = sketches.find(at->includes);
+    if (base == sketches.end()) break;
+    at = &base->second;
+  }
+  return at->*field;
+}
+
+std::string model_of(const Sketches& sketches, const Sketch& sketch) {
+  return inherited(sketches, sketch, &Sketch::path);
+}
+
+// Whole aircraft: wrappers that show a model, and that no other includes or
+// nests. Wrappers in folders below (Models/c182-ai.xml) count where the
+// aircraft's own folder holds none, and only with animations, since parts of
+// aircraft lie there too.
+std::vector<const Sketch*> aircraft_among(const Sketches& sketches) {
+  std::set<fs::path> parts;
+  for (const auto& [file, sketch] : sketches) {
+    parts.insert(sketch.includes);
+    parts.insert(sketch.nests.begin(), sketch.nests.end());
+  }
+  std::vector<const Sketch*> whole;
+  bool any_shallow = false;
+  for (const auto& [file, sketch] : sketches) {
+    if (parts.contains(file)) continue;
+    if (model_of(sketches, sketch).empty() && sketch.nests.empty()) continue;
+    if (sketch.deep && !inherited(sketches, sketch, &Sketch::animated)) continue;
+    whole.push_back(&sketch);
+    any_shallow = any_shallow || !sketch.deep;
+  }
+  if (any_shallow) std::erase_if(whole, [](const Sketch* sketch) { return sketch->deep; });
+  return whole;
+}
+
+std::string name_of(const fs::path& file, const fs::path& root) {
+  return file.lexically_relative(root).replace_extension().generic_string();
+}
+
+void list_folder(const fs::path& root, std::vector<Entry>& entries) {
+  for (const auto& folder : fs::directory_iterator(root)) {
+    if (!folder.is_directory()) continue;
+    const Sketches sketches = sketches_in(folder.path());
+    for (const Sketch* sketch : aircraft_among(sketches)) {
+      const std::string name = name_of(sketch->file, root);
+      if (!left_out().contains(name)) entries.push_back({name, sketch->file, root});
+    }
+  }
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::vector<std::string> names_that(const std::function<bool(const std::string&)>& wanted) {
+  std::vector<std::string> names;
+  for (const Entry& entry : list_aircraft())
+    if (wanted(entry.name)) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<Entry> list_aircraft() {
+  std::vector<Entry> entries;
+  for (const fs::path& folder : folders()) list_folder(folder, entries);
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.name < b.name;
+  });
+  entries.erase(std::unique(entries.begin(),
+                            entries.end(),
+                            [](const Entry& a, const Entry& b) { return a.name == b.name; }),
+                entries.end());
+  return entries;
+}
+
+Entry find_aircraft(const std::string& name) {
+  for (const fs::path& folder : folders()) {
+    const fs::path file = folder / (name + ".xml");
+    std::error_code ignored;
+    const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
+    if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
+  }
+  throw Error("unknown aircraft '" + name + "'; the nearest names are " +
+              joined(nearest_aircraft(name, 3)) + " (`airtruth aircraft list` shows all)");
+}
+
+std::vector<std::string> aircraft_named_like(const std::string& word) {
+  return names_that([&](const std::string& name) { return is_named_like(name, word); });
+}
+
+std::vector<std::string> aircraft_fitting(const std::string& pattern) {
+  std::vector<std::string> exact;
+  std::vector<std::string> in_any_case;
+  for (const Entry& entry : list_aircraft()) {
+    if (matches(pattern, entry.name)) exact.push_back(entry.name);
+    if (matches(pattern, entry.name, LetterCase::kIgnored)) in_any_case.push_back(entry.name);
+  }
+  return exact.empty() ? in_any_case : exact;
+}
+
+std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t count) {
+  const std::vector<std::string> all = names_that([](const std::string&) { return true; });
+  std::vector<std::string> names;
+  if (!word.empty())
+    for (const std::string& name : all)
+      if (contains_ignoring_case(name, word)) names.push_back(name);
+  for (const std::string& name : nearest_spellings(word, all, count))
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  names.resize(std::min(names.size(), count));
+  return names;
+}
+
+fs::path data_root_of(const fs::path& catalogue_folder) {
+  const fs::path whole = fs::absolute(catalogue_folder / "").lexically_normal().parent_path();
+  const fs::path above = whole.parent_path();
+  return whole.filename() == "Aircraft" && above.filename() == "AI" ? above.parent_path() : whole;
+}
+
+std::vector<std::string> liveries(const std::string& name) {
+  std::vector<std::string> result;
+  if (is_model_file(name)) return result;
+  for (const fs::path& root : folders()) {
+    const fs::path own = (root / (name + ".xml")).lexically_normal();
+    const auto slash = name.find('/');
+    if (slash == std::string::npos || !fs::is_regular_file(own)) continue;
+    const Sketches sketches = sketches_in(root / name.substr(0, slash));
+    const auto known = sketches.find(own);
+    if (known == sketches.end()) continue;
+    const std::string model = model_of(sketches, known->second);
+    for (const Sketch* sketch : aircraft_among(sketches))
+      if (!model.empty() && sketch != &known->second && model_of(sketches, *sketch) == model &&
+          !left_out().contains(name_of(sketch->file, root)))
+        result.push_back(name_of(sketch->file, root));
+    break;
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace airtruth::aircraft

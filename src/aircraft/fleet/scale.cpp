@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/fleet/scale.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "aircraft/fleet/size_table.h"
+#include "foundation/base/error.h"
+#include "foundation/base/pattern.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+constexpr double kSpanTolerance = 0.03;    // variants of a type, antennas and models' coarseness
+constexpr double kLengthTolerance = 0.01;  // less shows no side to be off to
+
+std::vector<std::string> parted(const std::string& text, char by) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, by);) parts.push_back(part);
+  return parts;
+}
+
+double metres(const std::string& text) {
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  check(fault == std::errc() && end == text.data() + text.size() && value > 0,
+        "the table of published sizes holds metres");
+  return value;
+}
+
+PublishedSize size_from(const std::string& line) {
+  const std::vector<std::string> cells = parted(line, ',');
+  check(cells.size() == 6 || cells.size() == 2, "a row of published sizes has six cells");
+  PublishedSize size;
+  size.names = parted(cells[0], '|');
+  size.type = cells[1];
+  if (cells.size() == 2) return size;
+  size.span_m = metres(cells[2]);
+  size.length_m = metres(cells[3]);
+  size.height_m = metres(cells[4]);
+  size.source = cells[5];
+  return size;
+}
+
+std::vector<PublishedSize> read_table(std::string_view text) {
+  std::vector<PublishedSize> sizes;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  std::getline(lines, line);  // the head
+  while (std::getline(lines, line)) {
+    while (!line.empty() && line.back() == ',') line.pop_back();
+    if (!line.empty()) sizes.push_back(size_from(line));
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::span<const PublishedSize> published_sizes() {
+  static const std::vector<PublishedSize> sizes = read_table(size_table());
+  return sizes;
+}
+
+const PublishedSize* published_size(const std::string& catalogue_name) {
+  for (const PublishedSize& size : published_sizes())
+    for (const std::string& pattern : size.names)
+      if (matches(pattern, catalogue_name)) return &size;
+  return nullptr;
+}
+
+SizeError size_error(const Extents& model, const PublishedSize& published) {
+  check(published.is_known(), "a published size");
+  return {model.span_m() / published.span_m - 1, model.length_m() / published.length_m - 1};
+}
+
+double scale_to_published(const Extents& model, const PublishedSize& published) {
+  const SizeError error = size_error(model, published);
+  const bool is_off = std::abs(error.span) > kSpanTolerance &&
+                      std::abs(error.length) > kLengthTolerance && error.span * error.length > 0;
+  return is_off ? published.span_m / model.span_m() : 1;
+}
+
+void scale_mesh(Mesh& mesh, double factor) {
+  check(std::isfinite(factor) && factor > 0, "a scale is above 0");
+  const auto scale = static_cast<float>(factor);
+  for (Eigen::Vector3f& position : mesh.positions) position *= scale;
+  for (Part& part : mesh.parts) part.centre_in_body *= scale;
+}
+
+std::string size_words(const Extents& loaded, double scale, const PublishedSize* published) {
+  if (published == nullptr) return "no published size is known: its scale is not checked";
+  if (!published->is_known()) return published->type;
+  const SizeError error = size_error(loaded, *published);
+  const std::string off = fmt::format(
+      "span {:+.1f} %, length {:+.1f} % of the published {:.2f} and "
+      "{:.2f} m ({})",
+      100 * error.span,
+      100 * error.length,
+      published->span_m,
+      published->length_m,
+      published->source);
+  const bool is_to_scale = std::max(std::abs(error.span), std::abs(error.length)) <= kSpanTolerance;
+  return fmt::format("{}: {}{}{}",
+                     published->type,
+                     scale == 1 ? "" : fmt::format("scaled by {:.3f}; ", scale),
+                     is_to_scale ? "" : "not to scale: ",
+                     off);
+}
+
+}  // namespace airtruth::aircraft

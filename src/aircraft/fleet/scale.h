@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "aircraft/model/mesh.h"
+
+// The sizes of real aircraft, and the scale that brings a catalogue's model to them
+// (data/aircraft-sizes/README.md).
+namespace airtruth::aircraft {
+
+struct PublishedSize {
+  std::vector<std::string> names;  // patterns over catalogue names
+  std::string type;                // "Cessna 172P", or what it is where it is no aircraft
+  double span_m = 0;               // 0: no size is published
+  double length_m = 0;
+  double height_m = 0;
+  std::string source;
+
+  bool is_known() const { return span_m > 0; }
+};
+
+// The table, in the order of its file.
+std::span<const PublishedSize> published_sizes();
+
+// The row of a catalogue name; null where there is none.
+const PublishedSize* published_size(const std::string& catalogue_name);
+
+// How far a model is off: model / published - 1.
+struct SizeError {
+  double span = 0;
+  double length = 0;
+};
+SizeError size_error(const Extents& model, const PublishedSize& published);
+
+// The factor that brings a model's span to the published one where its scale is wrong, which shows
+// in span and length alike: both are off to the same side, the span by more than 3 %, the length by
+// more than 1 %. Else 1.
+double scale_to_published(const Extents& model, const PublishedSize& published);
+
+// All of a mesh by one factor about the origin of the body: positions and the axes' places.
+// Normals, directions and textures are what they were.
+void scale_mesh(Mesh& mesh, double factor);
+
+// One line on a catalogue's model as it is loaded, by the factor that it was scaled by: "Cessna
+// 172P: scaled by 1.142 to the published span of 11.00 m; the length is +7.2 % off (8.28 m)".
+std::string size_words(const Extents& loaded, double scale, const PublishedSize* published);
+
+}  // namespace airtruth::aircraft

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/model/finish.h"
+
+#include <gtest/gtest.h>
+
+namespace airtruth::aircraft {
+namespace {
+
+// Names that the catalogue has.
+TEST(Finish, IsToldByWholeWords) {
+  for (const char* name : {"glass",
+                           "Glass23",
+                           "glass.001",
+                           "Grey40_Glass",
+                           "BLACK50_Windows",
+                           "Perspex.004",
+                           "Cristal",
+                           "verre2",
+                           "canopy18"})
+    EXPECT_EQ(finish_named(name), Finish::kGlass) << name;
+  for (const char* name : {"Metal_01", "metal.001", "Chrome", "Cromo", "Titanio", "Mirror"})
+    EXPECT_EQ(finish_named(name), Finish::kMetal) << name;
+  for (const char* name :
+       {"", "DefaultWhite", "ac3dmat1", "metalnegro", "glassmat20", "alutubing", "windowless", "7"})
+    EXPECT_EQ(finish_named(name), Finish::kPaint) << name;
+}
+
+}  // namespace
+}  // namespace airtruth::aircraft

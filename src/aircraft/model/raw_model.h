@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "aircraft/model/mesh.h"
+#include "aircraft/texture_file/picture.h"
+
+namespace airtruth::aircraft {
+
+// A model as its reader hands it back: plain arrays. Textures are pictures still.
+struct RawPicture {
+  Picture picture;
+  bool repeat_u = true;
+  bool repeat_v = true;
+};
+
+struct RawModel {
+  Mesh mesh;  // without textures; Material::texture is an index into `pictures`
+  std::vector<RawPicture> pictures;
+  std::vector<std::string> warnings;
+};
+
+// Limits on what a reader may hand back, and that a cache may hold.
+constexpr std::size_t kMaxParts = 1024;
+constexpr std::size_t kMaxMaterials = 4096;
+constexpr std::size_t kMaxPictures = 1024;
+constexpr std::size_t kMaxPixels = std::size_t{64} << 20;  // of all pictures together
+constexpr std::size_t kMaxWarnings = 64;
+
+// Throws Error where an array has the wrong length, an index points outside, a number is not finite
+// or beyond kLargestCoordinate, a normal is not a unit vector, a colour lies outside 0..1, or a
+// limit is exceeded.
+void check_model(const RawModel& model);
+
+// The mesh with its textures decoded to linear light, and their mip chains.
+Mesh mesh_of(RawModel model);
+
+}  // namespace airtruth::aircraft

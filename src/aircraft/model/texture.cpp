@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/model/texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::aircraft {
+namespace {
+
+using Texel = std::array<float, 4>;
+
+Texture::Level halved(const Texture::Level& level) {
+  Texture::Level half;
+  half.width = std::max(1, level.width / 2);
+  half.height = std::max(1, level.height / 2);
+  half.texels.resize(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
+  const auto at = [&](int x, int y) -> const Texel& {
+    return level.texels[static_cast<std::size_t>(std::min(y, level.height - 1)) *
+                            static_cast<std::size_t>(level.width) +
+                        static_cast<std::size_t>(std::min(x, level.width - 1))];
+  };
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      Texel& target =
+          half.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(half.width) +
+                      static_cast<std::size_t>(x)];
+      for (std::size_t c = 0; c < 4; ++c)
+        target[c] = 0.25f * (at(2 * x, 2 * y)[c] + at(2 * x + 1, 2 * y)[c] +
+                             at(2 * x, 2 * y + 1)[c] + at(2 * x + 1, 2 * y + 1)[c]);
+    }
+  }
+  return half;
+}
+
+void add_mip_chain(Texture& texture) {
+  while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
+    texture.levels.push_back(halved(texture.levels.back()));
+}
+
+int wrapped(int i, int size, bool repeat) {
+  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
+}
+
+}  // namespace
+
+float linear_channel(float srgb) {
+  const float c = std::clamp(srgb, 0.0f, 1.0f);
+  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
+
+Texture texture_from_srgb(
+    int width, int height, std::vector<Texel> texels, bool repeat_u, bool repeat_v) {
+  Texture texture;
+  texture.repeat_u = repeat_u;
+  texture.repeat_v = repeat_v;
+  std::array<float, 256> table;
+  for (std::size_t i = 0; i < 256; ++i) table[i] = linear_channel(static_cast<float>(i) / 255.0f);
+  for (Texel& texel : texels) {
+    if (texel[3] < kOpaque) texture.has_translucency = true;
+    const float alpha = texel[3] < kOpaque ? texel[3] : 1.0f;
+    for (std::size_t c = 0; c < 3; ++c)
+      texel[c] =
+          alpha *
+          table[static_cast<std::size_t>(std::lround(std::clamp(texel[c], 0.0f, 1.0f) * 255.0f))];
+    texel[3] = alpha;
+  }
+  texture.levels.push_back({width, height, std::move(texels)});
+  add_mip_chain(texture);
+  return texture;
+}
+
+Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_v) {
+  Texture texture;
+  texture.repeat_u = repeat_u;
+  texture.repeat_v = repeat_v;
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < 256; ++i) linear[i] = linear_channel(static_cast<float>(i) / 255.0f);
+  std::vector<Texel> texels(picture.rgba.size() / 4);
+  const std::uint8_t* p = picture.rgba.data();
+  for (Texel& texel : texels) {
+    const float stated = static_cast<float>(p[3]) / 255.0f;
+    const bool translucent = stated < kOpaque;
+    texture.has_translucency = texture.has_translucency || translucent;
+    const float alpha = translucent ? stated : 1.0f;
+    texel = {alpha * linear[p[0]], alpha * linear[p[1]], alpha * linear[p[2]], alpha};
+    p += 4;
+  }
+  texture.levels.push_back({picture.width, picture.height, std::move(texels)});
+  add_mip_chain(texture);
+  return texture;
+}
+
+float alpha_at(const Texture& texture, float u, float v) {
+  const Texture::Level& level = texture.levels.front();
+  if (!std::isfinite(u) || !std::isfinite(v) || std::abs(u) > 1e6f || std::abs(v) > 1e6f) return 1;
+  const float x = u * static_cast<float>(level.width) - 0.5f;
+  const float y = v * static_cast<float>(level.height) - 0.5f;
+  const int x0 = static_cast<int>(std::floor(x));
+  const int y0 = static_cast<int>(std::floor(y));
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const auto at = [&](int i, int j) {
+    return level.texels[static_cast<std::size_t>(wrapped(j, level.height, texture.repeat_v)) *
+                            static_cast<std::size_t>(level.width) +
+                        static_cast<std::size_t>(wrapped(i, level.width, texture.repeat_u))][3];
+  };
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
+         fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+}
+
+}  // namespace airtruth::aircraft

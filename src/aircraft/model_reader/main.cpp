@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// airtruth-model-reader: reads one 3D model for the program that started it, and hands back plain
+// arrays. Its standard input is a socket; it gets the files that it asks for through that.
+#include <cerrno>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <unistd.h>
+
+#include "aircraft/confined/channel.h"
+#include "aircraft/confined/model_wire.h"
+#include "aircraft/model_reader/confine.h"
+#include "aircraft/model_reader/other_formats.h"
+#include "aircraft/wrapper/reader.h"
+#include "foundation/base/error.h"
+
+namespace {
+
+using namespace airtruth;  // the program's own top level
+using namespace airtruth::aircraft;
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+class ToParent : public Channel {
+ protected:
+  std::size_t read_some(char* data, std::size_t size) override {
+    for (;;) {
+      const ssize_t got = ::read(0, data, size);
+      if (got >= 0) return static_cast<std::size_t>(got);
+      if (errno != EINTR) return 0;
+    }
+  }
+  std::size_t write_some(const char* data, std::size_t size) override {
+    for (;;) {
+      const ssize_t put = ::write(0, data, size);
+      if (put >= 0) return static_cast<std::size_t>(put);
+      if (errno != EINTR) return 0;
+    }
+  }
+};
+
+// The parent's files, asked for by name.
+class AskedFiles : public ModelFiles {
+ public:
+  AskedFiles(Channel& parent, const ReaderJob& job)
+      : ModelFiles(job.shown_folder, job.in_data_root), parent_(parent) {}
+
+ protected:
+  Kind kind_below(const fs::path& path) override {
+    parent_.send(Message::kAskKind, path.string());
+    const std::string answer = answered(Message::kKind);
+    return answer.size() == 1 ? static_cast<Kind>(answer[0]) : Kind::kNone;
+  }
+  std::string read_below(const fs::path& path, std::size_t max_bytes) override {
+    WireWriter question;
+    question.put(static_cast<std::uint64_t>(max_bytes));
+    question.put_text(path.string());
+    parent_.send(Message::kAskFile, question.take());
+    return answered(Message::kFile);
+  }
+
+ private:
+  std::string answered(Message wanted) {
+    Channel::Received received = parent_.receive(kMostBytes);
+    if (received.closed) ::_exit(0);
+    if (received.message == Message::kError) throw error_from_bytes(received.bytes);
+    if (received.message != wanted) throw Error("gets an answer that it did not ask for");
+    return std::move(received.bytes);
+  }
+
+  Channel& parent_;
+};
+
+void do_job(Channel& parent) {
+  try {
+    model_reader::confine({});
+    const Channel::Received received = parent.receive(kMostBytes);
+    if (received.closed || received.message != Message::kJob) return;
+    const ReaderJob job = job_from_bytes(received.bytes);
+    AskedFiles files(parent, job);
+    parent.send(
+        Message::kModel,
+        bytes_of(read_model(files, job.file, job.options, model_reader::append_other_format)));
+  } catch (const Error& error) {
+    parent.send(Message::kError, bytes_of(error));
+  } catch (const std::bad_alloc&) {
+    parent.send(Message::kError, bytes_of(Error("needs more memory than a model may take")));
+  } catch (const std::exception& error) {
+    parent.send(Message::kError,
+                bytes_of(Error(std::string("cannot be read as a 3D model: ") + error.what())));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2 || ::isatty(0) != 0) {
+    constexpr char kHint[] = "airtruth-model-reader is started by airtruth alone\n";
+    return ::write(2, kHint, sizeof(kHint) - 1) < 0 ? 1 : 2;
+  }
+  model_reader::end_with_parent(std::atoi(argv[1]));
+  ToParent parent;
+  do_job(parent);
+  ::_exit(0);  // nothing is left to tidy up, and sanitizers would want to open files
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "aircraft/fleet/fleet.h"
+#include "aircraft/model_reader/confine.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::model_reader {
+namespace {
+
+// Each bit is something that a confined process managed to do.
+int what_is_possible() {
+  int possible = 0;
+  if (::open("/etc/passwd", O_RDONLY) >= 0) possible |= 1;
+  if (::open("/tmp/airtruth_confined", O_WRONLY | O_CREAT, 0600) >= 0) possible |= 2;
+  if (::socket(AF_INET, SOCK_STREAM, 0) >= 0) possible |= 4;
+  if (::fork() >= 0) possible |= 8;
+  ::execl("/bin/true", "true", nullptr);  // on success the code is 0, which no bit says
+  if (::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
+      MAP_FAILED)
+    possible |= 16;
+  if (::kill(::getppid(), 0) == 0) possible |= 32;
+  // What it needs is there: memory.
+  void* const memory =
+      ::mmap(nullptr, 1 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return memory == MAP_FAILED ? 128 : possible | 64;
+}
+
+TEST(Confine, LeavesNothingButMemory) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    confine({});
+    ::_exit(what_is_possible());
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 64);
+}
+
+class Formats : public testing::Test {
+ protected:
+  Formats()
+      : folder_(fs::temp_directory_path() / ("airtruth_formats_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  }
+  ~Formats() override { fs::remove_all(folder_); }
+
+  aircraft::Aircraft load(const std::string& name, const std::string& bytes) {
+    write_file(folder_ / name, bytes);
+    aircraft::LoadOptions options;
+    options.axes = aircraft::ModelAxes{"x", "z", 1};
+    return aircraft::load_aircraft((folder_ / name).string(),
+                                   options,
+                                   [&](const std::string& warning) { warnings_ += warning; });
+  }
+  std::string fault(const std::string& name, const std::string& bytes) {
+    try {
+      load(name, bytes);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  fs::path folder_;
+  std::string warnings_;
+};
+
+// x forward 3, y left 2, z up 1: the body's y is right and its z down.
+void expect_size(const aircraft::Aircraft& loaded) {
+  const aircraft::Extents size = aircraft::extents(loaded.mesh);
+  EXPECT_TRUE(size.high_in_body.isApprox(Vector3(3, 0, 0))) << size.high_in_body.transpose();
+  EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, -2, -1))) << size.low_in_body.transpose();
+}
+
+TEST_F(Formats, AnObjWithItsMaterialIsReadAndAMissingOneIsNamed) {
+  write_file(folder_ / "a.mtl", "newmtl m\nKd 1 0 0\nd 0.5\n");
+  const std::string shape = "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nusemtl m\nf 1 2 3\nf 1 3 4\n";
+  const aircraft::Aircraft loaded = load("a.obj", "mtllib a.mtl\n" + shape);
+  expect_size(loaded);
+  EXPECT_EQ(loaded.mesh.materials.at(0).diffuse, (std::array<float, 3>{1, 0, 0}));
+  EXPECT_FLOAT_EQ(loaded.mesh.materials.at(0).opacity, 0.5f);
+  EXPECT_EQ(loaded.sources.size(), 2u);
+  EXPECT_EQ(warnings_, "");
+  load("b.obj", "mtllib ../../etc/gone.mtl\n" + shape);
+  EXPECT_THAT(warnings_, testing::HasSubstr("gone.mtl"));
+}
+
+TEST_F(Formats, StlAndPlyAreRead) {
+  const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
+    return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
+           "\nendloop\nendfacet\n";
+  };
+  expect_size(load("a.stl",
+                   "solid a\n" + facet("0 0 0", "3 0 0", "0 2 0") +
+                       facet("0 0 0", "0 2 0", "0 0 1") + "endsolid a\n"));
+  expect_size(load("a.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                   "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                   "end_header\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"));
+}
+
+TEST_F(Formats, FaultsAreOneLine) {
+  EXPECT_THAT(fault("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4294967295\n"),
+              testing::HasSubstr("a.obj: cannot be read as a 3D model"));
+  EXPECT_THAT(fault("a.3ds", "MM"), testing::HasSubstr("a.3ds: "));
+  EXPECT_THAT(fault("a.glb", std::string("glTF\x02\0\0\0\xff\xff\xff\xff", 12)),
+              testing::HasSubstr("a.glb: "));
+  EXPECT_THAT(fault("a.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n"),
+              testing::HasSubstr("1,000 km"));
+  EXPECT_THAT(fault("a.stl", "ply\n"), testing::HasSubstr("a.stl: "));
+}
+
+}  // namespace
+}  // namespace airtruth::model_reader

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/model_reader/other_formats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include <assimp/Importer.hpp>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "aircraft/model_reader/assimp_files.h"
+#include "aircraft/wrapper/reader.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::model_reader {
+namespace {
+
+namespace fs = std::filesystem;
+using aircraft::Assembly;
+using aircraft::Batch;
+using aircraft::ChoosePart;
+using aircraft::PartChoice;
+using aircraft::Picture;
+
+constexpr float kSmoothBelowDeg = 60;  // where a file states no normals
+constexpr int kMaxNodeDepth = 256;
+constexpr std::size_t kNamedFiles = 5;  // of those that are missing
+
+float srgb_channel(float linear) {
+  const float c = std::clamp(linear, 0.0f, 1.0f);
+  return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+}
+
+// Finite and in 0..1; black for what is neither.
+std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
+  std::array<float, 3> result{c.r, c.g, c.b};
+  for (float& channel : result) {
+    channel = channel >= 0 ? std::min(channel, 1.0f) : 0.0f;
+    if (is_linear) channel = srgb_channel(channel);
+  }
+  return result;
+}
+
+class SceneReader {
+ public:
+  SceneReader(const aiScene& scene,
+              Assembly& assembly,
+              const fs::path& file,
+              const std::vector<fs::path>& folders,
+              const ChoosePart& choose)
+      : scene_(scene),
+        assembly_(assembly),
+        file_(file),
+        folders_(folders),
+        choose_(choose),
+        ending_(aircraft::ending_of(file)) {}
+
+  void read() {
+    // assimp turns 3D Studio's axes here; model_forward and model_up speak of the file's own.
+    const aiMatrix4x4 root = ending_ == ".3ds" ? aiMatrix4x4() : scene_.mRootNode->mTransformation;
+    read_node(*scene_.mRootNode, root, 0);
+  }
+
+ private:
+  void read_node(const aiNode& node, const aiMatrix4x4& file_from_node, int depth) {
+    if (depth > kMaxNodeDepth) throw Error("nests objects too deep");
+    const bool named = node.mName.length > 0;
+    if (named) names_.emplace_back(node.mName.C_Str());
+    const PartChoice choice = node.mNumMeshes > 0 ? choose_(names_) : PartChoice{};
+    for (unsigned i = 0; i < node.mNumMeshes && !choice.hidden; ++i)
+      assembly_.add(
+          batch_of(*scene_.mMeshes[node.mMeshes[i]], file_from_node), choice, file_, folders_);
+    for (unsigned i = 0; i < node.mNumChildren; ++i)
+      read_node(*node.mChildren[i], file_from_node * node.mChildren[i]->mTransformation, depth + 1);
+    if (named) names_.pop_back();
+  }
+
+  Batch batch_of(const aiMesh& mesh, const aiMatrix4x4& file_from_node) {
+    Batch batch;
+    unsigned uv_channel = 0;
+    read_material(*scene_.mMaterials[mesh.mMaterialIndex], batch, uv_channel);
+    if (uv_channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !mesh.HasTextureCoords(uv_channel))
+      uv_channel = 0;
+    aiMatrix3x3 normals_from_node(file_from_node);
+    normals_from_node.Inverse().Transpose();
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D p = file_from_node * mesh.mVertices[i];
+      batch.positions.emplace_back(p.x, p.y, p.z);
+      const aiVector3D n =
+          mesh.HasNormals() ? normals_from_node * mesh.mNormals[i] : aiVector3D(0, 0, 0);
+      batch.normals.emplace_back(n.x, n.y, n.z);
+      const aiVector3D uv = mesh.HasTextureCoords(uv_channel) ? mesh.mTextureCoords[uv_channel][i]
+                                                              : aiVector3D(0, 0, 0);
+      batch.uvs.emplace_back(uv.x, uv.y);
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // points and lines
+      batch.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
+      for (const std::uint32_t vertex : batch.triangles.back())
+        if (vertex >= mesh.mNumVertices) throw Error("has a triangle without its vertex");
+    }
+    return batch;
+  }
+
+  void read_material(const aiMaterial& material, Batch& batch, unsigned& uv_channel) {
+    const bool is_linear = ending_ == ".gltf" || ending_ == ".glb";
+    aiColor3D colour;
+    if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
+      batch.diffuse = colour_of(colour, is_linear);
+    if (material.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
+      batch.emission = colour_of(colour, is_linear);
+    if (material.Get(AI_MATKEY_COLOR_SPECULAR, colour) == aiReturn_SUCCESS)
+      batch.specular = colour_of(colour, is_linear);
+    aiString name;
+    if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS)
+      batch.finish = aircraft::finish_named(name.C_Str());
+    float value = 0;
+    if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
+      batch.opacity = std::min(value, 1.0f);
+    if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && value >= 0)
+      batch.shininess = std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
+    read_texture(material, batch, uv_channel);
+  }
+
+  void read_texture(const aiMaterial& material, Batch& batch, unsigned& uv_channel) {
+    aiString path;
+    aiTextureMapMode modes[3] = {
+        aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+    for (const aiTextureType kind : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+      if (material.GetTexture(kind, 0, &path, nullptr, &uv_channel, nullptr, nullptr, modes) !=
+          aiReturn_SUCCESS)
+        continue;
+      batch.repeat_u = modes[0] == aiTextureMapMode_Wrap || modes[0] == aiTextureMapMode_Mirror;
+      batch.repeat_v = modes[1] == aiTextureMapMode_Wrap || modes[1] == aiTextureMapMode_Mirror;
+      if (const aiTexture* inside = scene_.GetEmbeddedTexture(path.C_Str())) {
+        batch.picture = picture_of(*inside, batch.repeat_u, batch.repeat_v);
+      } else {
+        batch.texture = path.C_Str();
+      }
+      return;
+    }
+  }
+
+  int picture_of(const aiTexture& texture, bool repeat_u, bool repeat_v) {
+    const auto key = std::make_tuple(&texture, repeat_u, repeat_v);
+    const auto known = picture_of_texture_.find(key);
+    if (known != picture_of_texture_.end()) return known->second;
+    const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
+    if (texture.mHeight != 0)
+      throw Error("has a texture inside that is no file; expected PNG or JPEG");
+    const int index = assembly_.add_picture(
+        aircraft::read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
+    picture_of_texture_[key] = index;
+    return index;
+  }
+
+  const aiScene& scene_;
+  Assembly& assembly_;
+  const fs::path& file_;
+  const std::vector<fs::path>& folders_;
+  const ChoosePart& choose_;
+  std::string ending_;
+  std::vector<std::string> names_;
+  std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
+};
+
+// An importer would delete what it is given.
+class LentFiles {
+ public:
+  LentFiles(Assimp::Importer& importer, AssimpFiles& files) : importer_(importer) {
+    importer.SetIOHandler(&files);
+  }
+  ~LentFiles() { importer_.SetIOHandler(nullptr); }
+  LentFiles(const LentFiles&) = delete;
+  LentFiles& operator=(const LentFiles&) = delete;
+
+ private:
+  Assimp::Importer& importer_;
+};
+
+// All importers but that of the ending are taken out: what a file says it is decides nothing.
+void keep_importer_of(Assimp::Importer& importer, const std::string& ending) {
+  const Assimp::BaseImporter* const wanted = importer.GetImporter(ending.c_str());
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
+    if (importer.GetImporter(i) != wanted) importer.UnregisterLoader(importer.GetImporter(i));
+}
+
+void warn_of_missing(Assembly& assembly, const AssimpFiles& files) {
+  if (files.missing().empty()) return;
+  std::string names;
+  std::size_t shown = 0;
+  for (const std::string& name : files.missing())
+    if (++shown <= kNamedFiles) names += (shown == 1 ? "" : ", ") + name;
+  if (assembly.model().warnings.size() < aircraft::kMaxWarnings)
+    assembly.model().warnings.push_back("files that are not in its folder and are left out: " +
+                                        names + (shown > kNamedFiles ? ", ..." : ""));
+}
+
+std::string one_sentence(const char* message) {
+  std::string text = message;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "it holds no model" : text;
+}
+
+}  // namespace
+
+void append_other_format(Assembly& assembly,
+                         const fs::path& file,
+                         const std::vector<fs::path>& folders,
+                         const ChoosePart& choose) {
+  const std::string shown = assembly.files().shown(file).string();
+  if (assembly.files().kind(file) != aircraft::ModelFiles::Kind::kFile)
+    throw Error("does not exist; expected a 3D model", {shown});
+  AssimpFiles files(assembly.files());
+  Assimp::Importer importer;
+  const LentFiles lent(importer, files);
+  const std::string ending = aircraft::ending_of(file);
+  keep_importer_of(importer, ending);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(
+      file.string(),
+      aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
+                {shown});
+  try {
+    SceneReader(*scene, assembly, file, folders, choose).read();
+  } catch (const Error& error) {
+    if (!error.where().file.empty()) throw;
+    throw Error(error.message(), {shown});
+  }
+  warn_of_missing(assembly, files);
+}
+
+}  // namespace airtruth::model_reader

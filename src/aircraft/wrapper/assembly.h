@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "aircraft/ac3d/batch.h"
+#include "aircraft/model/raw_model.h"
+#include "aircraft/wrapper/model_files.h"
+
+// One aircraft put together from the triangles of its model files.
+namespace airtruth::aircraft {
+
+// What to do with a part of the model under a chain of named nodes (outermost first).
+struct PartChoice {
+  bool hidden = false;
+  Eigen::Affine3d body_from_file = Eigen::Affine3d::Identity();
+  int part = 0;                    // index into mesh.parts
+  float opacity = 1;               // times the material's own
+  bool is_propeller_disc = false;  // stands for blades that turn too fast to be seen
+  std::string texture;  // below the files' folder; in place of the part's own; empty: its own
+};
+using ChoosePart = std::function<PartChoice(const std::vector<std::string>& names)>;
+
+class Assembly {
+ public:
+  explicit Assembly(ModelFiles& files);
+
+  ModelFiles& files() { return files_; }
+  RawModel& model() { return model_; }
+
+  // Appends triangles of `file`, whose textures are looked for in `folders`, in their order. Throws
+  // Error with the file, and the line that names it, for a texture that is missing or unreadable,
+  // and for more triangles, vertices or pixels than the limits.
+  void add(const Batch& batch,
+           const PartChoice& choice,
+           const fs::path& file,
+           const std::vector<fs::path>& folders);
+
+  // A picture that lies inside a model file; the index for Batch::picture.
+  int add_picture(Picture picture, bool repeat_u, bool repeat_v);
+  // What is left of the limit on pixels.
+  PictureLimits picture_limits() const;
+
+ private:
+  int texture_of(const Batch& batch,
+                 const PartChoice& choice,
+                 const fs::path& file,
+                 const std::vector<fs::path>& folders);
+  int read_texture(const fs::path& path, bool repeat_u, bool repeat_v);
+  std::uint32_t material_of(const Batch& batch, const PartChoice& choice, int texture);
+  void add_vertices(const Batch& batch, const Eigen::Affine3d& body_from_file);
+
+  ModelFiles& files_;
+  RawModel model_;
+  std::map<std::string, int> picture_of_file_;  // with its way of repeating
+  std::size_t pixels_ = 0;
+  std::size_t triangles_ = 0;
+};
+
+// Appends an AC3D file's triangles.
+void append_ac(Assembly& assembly,
+               const fs::path& file,
+               const std::vector<fs::path>& folders,
+               const ChoosePart& choose);
+
+}  // namespace airtruth::aircraft

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/wrapper/model_files.h"
+
+#include <algorithm>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+constexpr std::size_t kMaxModelReads = 2000;
+constexpr std::size_t kMaxPathBytes = 4096;  // PATH_MAX
+
+// In normal form; empty for a path that leaves the folder.
+fs::path inside(const fs::path& path) {
+  const std::string& text = path.native();
+  if (text.empty() || text.size() > kMaxPathBytes || text.find('\0') != std::string::npos ||
+      path.is_absolute())
+    return {};
+  const fs::path normal = path.lexically_normal();
+  if (*normal.begin() == "..") return {};
+  return normal;
+}
+
+}  // namespace
+
+ModelFiles::ModelFiles(fs::path shown_folder, fs::path in_data_root)
+    : shown_folder_(std::move(shown_folder)), in_data_root_(std::move(in_data_root)) {}
+
+ModelFiles::Kind ModelFiles::kind(const fs::path& path) {
+  const fs::path normal = inside(path);
+  return normal.empty() ? Kind::kNone : kind_below(normal);
+}
+
+std::string ModelFiles::read(const fs::path& path, std::size_t max_bytes) {
+  const fs::path normal = inside(path);
+  if (normal.empty())
+    throw Error("lies outside the folder " +
+                    (shown_folder_.empty() ? "." : shown_folder_.string()) +
+                    "; expected a file in it or below",
+                {shown(path).string()});
+  if (++reads_ > kMaxModelReads)
+    throw Error("takes in over " + std::to_string(kMaxModelReads) + " files",
+                {shown(path).string()});
+  return read_below(normal, max_bytes);
+}
+
+fs::path ModelFiles::shown(const fs::path& path) const {
+  return shown_folder_.empty() ? path : shown_folder_ / path;
+}
+
+DiskFiles::DiskFiles(const fs::path& folder, const fs::path& in_data_root, bool hashes)
+    : ModelFiles(folder, in_data_root), hashes_(hashes) {
+  std::error_code ignored;
+  folder_ = fs::canonical(folder.empty() ? fs::path(".") : folder, ignored);
+}
+
+// Without symbolic links; empty for what is not there, or lies elsewhere.
+fs::path DiskFiles::resolved(const fs::path& path) const {
+  std::error_code missing;
+  const fs::path real = fs::canonical(folder_ / path, missing);
+  if (missing || folder_.empty()) return {};
+  const auto differ = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first;
+  return differ == folder_.end() ? real : fs::path();
+}
+
+ModelFiles::Kind DiskFiles::kind_below(const fs::path& path) {
+  const fs::path real = resolved(path);
+  std::error_code ignored;
+  const Kind kind = real.empty()                         ? Kind::kNone
+                    : fs::is_regular_file(real, ignored) ? Kind::kFile
+                    : fs::is_directory(real, ignored)    ? Kind::kFolder
+                                                         : Kind::kNone;
+  if (hashes_)
+    asked_.push_back({path.string(),
+                      kind == Kind::kFile     ? "file"
+                      : kind == Kind::kFolder ? "folder"
+                                              : "none"});
+  return kind;
+}
+
+std::string DiskFiles::read_below(const fs::path& path, std::size_t max_bytes) {
+  const fs::path real = resolved(path);
+  const std::string name = shown(path).string();
+  std::error_code ignored;
+  if (real.empty()) {
+    if (fs::exists(fs::symlink_status(folder_ / path, ignored)))
+      throw Error("leads out of its model's folder through a symbolic link", {name});
+    throw Error("does not exist; expected a file of a 3D model", {name});
+  }
+  if (!fs::is_regular_file(real, ignored))
+    throw Error("is no regular file; expected a file of a 3D model", {name});
+  std::string bytes;
+  try {
+    bytes = read_file(real, max_bytes);
+  } catch (const Error& error) {
+    throw Error(error.message(), {name});
+  }
+  sources_.push_back(shown(path));
+  if (hashes_) asked_.push_back({path.string(), sha256_of(bytes)});
+  return bytes;
+}
+
+fs::path place_in_data_root(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+  fs::path place;
+  bool found = false;
+  for (auto at = whole.begin(); at != whole.end(); ++at) {
+    const auto next = std::next(at);
+    if (*at == "AI" && next != whole.end() && *next == "Aircraft") {
+      place.clear();
+      found = true;
+    }
+    if (found) place /= *at;
+  }
+  return place;
+}
+
+fs::path find_texture(ModelFiles& files,
+                      const std::string& name,
+                      const std::vector<fs::path>& folders) {
+  std::string clean = name;
+  std::replace(clean.begin(), clean.end(), '\\', '/');
+  for (const fs::path& folder : folders)
+    for (const fs::path& candidate : {folder / clean, folder / fs::path(clean).filename()})
+      if (files.kind(candidate) == ModelFiles::Kind::kFile) return candidate.lexically_normal();
+  return {};
+}
+
+}  // namespace airtruth::aircraft

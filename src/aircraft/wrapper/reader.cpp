@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/wrapper/reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "aircraft/wrapper/scope.h"
+#include "aircraft/wrapper/tidy.h"
+#include "aircraft/wrapper/wrapper.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+const std::set<std::string> kOthers = {
+    ".obj", ".3ds", ".stl", ".ply", ".dae", ".gltf", ".glb", ".fbx"};
+const std::set<std::string> kScenes = {".osgt", ".osgb", ".osgx", ".osg", ".ive"};
+constexpr const char* kReadable = ".ac, .obj, .3ds, .stl, .ply, .dae, .gltf, .glb or .fbx";
+
+// FlightGear: x back, y right, z up. Body: x forward, y right, z down.
+Eigen::Affine3d body_from_flightgear() {
+  return Eigen::Affine3d(Eigen::Matrix3d(Vector3(-1, 1, -1).asDiagonal()));
+}
+
+// AC3D files have y up; FlightGear stands them up by a quarter turn about x.
+Eigen::Affine3d flightgear_from_ac() {
+  Eigen::Matrix3d m;
+  m << 1, 0, 0,  //
+      0, 0, -1,  //
+      0, 1, 0;
+  return Eigen::Affine3d(m);
+}
+
+Vector3 axis_vector(const std::string& text, const char* what) {
+  const bool negative = !text.empty() && text[0] == '-';
+  const std::string letter =
+      !text.empty() && (text[0] == '-' || text[0] == '+') ? text.substr(1) : text;
+  if (letter != "x" && letter != "y" && letter != "z")
+    throw Error(std::string(what) + " is '" + text +
+                "'; expected x, y or z, or one of them with a minus");
+  return (negative ? -1.0 : 1.0) * Vector3::Unit(letter[0] - 'x');
+}
+
+Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
+  const Vector3 forward = axis_vector(axes.forward, "model_forward");
+  const Vector3 up = axis_vector(axes.up, "model_up");
+  if (std::abs(forward.dot(up)) > 0.5)
+    throw Error(
+        "model_forward and model_up are the same axis; expected two "
+        "different ones");
+  if (!std::isfinite(axes.scale) || axes.scale <= 0)
+    throw Error("model_scale is not positive; expected metres per unit");
+  Eigen::Matrix3d m;
+  m.row(0) = forward;
+  m.row(1) = forward.cross(up);  // right
+  m.row(2) = -up;
+  return Eigen::Affine3d(axes.scale * m);
+}
+
+// Lamps, their glow, shadows on the ground, smoke: drawn for the game, and no
+// part of an aircraft's body.
+bool is_effect(const std::string& object) {
+  static const std::array<const char*, 8> kWords = {
+      "halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"};
+  static const std::array<const char*, 3> kLamps = {"light", "beacon", "strobe"};
+  std::string name = object;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // "Disk.noshadow" casts none.
+  if (const auto casts_none = name.find("noshadow"); casts_none != std::string::npos)
+    name.erase(casts_none, std::string("noshadow").size());
+  const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
+  if (std::any_of(kWords.begin(), kWords.end(), has)) return true;
+  return object.ends_with("On") && std::any_of(kLamps.begin(), kLamps.end(), has);
+}
+
+bool has_effect(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), is_effect);
+}
+
+bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return text.find(word) != std::string::npos;
+  });
+}
+
+// Of a propeller or a rotor that turns fast; not of a jet engine's fan. FlightGear's models know
+// them by their names alone ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk").
+bool is_propeller_disc(const std::vector<std::string>& names) {
+  if (names.empty()) return false;
+  std::string name = names.back();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (contains_any(name, {"fan", "eng"})) return false;
+  if (contains_any(name, {"_blur", "-blur"}) || name.starts_with("disk") ||
+      name.starts_with("disc"))
+    return true;
+  return contains_any(name, {"prop", "prplr", "rotor"}) &&
+         contains_any(name, {"disk", "disc", "blur", "fast"});
+}
+
+// What the loader has no need to understand: lamps, and what shows in a cockpit
+// or by night alone.
+bool is_known(const std::string& type) {
+  static const std::set<std::string> kKnown = {
+      "",          "select",   "rotate", "spin",        "translate",  "scale",
+      "billboard", "flash",    "blend",  "dist-scale",  "range",      "material",
+      "timed",     "noshadow", "shader", "point",       "alpha-test", "trail",
+      "light",     "none",     "pick",   "shadow",      "slider",     "textranslate",
+      "texrotate", "touch",    "knob",   "interaction", "enable-hot", "null"};
+  return kKnown.contains(type);
+}
+
+using Append = std::function<void(
+    Assembly&, const fs::path&, const std::vector<fs::path>&, const ChoosePart&)>;
+
+class Loader {
+ public:
+  Loader(const LoadOptions& options, Assembly& assembly, const Append& append)
+      : cruise_{options.airspeed_kt, options.altitude_agl_ft},
+        assembly_(assembly),
+        append_(append) {}
+
+  void add(const Wrapper& wrapper) { add(wrapper, Scope(body_from_flightgear(), cruise_), {}); }
+
+  const std::set<std::string>& unknown() const { return unknown_; }
+
+ private:
+  void add(const Wrapper& wrapper, const Scope& outside, const std::vector<fs::path>& outer) {
+    for (const Condition& condition : wrapper.conditions)
+      if (!holds(condition, cruise_)) return;
+    note_unknown(wrapper);
+    const Scope scope = outside.inside(wrapper);
+    std::vector<fs::path> folders;
+    if (!wrapper.texture_folder.empty()) folders.push_back(wrapper.texture_folder);
+    folders.push_back(wrapper.file.parent_path());
+    if (!wrapper.model.empty()) folders.push_back(wrapper.model.parent_path());
+    folders.insert(folders.end(), outer.begin(), outer.end());
+    if (!wrapper.model.empty()) add_model(wrapper.model, scope, folders);
+    for (const Wrapper& nested : wrapper.nested) add(nested, scope, folders);
+  }
+
+  void add_model(const fs::path& file, const Scope& scope, const std::vector<fs::path>& folders) {
+    const bool is_ac = ending_of(file) == ".ac";
+    const Eigen::Affine3d model_from_file =
+        is_ac ? flightgear_from_ac() : Eigen::Affine3d::Identity();
+    append_(assembly_, file, folders, [&](const std::vector<std::string>& names) {
+      const Animated animated = scope.animated(names);
+      PartChoice choice;
+      choice.hidden = animated.hidden || has_effect(names);
+      if (choice.hidden) return choice;
+      choice.body_from_file = animated.body_from_model * model_from_file;
+      choice.opacity = animated.opacity;
+      choice.is_propeller_disc = is_propeller_disc(names);
+      if (!animated.texture.empty())
+        choice.texture = find_texture(assembly_.files(), animated.texture, folders).string();
+      if (animated.spin) choice.part = part_of(*animated.spin);
+      return choice;
+    });
+  }
+
+  int part_of(const Spin& spin) {
+    auto& parts = assembly_.model().mesh.parts;
+    for (std::size_t i = 1; i < parts.size(); ++i)
+      if (parts[i].centre_in_body == spin.centre_in_body &&
+          parts[i].axis_in_body == spin.axis_in_body &&
+          parts[i].revolutions_per_s == spin.revolutions_per_s)
+        return static_cast<int>(i);
+    if (parts.size() >= kMaxParts)
+      throw Error("turns more than " + std::to_string(kMaxParts) + " parts by themselves");
+    parts.push_back(
+        {spin.name, {}, true, spin.axis_in_body, spin.centre_in_body, spin.revolutions_per_s});
+    return static_cast<int>(parts.size() - 1);
+  }
+
+  void note_unknown(const Wrapper& wrapper) {
+    for (const Animation& animation : wrapper.animations) {
+      if (!is_known(animation.type)) unknown_.insert(animation.type);
+      if (!animation.axis_object.empty() && value_of(animation.value, cruise_) != 0)
+        unknown_.insert(animation.type + " about the object " + animation.axis_object);
+    }
+  }
+
+  Cruise cruise_;
+  Assembly& assembly_;
+  const Append& append_;
+  std::set<std::string> unknown_;
+};
+
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// A model file by its ending; how it is read.
+void append_file(Assembly& assembly,
+                 const fs::path& file,
+                 const std::vector<fs::path>& folders,
+                 const ChoosePart& choose,
+                 const AppendOther& append_other) {
+  const std::string ending = ending_of(file);
+  const std::string shown = assembly.files().shown(file).string();
+  if (kScenes.contains(ending))
+    throw Error("is a scene of OpenSceneGraph, which can run code and is not read; export the " +
+                    std::string("model as ") + kReadable,
+                {shown});
+  if (ending == ".ac") return append_ac(assembly, file, folders, choose);
+  if (!kOthers.contains(ending) || !append_other)
+    throw Error("is no 3D model that can be read; expected " + std::string(kReadable), {shown});
+  append_other(assembly, file, folders, choose);
+}
+
+void read_wrapped(const fs::path& file,
+                  const LoadOptions& options,
+                  const Append& append,
+                  Assembly& assembly) {
+  if (options.axes)
+    throw Error(
+        "has its own axes and metres; model_forward, model_up and model_scale are for a model "
+        "file without a wrapper",
+        {assembly.files().shown(file).string()});
+  std::set<std::string> missing;
+  const Wrapper wrapper = read_wrapper(assembly.files(), file, missing);
+  Loader loader(options, assembly, append);
+  loader.add(wrapper);
+  std::vector<std::string>& warnings = assembly.model().warnings;
+  if (!loader.unknown().empty())
+    warnings.push_back("animations that are not known and are left out: " +
+                       joined(loader.unknown()));
+  if (!missing.empty())
+    warnings.push_back("parts that are not installed and are left out: " + joined(missing));
+}
+
+void read_bare(const fs::path& file,
+               const LoadOptions& options,
+               const Append& append,
+               Assembly& assembly) {
+  const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(ModelAxes{}));
+  append(assembly, file, {file.parent_path()}, [&](const std::vector<std::string>& names) {
+    PartChoice choice;
+    choice.hidden = has_effect(names);
+    choice.is_propeller_disc = is_propeller_disc(names);
+    choice.body_from_file = body_from_file;
+    return choice;
+  });
+}
+
+}  // namespace
+
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+bool is_model_file(const std::string& name) {
+  const std::string ending = ending_of(name);
+  return ending == ".ac" || ending == ".xml" || kOthers.contains(ending) ||
+         kScenes.contains(ending);
+}
+
+RawModel read_model(ModelFiles& files,
+                    const fs::path& file,
+                    const LoadOptions& options,
+                    const AppendOther& append_other) {
+  Assembly assembly(files);
+  const Append append = [&](Assembly& into,
+                            const fs::path& model,
+                            const std::vector<fs::path>& folders,
+                            const ChoosePart& choose) {
+    append_file(into, model, folders, choose, append_other);
+  };
+  if (ending_of(file) == ".xml") {
+    read_wrapped(file, options, append, assembly);
+  } else {
+    read_bare(file, options, append, assembly);
+  }
+  RawModel model = std::move(assembly.model());
+  tidy(model.mesh);
+  if (model.mesh.triangle_count() == 0)
+    throw Error("holds no triangles; expected a 3D model", {files.shown(file).string()});
+  check_model(model);
+  return model;
+}
+
+}  // namespace airtruth::aircraft

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "foundation/geometry/box.h"
+#include "foundation/geometry/transform.h"
+#include "foundation/image/picture.h"
+
+// How something small looks against what is around it. The same arithmetic for a real aircraft and
+// for an inserted one, from pixels alone: no alpha, no truth.
+namespace airtruth::comparison {
+
+// A square crop about a box.
+struct Patch {
+  int x = 0, y = 0;    // its corner in the picture
+  cv::Mat rgb;         // 8-bit
+  cv::Mat grey;        // float code values
+  cv::Mat silhouette;  // 8-bit, 255: stands out from its surroundings
+};
+
+// The box with half its larger side around it, at least 8 px. Empty where that leaves the picture.
+std::optional<Patch> patch_of(const image::Picture& picture, const Box& box);
+
+struct Looks {
+  double contrast = 0;  // median of the silhouette less that of its surroundings, code values
+  // Of the silhouette less the plane through its surroundings, code values: the brightest and the
+  // darkest pixel, and the means over the whole silhouette of what lies above and of what lies
+  // below (their sum is the mean contrast). Above is 0 or more, below is 0 or less.
+  double peak_above = 0, peak_below = 0, mean_above = 0, mean_below = 0;
+  double edge_width_px = 0;     // 10 to 90 %, median along the outline
+  double halo = 0;              // overshoot of the sky along the outline, share of the step
+  double noise = 0;             // of the silhouette's inside: robust deviation of its Laplacian
+  double background_noise = 0;  // the same of the surroundings
+  double fine_share = 0;        // of the patch's spectrum above 1/4 cycle a pixel
+  double middle_share = 0;      // of it from 1/8 to 1/4 cycle a pixel
+  double blockiness = 0;        // steps on the 8 px grid over steps off it
+  double saturation = 0;        // mean of (max - min) / max over the silhouette
+  Pixel centre_px{0, 0};        // of the silhouette, in the picture
+  std::array<double, 24> histogram{};  // 8 bins of red, green, blue, of the silhouette
+};
+Looks looks_of(const Patch& patch);
+
+// Hellinger (1909) distance of two histograms, 0..1.
+double distance(const std::array<double, 24>& a, const std::array<double, 24>& b);
+
+// What a judge sees: gradient orientations by ring, noise and edge statistics; no place, no size.
+std::vector<float> features_of(const Patch& patch);
+
+}  // namespace airtruth::comparison

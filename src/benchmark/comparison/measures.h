@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "benchmark/comparison/comparison.h"
+#include "benchmark/comparison/looks.h"
+#include "foundation/geometry/transform.h"
+
+// The numbers of a comparison, from the looks of both aircraft in every frame.
+namespace airtruth::comparison {
+
+struct Compared {
+  std::int64_t frame = 0;
+  Looks real, made;
+  std::vector<float> real_features, made_features;
+  // How far the background moved in the picture since the frame before, where it can be seen.
+  std::optional<Pixel> background_shift_px;
+};
+
+std::vector<Pair> pairs_of(const std::vector<Compared>& all);
+
+// patches.csv: a line each for the real and the inserted one, what the judge reads.
+std::string patches_csv(const std::vector<Compared>& all);
+
+// comparison.md and comparison.json.
+std::string table_of(const Comparison& comparison);
+std::string json_of(const Comparison& comparison, const fs::path& real);
+
+}  // namespace airtruth::comparison

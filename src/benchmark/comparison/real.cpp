@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmark/comparison/real.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <opencv2/imgproc.hpp>
+
+#include "benchmark/comparison/segment.h"
+#include "foundation/base/error.h"
+#include "foundation/base/median.h"
+#include "picture/video/reader.h"
+
+namespace airtruth::comparison {
+namespace {
+
+constexpr std::size_t kFewestBoxes = 5;
+constexpr std::int64_t kNeighbours = 7;  // frames to either side whose sizes are looked at
+constexpr double kMostStray = 0.25;      // of a size from the median of those around it
+
+double larger_side(const Box& box) { return std::max(box.width, box.height); }
+
+// The shot with most boxes: [first, end) in frames.
+std::pair<std::int64_t, std::int64_t> best_shot(const RealBoxes& boxes,
+                                                const std::vector<std::int64_t>& cuts) {
+  std::vector<std::int64_t> starts = {0};
+  starts.insert(starts.end(), cuts.begin(), cuts.end());
+  std::pair<std::int64_t, std::int64_t> best{0, 0};
+  std::ptrdiff_t most = -1;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const std::int64_t end = i + 1 < starts.size() ? starts[i + 1] : INT64_MAX;
+    const std::ptrdiff_t count =
+        std::distance(boxes.lower_bound(starts[i]), boxes.lower_bound(end));
+    if (count > most) most = count, best = {starts[i], end};
+  }
+  return best;
+}
+
+cv::Mat small_mask(const cv::Mat& mask) {
+  const int larger = std::max(mask.cols, mask.rows);
+  if (larger <= kMostMaskPx) return mask;
+  const double scale = double(kMostMaskPx) / larger;
+  cv::Mat small;
+  cv::resize(mask,
+             small,
+             {std::max(1, static_cast<int>(mask.cols * scale)),
+              std::max(1, static_cast<int>(mask.rows * scale))},
+             0,
+             0,
+             cv::INTER_AREA);
+  return small > 127;
+}
+
+}  // namespace
+
+RealBoxes without_jumps(const RealBoxes& boxes) {
+  RealBoxes kept;
+  for (const auto& [frame, box] : boxes) {
+    std::vector<double> sizes;
+    for (auto it = boxes.lower_bound(frame - kNeighbours);
+         it != boxes.end() && it->first <= frame + kNeighbours;
+         ++it)
+      sizes.push_back(larger_side(it->second));
+    const double middle = median(std::move(sizes));
+    // One pixel is no jump, however small the aircraft.
+    if (std::abs(larger_side(box) - middle) <= std::max(1.0, kMostStray * middle))
+      kept.emplace(frame, box);
+  }
+  return kept;
+}
+
+RealAircraft find_real(const fs::path& video,
+                       const RealBoxes& loose,
+                       std::int64_t most_frames,
+                       const Warn& warn_to,
+                       const std::stop_token& stop) {
+  video::Reader reader(video, {.with_cuts = true});
+  RealAircraft found;
+  while (const auto frame = reader.next()) {
+    if (stop.stop_requested()) throw Interrupted();
+    if (frame->begins_shot) found.cuts.push_back(frame->index);
+    const auto box = loose.find(frame->index);
+    if (box == loose.end()) continue;
+    if (const auto seen = seen_in(frame->picture, box->second)) {
+      found.boxes.emplace(frame->index, seen->box);
+      found.masks.emplace(frame->index, small_mask(seen->mask));
+    }
+  }
+  const auto [first, end] = best_shot(found.boxes, found.cuts);
+  if (!found.cuts.empty())
+    warn(warn_to,
+         fmt::format("{}: the clip is cut at frame {}; only the shot from frame {} on is compared",
+                     video.string(),
+                     fmt::join(found.cuts, ", "),
+                     first));
+  found.boxes.erase(found.boxes.begin(), found.boxes.lower_bound(first));
+  found.boxes.erase(found.boxes.lower_bound(end), found.boxes.end());
+  found.boxes = without_jumps(found.boxes);
+  if (most_frames > 0 && !found.boxes.empty())
+    found.boxes.erase(found.boxes.lower_bound(found.boxes.begin()->first + most_frames),
+                      found.boxes.end());
+  if (found.boxes.size() < kFewestBoxes)
+    throw Error(fmt::format("in {} of its boxes an aircraft stands out from its surroundings; "
+                            "expected {} or more in one shot",
+                            found.boxes.size(),
+                            kFewestBoxes),
+                {video.string()});
+  std::erase_if(found.masks, [&](const auto& one) { return !found.boxes.contains(one.first); });
+  return found;
+}
+
+}  // namespace airtruth::comparison

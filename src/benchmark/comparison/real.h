@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <stop_token>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "benchmark/comparison/comparison.h"
+#include "foundation/base/log.h"
+
+namespace airtruth::comparison {
+
+// The real aircraft of a clip, as it is seen in one shot.
+struct RealAircraft {
+  RealBoxes boxes;                        // tight, by frame
+  std::map<std::int64_t, cv::Mat> masks;  // of each box; 8-bit, 255: aircraft; kMostMaskPx or less
+  std::vector<std::int64_t> cuts;         // of the clip
+};
+constexpr int kMostMaskPx = 64;  // a larger mask is brought to this size
+
+// Tight boxes within loose ones, in the shot that has most of them (cuts.h), from its first on for
+// `most_frames` frames (0: all). Frames whose larger side strays by more than a quarter from the
+// median of the 15 around it are left out. Error where fewer than five boxes are left: their
+// aircraft does not stand out.
+RealAircraft find_real(const fs::path& video,
+                       const RealBoxes& loose,
+                       std::int64_t most_frames,
+                       const Warn& warn,
+                       const std::stop_token& stop);
+
+// A map by frame without what strays, as above.
+RealBoxes without_jumps(const RealBoxes& boxes);
+
+}  // namespace airtruth::comparison

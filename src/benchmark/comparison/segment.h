@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "foundation/geometry/box.h"
+#include "foundation/image/picture.h"
+
+// What stands out from the sky around it, from pixels alone: no alpha, no truth.
+namespace airtruth::comparison {
+
+// Luma of a part of a picture as float code values. The area lies within the picture.
+cv::Mat luma_of(const image::Picture& picture, const PixelBox& area);
+
+// The surroundings as a plane through the samples where `where` is not 0, by least squares, fitted
+// once more without what lies far from the first fit; a float picture of the size of `grey`. Where
+// fewer than six samples are given, their mean.
+cv::Mat surroundings_of(const cv::Mat& grey, const cv::Mat& where);
+
+// The part of `grey` that differs from a plane through its rim by more than 8 code values and four
+// times the rim's own spread, closed by 3 x 3; of the connected parts that have an area of 3 px or
+// more and their middle within `reach_px` of the middle of `grey`, the largest. 8-bit, 255 inside;
+// all 0 where there is none.
+cv::Mat silhouette_of(const cv::Mat& grey, double reach_px);
+
+// An aircraft as it stands out: its bounds in whole pixels, and which of their pixels it has.
+struct Seen {
+  Box box;
+  cv::Mat mask;  // of the box's size; 8-bit, 255: aircraft
+};
+
+// The aircraft within a loose box: silhouette_of() in the box with a margin of a quarter of its
+// larger side, at least 4 px. Empty where nothing stands out, where what stands out reaches the
+// margin's own edge (it cannot be bounded), where it is smaller than 3 px both ways, or where the
+// margin leaves the picture.
+std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose);
+
+}  // namespace airtruth::comparison

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmark/experiment/assess.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "benchmark/experiment/trajectories.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+
+namespace airtruth::experiment {
+namespace {
+
+using evaluation::FramePair;
+using evaluation::Mark;
+using evaluation::Score;
+
+// Stills of all sequences together: about 20 KB each on the page.
+constexpr std::size_t kMostStills = 1500;
+constexpr std::size_t kMostStillsOfOne = 150;
+constexpr std::size_t kLeastStillsOfOne = 4;
+
+const std::vector<double> kRangeEdges_m = {
+    0, 100, 200, 300, 400, 500, 750, 1000, 1500, 2000, 3000, 5000, 10000};
+const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
+const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
+
+std::string name_of(const fs::path& folder) {
+  const fs::path plain = fs::absolute(folder).lexically_normal();
+  require_utf8(plain);
+  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+}
+
+std::vector<FramePair> pairs_of(const TruthClip& truth, const Results::Run& run) {
+  std::vector<FramePair> pairs;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    pairs.push_back({truth.box(i), run.frames[i].box, run.seconds.empty() ? 0 : run.seconds[i]});
+  return pairs;
+}
+
+void add_one_pass(const TruthClip& truth,
+                  const Results::Run& run,
+                  bool until_loss,
+                  ScoredSequence& scored) {
+  std::vector<FramePair> pairs = pairs_of(truth, run);
+  const auto lost = evaluation::first_loss(pairs);
+  if (until_loss && lost)
+    for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
+  scored.score = evaluation::score(pairs, truth.clip.width, truth.clip.height);
+  scored.outcomes = evaluation::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
+  for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
+  if (lost) {
+    const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
+    scored.loss = {frame.frame, frame.time_s, truth.range_m[*lost]};
+    if (!scored.loss->time_s && truth.clip.frame_rate_hz)
+      scored.loss->time_s = static_cast<double>(frame.frame) / *truth.clip.frame_rate_hz;
+  }
+}
+
+evaluation::RestartRuns restart_runs(const TruthClip& truth, const Results& results) {
+  evaluation::RestartRuns runs{truth.vot(), {}};
+  for (const Results::Run& run : results.restart) runs.runs.push_back(run.frames);
+  return runs;
+}
+
+evaluation::MultiStartRuns multistart_runs(const TruthClip& truth, const Results& results) {
+  evaluation::MultiStartRuns runs{truth.vot(), {}};
+  const std::int64_t length = std::ssize(truth.clip.frames);
+  for (std::size_t i = 0; i < results.multistart.size(); ++i) {
+    const std::int64_t anchor = results.anchors[i];
+    // One in the very middle is as far from both ends: forward, as anchors_of() has it.
+    const bool goes_forward = std::ssize(results.multistart[i].frames) == length - anchor;
+    const bool goes_backward = std::ssize(results.multistart[i].frames) == anchor + 1;
+    runs.runs.push_back({anchor,
+                         goes_backward && (!goes_forward || anchor >= (length + 1) / 2),
+                         results.multistart[i].frames});
+  }
+  return runs;
+}
+
+// What a folder holds for each truth. Error where that is nothing; warns of what it holds for
+// sequences that are not there, and of sequences that it lacks.
+std::vector<Results> results_in(const fs::path& folder,
+                                const std::vector<TruthClip>& truths,
+                                const AssessOptions& options) {
+  if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
+  std::vector<Results> results;
+  std::size_t missing = 0;
+  std::set<std::string> known;
+  for (const TruthClip& truth : truths) {
+    results.push_back(read_results(folder, truth.clip, options.origin_px));
+    missing += results.back().empty() ? 1 : 0;
+    known.insert(truth.clip.name);
+  }
+  std::vector<std::string> unknown = sequences_in(folder);
+  std::erase_if(unknown, [&](const std::string& name) { return known.contains(name); });
+  if (missing == truths.size())
+    throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
+                    (unknown.empty() ? "" : " (found one for '" + unknown.front() + "')"),
+                {folder.string()});
+  if (!unknown.empty())
+    airtruth::warn(options.warn,
+                   fmt::format("{}: {} results are for no sequence of the data set (the first: {})",
+                               folder.string(),
+                               unknown.size(),
+                               unknown.front()));
+  if (missing > 0)
+    airtruth::warn(options.warn,
+                   fmt::format("{}: has results for {} of {} sequences; its score is of those",
+                               folder.string(),
+                               truths.size() - missing,
+                               truths.size()));
+  return results;
+}
+
+class Scoring {
+ public:
+  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range, bool until_loss)
+      : truths_(truths), eao_range_(eao_range), until_loss_(until_loss) {}
+
+  // found[i] belongs to the i-th truth.
+  ScoredTracker operator()(const std::string& name, const std::vector<Results>& found) const {
+    ScoredTracker tracker;
+    tracker.name = name;
+    std::vector<evaluation::RestartRuns> restarts;
+    std::vector<evaluation::MultiStartRuns> multistarts;
+    for (std::size_t i = 0; i < truths_.size(); ++i) {
+      const Results& results = found[i];
+      if (results.empty()) continue;
+      ScoredSequence scored;
+      scored.truth = i;
+      scored.name = truths_[i].clip.name;
+      if (!results.one_pass.empty())
+        add_one_pass(truths_[i], results.one_pass.front(), until_loss_, scored);
+      if (!results.restart.empty()) {
+        restarts.push_back(restart_runs(truths_[i], results));
+        scored.restart = evaluation::restart_score({&restarts.back(), 1}, eao_range_);
+      }
+      if (!results.multistart.empty()) {
+        multistarts.push_back(multistart_runs(truths_[i], results));
+        scored.multistart = evaluation::multistart_score({&multistarts.back(), 1}, eao_range_);
+      }
+      tracker.sequences.push_back(std::move(scored));
+    }
+    if (!restarts.empty()) tracker.restart = evaluation::restart_score(restarts, eao_range_);
+    if (!multistarts.empty())
+      tracker.multistart = evaluation::multistart_score(multistarts, eao_range_);
+    summarise(tracker);
+    return tracker;
+  }
+
+ private:
+  void summarise(ScoredTracker& tracker) const {
+    std::vector<Score> scores;
+    for (const ScoredSequence& sequence : tracker.sequences) {
+      if (!sequence.score) continue;
+      scores.push_back(*sequence.score);
+      tracker.lost += sequence.loss ? 1 : 0;
+    }
+    if (scores.empty()) return;
+    tracker.overall = evaluation::mean_of(scores);
+    for (const Measure& measure : measures()) {
+      std::vector<double> values;
+      std::vector<double> weights;
+      for (const Score& score : scores) {
+        if (score.counted == 0 || (measure.zero_is_unknown && score.*measure.value == 0)) continue;
+        values.push_back(score.*measure.value);
+        if (measure.weighs_by_frames) weights.push_back(static_cast<double>(score.counted - 1));
+      }
+      tracker.intervals[measure.name] = evaluation::bootstrap_mean(values, weights);
+    }
+    break_down(tracker);
+  }
+
+  void break_down(ScoredTracker& tracker) const {
+    std::vector<evaluation::Outcome> all;
+    std::map<std::string, std::vector<std::optional<double>>> values;
+    std::map<std::string, std::vector<evaluation::Outcome>> by_background;
+    for (const ScoredSequence& sequence : tracker.sequences) {
+      const TruthClip& truth = truths_[sequence.truth];
+      for (const evaluation::Outcome& outcome : sequence.outcomes) {
+        all.push_back(outcome);
+        values["range_m"].push_back(truth.range_m[outcome.frame]);
+        values["size_px"].push_back(truth.size_px[outcome.frame]);
+        values["contrast"].push_back(truth.contrast[outcome.frame]);
+        by_background[truth.background].push_back(outcome);
+      }
+    }
+    tracker.angle_mrad = evaluation::mean_of(all).angle_mrad;
+    tracker.bins["range_m"] = evaluation::breakdown(all, values["range_m"], kRangeEdges_m);
+    tracker.bins["size_px"] = evaluation::breakdown(all, values["size_px"], kSizeEdges_px);
+    tracker.bins["contrast"] = evaluation::breakdown(all, values["contrast"], kContrastEdges);
+    for (const auto& [name, outcomes] : by_background)
+      tracker.backgrounds[name] = evaluation::mean_of(outcomes);
+  }
+
+  const std::vector<TruthClip>& truths_;
+  std::pair<int, int> eao_range_;
+  bool until_loss_ = false;
+};
+
+Comparison compared(const ScoredTracker& a, const ScoredTracker& b) {
+  Comparison comparison{a.name, b.name, 0, {}};
+  std::vector<double> of_a;
+  std::vector<double> of_b;
+  for (const ScoredSequence& mine : a.sequences)
+    for (const ScoredSequence& other : b.sequences)
+      if (mine.truth == other.truth && mine.score && other.score) {
+        of_a.push_back(mine.score->auc);
+        of_b.push_back(other.score->auc);
+      }
+  comparison.sequences = std::ssize(of_a);
+  comparison.auc = evaluation::paired(of_a, of_b);
+  return comparison;
+}
+
+std::pair<int, int> range_of(const std::vector<TruthClip>& truths) {
+  std::vector<std::int64_t> lengths;
+  for (const TruthClip& truth : truths) lengths.push_back(std::ssize(truth.clip.frames));
+  const std::int64_t longest =
+      lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
+  return evaluation::within_curves(evaluation::eao_range(lengths), longest);
+}
+
+// Where a curve ends before the range over which its mean is taken. last: the range's last index.
+void warn_of_short_curve(const std::string& tracker,
+                         const char* protocol,
+                         std::size_t points,
+                         std::pair<int, int> range,
+                         int last,
+                         const Warn& warn) {
+  const int end = static_cast<int>(points) - 1;
+  if (range.first <= std::min(end, last) && last <= end) return;
+  airtruth::warn(
+      warn,
+      fmt::format("{}: the EAO curve of its {} runs ends at {}; of the range {} to {} {}",
+                  tracker,
+                  protocol,
+                  end,
+                  range.first,
+                  last,
+                  range.first <= end && range.first <= last
+                      ? "the part up to there counts"
+                      : "nothing is there, so it has no EAO"));
+}
+
+void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
+  const auto range = assessment.eao_range;
+  for (const ScoredTracker& tracker : assessment.trackers) {
+    if (tracker.restart)
+      warn_of_short_curve(
+          tracker.name, "restart", tracker.restart->eao_curve.size(), range, range.second, warn);
+    if (tracker.multistart)
+      warn_of_short_curve(tracker.name,
+                          "multistart",
+                          tracker.multistart->eao_curve.size(),
+                          range,
+                          range.second - 1,
+                          warn);
+  }
+}
+
+void add_films(std::vector<TruthClip>& truths, const AssessOptions& options) {
+  const std::size_t each = std::clamp(
+      kMostStills / std::max<std::size_t>(1, truths.size()), kLeastStillsOfOne, kMostStillsOfOne);
+  in_parallel(
+      truths.size(),
+      options.jobs,
+      [&](std::size_t i) { add_film(truths[i], each, options.stop); },
+      options.progress,
+      options.stop);
+}
+
+}  // namespace
+
+const std::vector<Measure>& measures() {
+  static const std::vector<Measure> all = {
+      {"auc", &Score::auc, true, false},
+      {"precision_20px", &Score::precision_20px, true, false},
+      {"normalised_auc", &Score::normalised_auc, true, false},
+      {"average_overlap", &Score::average_overlap, true, true},
+      {"success_50", &Score::success_50, true, true},
+      {"success_75", &Score::success_75, true, true},
+      {"centre_mean_px", &Score::centre_mean_px, false, false},
+      {"x_mean_px", &Score::x_mean_px, false, false},
+      {"x_rmse_px", &Score::x_rmse_px, false, false},
+      {"x_most_px", &Score::x_most_px, false, false},
+      {"y_mean_px", &Score::y_mean_px, false, false},
+      {"y_rmse_px", &Score::y_rmse_px, false, false},
+      {"y_most_px", &Score::y_most_px, false, false},
+      {"frames_per_second", &Score::frames_per_second, true, false, true},
+      {"frames_per_second_median", &Score::frames_per_second_median, true, false, true}};
+  return all;
+}
+
+Assessment assess(const fs::path& set,
+                  const std::vector<fs::path>& results,
+                  const AssessOptions& options) {
+  Assessment assessment;
+  assessment.set = name_of(set);
+  assessment.until_loss = options.until_loss;
+  assessment.truths = truths_of(dataset::LabelledSet(set), options.warn);
+  assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
+  // Results first: what is wrong with them is said before minutes of video are read.
+  std::map<std::string, std::vector<Results>> found;
+  for (const fs::path& folder : results) {
+    const std::string name = name_of(folder);
+    if (found.contains(name))
+      throw Error("is the second folder of results called '" + name + "'", {folder.string()});
+    found[name] = results_in(folder, assessment.truths, options);
+  }
+  if (options.with_film) add_films(assessment.truths, options);
+  const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);
+  for (const fs::path& folder : results)
+    assessment.trackers.push_back(scored(name_of(folder), found[name_of(folder)]));
+  warn_of_short_curves(assessment, options.warn);
+  std::stable_sort(assessment.trackers.begin(),
+                   assessment.trackers.end(),
+                   [](const ScoredTracker& a, const ScoredTracker& b) {
+                     return (a.overall ? a.overall->auc : -1) > (b.overall ? b.overall->auc : -1);
+                   });
+  for (std::size_t i = 0; i < assessment.trackers.size(); ++i)
+    for (std::size_t j = i + 1; j < assessment.trackers.size(); ++j)
+      if (assessment.trackers[i].overall && assessment.trackers[j].overall)
+        assessment.comparisons.push_back(compared(assessment.trackers[i], assessment.trackers[j]));
+  return assessment;
+}
+
+void check_evaluation(const fs::path& file) { agreement({}, file); }
+
+Agreement agreement(const Assessment& assessment, const fs::path& other) {
+  Agreement result;
+  std::vector<double> mine;
+  std::vector<double> theirs;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(read_file(other));
+    const nlohmann::json& trackers = json.at("trackers");
+    for (const ScoredTracker& tracker : assessment.trackers)
+      for (const auto& that : trackers)
+        if (tracker.overall && that.at("name") == tracker.name && that.contains("overall")) {
+          result.trackers.push_back(tracker.name);
+          mine.push_back(tracker.overall->auc);
+          theirs.push_back(that.at("overall").at("auc").get<double>());
+        }
+  } catch (const nlohmann::json::exception&) {
+    throw Error("is no evaluation.json", {other.string()});
+  }
+  result.tau = evaluation::kendall_tau(mine, theirs);
+  return result;
+}
+
+}  // namespace airtruth::experiment

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "benchmark/experiment/assess.h"
+
+// The evaluation as JSON, for its file and for its page.
+namespace airtruth::experiment {
+
+// All but its sequences.
+nlohmann::ordered_json json_of(const ScoredTracker& tracker);
+nlohmann::ordered_json json_of(const ScoredSequence& sequence);
+nlohmann::ordered_json json_of(const Comparison& comparison);
+
+}  // namespace airtruth::experiment

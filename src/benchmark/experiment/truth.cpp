@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmark/experiment/truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "benchmark/experiment/frames.h"
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/finished.h"
+#include "show/report/thumbnails.h"
+#include "truth/annotation/in_view.h"
+#include "truth/exchange/exchange.h"
+
+namespace airtruth::experiment {
+namespace {
+
+constexpr int kJpegQuality = 8;
+constexpr double kCloseSurroundings = 3;  // of the box's longer side
+constexpr double kLeastClosePx = 48;
+
+std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
+  if (set.is_imported(name)) return std::nullopt;
+  return annotation::lens_from(sequence::open_finished(set.folder(name)).truth.lens);
+}
+
+TruthClip truth_from(exchange::Clip clip) {
+  TruthClip truth;
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    const exchange::Label* label = frame.labels.empty() ? nullptr : &frame.labels.front();
+    truth.range_m.push_back(label != nullptr ? label->range_m : std::nullopt);
+    truth.size_px.push_back(label != nullptr
+                                ? std::optional(std::max(label->box_px.width, label->box_px.height))
+                                : std::nullopt);
+  }
+  truth.contrast.resize(clip.frames.size());
+  truth.clip = std::move(clip);
+  return truth;
+}
+
+PixelBox covered(const Box& box) {
+  const PixelBox touched = pixels_of(box);
+  return {touched.x, touched.y, std::max(1, touched.width), std::max(1, touched.height)};
+}
+
+TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Picture& picture) {
+  TruthClip::Still still;
+  still.index = i;
+  still.width = picture.width;
+  still.whole = video::jpeg_of(
+      report::small_copy(image::rgb8_from_picture(picture), TruthClip::kWholeWidth), kJpegQuality);
+  const auto box = truth.box(i);
+  if (!box) return still;
+  const double side =
+      std::round(std::max(kLeastClosePx, kCloseSurroundings * std::max(box->width, box->height)));
+  still.close_px = side;
+  still.close_x = std::round(box->x + box->width / 2 - side / 2);
+  still.close_y = std::round(box->y + box->height / 2 - side / 2);
+  still.close = video::jpeg_of(
+      report::square(picture, still.close_x, still.close_y, side, TruthClip::kCloseSide),
+      kJpegQuality);
+  return still;
+}
+
+}  // namespace
+
+evaluation::VotTruth TruthClip::vot() const {
+  evaluation::VotTruth result{{}, clip.width, clip.height};
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) result.boxes.push_back(box(i));
+  return result;
+}
+
+std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn) {
+  const dataset::Boxes boxes = set.usual_boxes(warn);
+  std::vector<TruthClip> truths;
+  for (const std::string& name : set.names()) {
+    const auto lens = lens_of(set, name);
+    const std::string background = fs::path(set.facts(name).background).filename().string();
+    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
+      truths.push_back(truth_from(std::move(clip)));
+      truths.back().lens = lens;
+      truths.back().background = background;
+    }
+  }
+  std::sort(truths.begin(), truths.end(), [](const TruthClip& a, const TruthClip& b) {
+    return a.clip.name < b.clip.name;
+  });
+  return truths;
+}
+
+void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop) {
+  if (truth.clip.media.empty()) return;
+  const std::size_t count = truth.clip.frames.size();
+  std::set<std::size_t> wanted;
+  const std::size_t most = std::min(stills, count);
+  for (std::size_t k = 0; k < most; ++k) wanted.insert(most > 1 ? k * (count - 1) / (most - 1) : 0);
+  Frames frames(truth.clip.media, {});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    const image::Picture* picture = frames.at(truth.clip.frames[i].frame);
+    if (picture == nullptr)
+      throw Error("ends before the labels of " + truth.clip.name + " do",
+                  {truth.clip.media.string()});
+    if (const auto box = truth.box(i))
+      truth.contrast[i] = report::contrast(*picture, covered(*box));
+    if (wanted.count(i) > 0) truth.stills.push_back(still_of(truth, i, *picture));
+  }
+}
+
+}  // namespace airtruth::experiment

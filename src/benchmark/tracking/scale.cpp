@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "benchmark/tracking/scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "benchmark/tracking/view.h"
+#include "foundation/base/median.h"
+
+namespace airtruth::tracking {
+namespace {
+
+constexpr double kSidePx = 48;  // geometric mean of the object's sides in its patch
+constexpr int kColumns = 14;    // of points
+constexpr int kRows = 8;
+constexpr int kWindowPx = 9;
+constexpr double kLeastTexture = 0.05;  // of the strongest in the object
+constexpr std::size_t kLeastPoints = 20;
+constexpr std::size_t kLeastPairs = 50;
+constexpr double kLeastApartPx = 5;
+constexpr float kMostReturnPx = 1;
+constexpr double kMostChange = 0.1;
+
+using Points = std::vector<cv::Point2f>;
+
+// The object and half its size around it.
+image::Plane patch(const image::Plane& luma, const Box& box) {
+  const double unit = std::sqrt(box.area()) / kSidePx;
+  return resampled(luma,
+                   box.x - box.width / 2,
+                   box.y - box.height / 2,
+                   unit,
+                   static_cast<int>(std::lround(2 * box.width / unit)),
+                   static_cast<int>(std::lround(2 * box.height / unit)));
+}
+
+cv::Mat view(const image::Plane& plane) {
+  return {plane.height,
+          plane.width,
+          CV_8UC1,
+          plane.samples.get(),
+          static_cast<std::size_t>(plane.stride)};
+}
+
+// A grid over the object, where there is texture.
+Points points_in(const cv::Mat& picture) {
+  cv::Mat texture;
+  cv::cornerMinEigenVal(picture, texture, kWindowPx);
+  const cv::Rect object(picture.cols / 4, picture.rows / 4, picture.cols / 2, picture.rows / 2);
+  double strongest = 0;
+  cv::minMaxLoc(texture(object), nullptr, &strongest);
+  Points points;
+  for (int j = 0; j < kRows; ++j)
+    for (int i = 0; i < kColumns; ++i) {
+      const double x = picture.cols * (0.25 + 0.5 * (i + 0.5) / kColumns);
+      const double y = picture.rows * (0.25 + 0.5 * (j + 0.5) / kRows);
+      if (texture.at<float>(static_cast<int>(y), static_cast<int>(x)) >= kLeastTexture * strongest)
+        points.emplace_back(static_cast<float>(x), static_cast<float>(y));
+    }
+  return points;
+}
+
+struct Flow {
+  Points from, to;
+};
+
+// Points that come back to where they began, when followed there and back.
+Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points) {
+  Points there;
+  Points back;
+  std::vector<std::uint8_t> found;
+  std::vector<std::uint8_t> returned;
+  std::vector<float> unused;
+  const cv::Size window(kWindowPx, kWindowPx);
+  cv::calcOpticalFlowPyrLK(before, after, points, there, found, unused, window, 2);
+  cv::calcOpticalFlowPyrLK(after, before, there, back, returned, unused, window, 2);
+  std::vector<float> off;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    off.push_back(found[i] != 0 && returned[i] != 0
+                      ? static_cast<float>(cv::norm(points[i] - back[i]))
+                      : INFINITY);
+  std::vector<float> sorted = off;
+  std::erase(sorted, INFINITY);
+  if (sorted.empty()) return {};
+  const float most = std::min(kMostReturnPx, median(std::move(sorted)));
+  Flow flow;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (off[i] <= most) {
+      flow.from.push_back(points[i]);
+      flow.to.push_back(there[i]);
+    }
+  return flow;
+}
+
+// Median over pairs of points of how their distance changed.
+std::optional<double> median_ratio(const Flow& flow) {
+  std::vector<double> ratios;
+  for (std::size_t a = 0; a < flow.from.size(); ++a)
+    for (std::size_t b = a + 1; b < flow.from.size(); ++b)
+      if (const double apart = cv::norm(flow.from[a] - flow.from[b]); apart >= kLeastApartPx)
+        ratios.push_back(cv::norm(flow.to[a] - flow.to[b]) / apart);
+  if (ratios.size() < kLeastPairs) return std::nullopt;
+  return median(std::move(ratios));
+}
+
+}  // namespace
+
+void ScaleFollower::keep(const image::Plane& luma, const Box& box) { kept_ = patch(luma, box); }
+
+std::optional<double> ScaleFollower::ratio(const image::Plane& luma, const Box& box) const {
+  const image::Plane now = patch(luma, box);
+  if (now.width != kept_.width || now.height != kept_.height) return std::nullopt;
+  const Points points = points_in(view(kept_));
+  if (points.size() < kLeastPoints) return std::nullopt;
+  const Flow flow = followed(view(kept_), view(now), points);
+  if (flow.from.size() < kLeastPoints) return std::nullopt;
+  const auto ratio = median_ratio(flow);
+  if (!ratio) return std::nullopt;
+  return std::clamp(*ratio, 1 - kMostChange, 1 + kMostChange);
+}
+
+}  // namespace airtruth::tracking

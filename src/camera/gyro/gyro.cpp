@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/gyro/gyro.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "camera/motion/rotation_fit.h"
+
+namespace airtruth::motion {
+namespace {
+
+struct Element {
+  std::string_view key;
+  char type = 0;
+  std::size_t size = 0;  // of one structure
+  std::size_t count = 0;
+  std::span<const std::uint8_t> data;
+};
+
+// Visits the elements of one level; stops at what does not fit.
+template <typename Visit>
+void each_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
+  constexpr std::size_t kHead = 8;
+  while (bytes.size() >= kHead) {
+    Element e;
+    e.key = {reinterpret_cast<const char*>(bytes.data()), 4};
+    e.type = static_cast<char>(bytes[4]);
+    e.size = bytes[5];
+    e.count = static_cast<std::size_t>(bytes[6]) << 8 | bytes[7];
+    const std::size_t length = e.size * e.count;
+    const std::size_t padded = (length + 3) / 4 * 4;
+    if (bytes.size() - kHead < length) return;
+    e.data = bytes.subspan(kHead, length);
+    visit(e);
+    if (bytes.size() - kHead < padded) return;
+    bytes = bytes.subspan(kHead + padded);
+  }
+}
+
+// Big-endian; 's' and 'l' are GPMF's 16 and 32 bits.
+double number_at(const Element& e, std::size_t at) {
+  std::uint32_t value = 0;
+  const std::size_t width = e.type == 's' ? 2 : 4;
+  for (std::size_t i = 0; i < width; ++i) value = value << 8 | e.data[at * width + i];
+  if (e.type == 's') return static_cast<std::int16_t>(value);
+  return static_cast<std::int32_t>(value);
+}
+
+bool holds_numbers(const Element& e, std::size_t each) {
+  const std::size_t width = e.type == 's' ? 2 : e.type == 'l' ? 4 : 0;
+  return width > 0 && e.size == each * width && e.count > 0;
+}
+
+std::vector<Vector3> rates_of(std::span<const std::uint8_t> stream) {
+  double scale = 0;
+  std::vector<Vector3> rates;
+  each_element(stream, [&](const Element& e) {
+    if (e.key == "SCAL" && holds_numbers(e, 1)) scale = number_at(e, 0);
+    if (e.key != "GYRO" || !holds_numbers(e, 3)) return;
+    for (std::size_t i = 0; i < e.count; ++i)
+      rates.emplace_back(number_at(e, 3 * i), number_at(e, 3 * i + 1), number_at(e, 3 * i + 2));
+  });
+  if (!(scale > 0)) return {};
+  for (Vector3& r : rates) r /= scale;
+  return rates;
+}
+
+// Mean rate of the gyro over a span of time; empty where it was not running.
+std::optional<Vector3> mean_rate(const std::vector<GyroSample>& gyro,
+                                 double begin_s,
+                                 double end_s) {
+  const auto first =
+      std::lower_bound(gyro.begin(), gyro.end(), begin_s, [](const GyroSample& s, double t) {
+        return s.time_s < t;
+      });
+  Vector3 sum = Vector3::Zero();
+  int count = 0;
+  for (auto it = first; it != gyro.end() && it->time_s < end_s; ++it)
+    sum += it->rate_radps, ++count;
+  if (count == 0) return std::nullopt;
+  return Vector3(sum / count);
+}
+
+struct Step {
+  double begin_s, end_s;
+  Vector3 rate;  // in cam
+};
+
+std::vector<Step> steps_of(const std::vector<FrameMotion>& motion) {
+  std::vector<Step> steps;
+  for (std::size_t k = 1; k < motion.size(); ++k) {
+    const auto good = [](State s) { return s == State::kMeasured || s == State::kReference; };
+    if (!motion[k].rotation || !good(motion[k].state) || !good(motion[k - 1].state)) continue;
+    const double dt = motion[k].time_s - motion[k - 1].time_s;
+    if (!(dt > 0)) continue;
+    // The scene turns against the camera.
+    const Vector3 turned =
+        vector_from_rotation(*motion[k].rotation * motion[k - 1].rotation->conjugate());
+    steps.push_back({motion[k - 1].time_s, motion[k].time_s, -turned / dt});
+  }
+  return steps;
+}
+
+std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
+                              const std::vector<Step>& steps,
+                              double offset_s) {
+  std::vector<Bearings> pairs;
+  Vector3 mean_gyro = Vector3::Zero(), mean_cam = Vector3::Zero();
+  for (const Step& s : steps) {
+    const auto rate = mean_rate(gyro, s.begin_s + offset_s, s.end_s + offset_s);
+    if (!rate) continue;
+    pairs.push_back({*rate, s.rate});
+    mean_gyro += *rate, mean_cam += s.rate;
+  }
+  constexpr std::size_t kFewest = 40;
+  if (pairs.size() < kFewest) return std::nullopt;
+  mean_gyro /= double(pairs.size());
+  mean_cam /= double(pairs.size());
+  for (Bearings& b : pairs) b.in_reference -= mean_gyro, b.in_cam -= mean_cam;
+  GyroFit fit;
+  fit.offset_s = offset_s;
+  fit.cam_from_gyro = best_rotation(pairs, std::vector<double>(pairs.size(), 1.0));
+  fit.bias_radps = mean_cam - fit.cam_from_gyro * mean_gyro;
+  double dot = 0, a = 0, b = 0, rest = 0;
+  for (const Bearings& p : pairs) {
+    const Vector3 turned = fit.cam_from_gyro * p.in_reference;
+    dot += turned.dot(p.in_cam), a += turned.squaredNorm(), b += p.in_cam.squaredNorm();
+    rest += (turned - p.in_cam).squaredNorm();
+  }
+  if (!(a > 0) || !(b > 0)) return std::nullopt;
+  fit.correlation = dot / std::sqrt(a * b);
+  fit.rms_radps = std::sqrt(rest / double(pairs.size()) / 3);
+  return fit;
+}
+
+}  // namespace
+
+std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
+                                       double begin_s,
+                                       double end_s) {
+  std::vector<Vector3> rates;
+  each_element(packet, [&](const Element& device) {
+    if (device.key != "DEVC") return;
+    each_element(device.data, [&](const Element& stream) {
+      if (stream.key != "STRM") return;
+      const std::vector<Vector3> found = rates_of(stream.data);
+      rates.insert(rates.end(), found.begin(), found.end());
+    });
+  });
+  std::vector<GyroSample> samples;
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    samples.push_back(
+        {begin_s + (double(i) + 0.5) * (end_s - begin_s) / double(rates.size()), rates[i]});
+  return samples;
+}
+
+std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
+                                const std::vector<FrameMotion>& motion) {
+  const std::vector<Step> steps = steps_of(motion);
+  std::optional<GyroFit> best;
+  const auto look = [&](double offset_s) {
+    const auto fit = fit_at(gyro, steps, offset_s);
+    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
+  };
+  for (double offset_s = -0.5; offset_s <= 0.5; offset_s += 0.01) look(offset_s);
+  if (!best) return std::nullopt;
+  const double middle = best->offset_s;
+  for (double d = -0.01; d <= 0.01; d += 0.001) look(middle + d);
+  constexpr double kAgree = 0.5;
+  return best->correlation >= kAgree ? best : std::nullopt;
+}
+
+std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
+                                         const std::vector<GyroSample>& gyro,
+                                         const GyroFit& fit) {
+  std::vector<FrameMotion> result = motion;
+  for (std::size_t k = 1; k < motion.size(); ++k) {
+    // Measured against its own past where that is linked; else from where the bridge has led.
+    if (motion[k].state == State::kMeasured && motion[k - 1].state != State::kCut) {
+      if (motion[k - 1].state != State::kBridged) {
+        result[k].rotation =
+            (*motion[k].rotation * motion[k - 1].rotation->conjugate() * *result[k - 1].rotation)
+                .normalized();
+        continue;
+      }
+      continue;  // linked again across the gap by what was seen
+    }
+    const auto rate =
+        mean_rate(gyro, motion[k - 1].time_s + fit.offset_s, motion[k].time_s + fit.offset_s);
+    if (!rate) continue;
+    const Vector3 in_cam = fit.cam_from_gyro * *rate + fit.bias_radps;
+    const double dt = motion[k].time_s - motion[k - 1].time_s;
+    result[k].rotation =
+        (rotation_from_vector(-dt * in_cam) * *result[k - 1].rotation).normalized();
+  }
+  return result;
+}
+
+}  // namespace airtruth::motion

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/horizon/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "camera/horizon/horizon_edge.h"
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kAcross = 56;  // blocks along the longer side
+constexpr double kLeastShare = 0.06;
+constexpr double kLeastSeparation = 2.2;
+
+using Feature = Eigen::Vector4d;  // luma, Cb, Cr, texture
+
+struct Sample {
+  Vector3 ray;
+  Feature feature;
+};
+
+Vector3 up_of(double pitch_rad, double roll_rad) {
+  const Quaternion body_from_world =
+      world_from_body({0, degrees(pitch_rad), degrees(roll_rad)}).conjugate();
+  return cam_from_body() * (body_from_world * Vector3(0, 0, -1));
+}
+
+// How far apart the two sides are, squared, in their common covariance; 0 where one is too small.
+double parted(const std::vector<Sample>& samples, const Vector3& up) {
+  Feature sum[2] = {Feature::Zero(), Feature::Zero()};
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  double count[2] = {0, 0};
+  for (const Sample& s : samples) {
+    const int side = s.ray.dot(up) > 0 ? 1 : 0;
+    sum[side] += s.feature;
+    count[side] += 1;
+    squares += s.feature * s.feature.transpose();
+  }
+  const double n = count[0] + count[1];
+  if (std::min(count[0], count[1]) < kLeastShare * n) return 0;
+  const Feature low = sum[0] / count[0];
+  const Feature high = sum[1] / count[1];
+  Eigen::Matrix4d within =
+      squares / n - count[0] / n * low * low.transpose() - count[1] / n * high * high.transpose();
+  within.diagonal().array() += 1.0;  // a code value
+  const Feature apart = high - low;
+  // Fisher's criterion, with the weight of an even split.
+  return apart.dot(within.ldlt().solve(apart)) * 4 * count[0] * count[1] / (n * n);
+}
+
+// Is that side the sky? It is smoother, and mostly brighter and bluer.
+bool is_sky(const std::vector<Sample>& samples, const Vector3& up) {
+  Feature sum[2] = {Feature::Zero(), Feature::Zero()};
+  double count[2] = {0, 0};
+  for (const Sample& s : samples) {
+    const int side = s.ray.dot(up) > 0 ? 1 : 0;
+    sum[side] += s.feature;
+    count[side] += 1;
+  }
+  const Feature d = sum[1] / std::max(1.0, count[1]) - sum[0] / std::max(1.0, count[0]);
+  return d[0] + 0.5 * d[1] - 3 * d[3] > 0;
+}
+
+}  // namespace
+
+Quaternion cam_from_level(const Vector3& up_in_cam) {
+  const YawPitchRoll attitude = attitude_from_up(up_in_cam);
+  return cam_from_body() * world_from_body(attitude).conjugate();
+}
+
+YawPitchRoll attitude_from_up(const Vector3& up_in_cam) {
+  // up in body: (sin pitch, -sin roll cos pitch, -cos roll cos pitch)
+  const Vector3 up = cam_from_body().conjugate() * up_in_cam.normalized();
+  return {
+      0, degrees(std::asin(std::clamp(up.x(), -1.0, 1.0))), degrees(std::atan2(-up.y(), -up.z()))};
+}
+
+HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft)
+    : lens_(lens), step_(std::max(4, std::max(lens.size().width, lens.size().height) / kAcross)) {
+  if (own_aircraft != nullptr) own_aircraft_ = *own_aircraft;
+  const auto [width, height] = lens.size();
+  for (int y = 0; y + step_ <= height; y += step_)
+    for (int x = 0; x + step_ <= width; x += step_) {
+      const int cx = x + step_ / 2;
+      const int cy = y + step_ / 2;
+      if (own_aircraft != nullptr && !own_aircraft->is_free(cx, cy)) continue;
+      if (const auto ray = lens.ray_from_pixel({double(cx), double(cy)}))
+        blocks_.push_back({x, y, *ray});
+    }
+}
+
+std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& picture) const {
+  std::vector<Sample> samples;
+  const int sx = image::log2_chroma_width(picture.colour.chroma);
+  const int sy = image::log2_chroma_height(picture.colour.chroma);
+  for (const Block& b : blocks_) {
+    double sum = 0, squares = 0;
+    for (int y = b.y; y < b.y + step_; y += 2)
+      for (int x = b.x; x < b.x + step_; x += 2) {
+        const double v = picture.planes[0].row(y)[x];
+        sum += v, squares += v * v;
+      }
+    const double n = double((step_ + 1) / 2) * ((step_ + 1) / 2);
+    const double mean = sum / n;
+    Feature f(mean, 0, 0, std::sqrt(std::max(0.0, squares / n - mean * mean)));
+    if (picture.plane_count == 3) {
+      const int cx = (b.x + step_ / 2) >> sx;
+      const int cy = (b.y + step_ / 2) >> sy;
+      f[1] = picture.planes[1].row(cy)[cx] - 128.0;
+      f[2] = picture.planes[2].row(cy)[cx] - 128.0;
+    }
+    samples.push_back({b.ray, f});
+  }
+  if (samples.size() < 40) return std::nullopt;
+  double best = 0, pitch = 0, roll = 0;
+  const auto look = [&](double p, double r) {
+    const double value = parted(samples, up_of(p, r));
+    if (value > best) best = value, pitch = p, roll = r;
+  };
+  for (double p = -48; p <= 48; p += 4)
+    for (double r = -88; r <= 92; r += 6) look(radians(p), radians(r));
+  for (double step = 2; step > 0.02; step *= 0.6) {
+    const double p0 = pitch, r0 = roll;
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) look(p0 + radians(step) * i, r0 + radians(1.5 * step) * j);
+  }
+  if (std::sqrt(best) < kLeastSeparation) return std::nullopt;
+  Vector3 up = up_of(pitch, roll);
+  if (!is_sky(samples, up)) up = -up;
+  const HorizonEdge edge = horizon_edge(picture, lens_, mask(), up);
+  return Found{edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best), edge.sharpness};
+}
+
+HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
+                                           const Vector3& expected_up_in_cam) const {
+  const HorizonEdge edge = horizon_edge_beside(picture, lens_, mask(), expected_up_in_cam);
+  return {edge.up_in_cam, 0, edge.sharpness};
+}
+
+}  // namespace airtruth::motion

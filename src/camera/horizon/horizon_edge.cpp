@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/horizon/horizon_edge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kColumns = 180;  // of azimuth, where the picture is seen
+constexpr int kFewestColumns = 30;
+constexpr float kLargestStep = 6;  // code values
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+struct Sweep {
+  double low_deg, high_deg;  // of elevation over the guess
+  double step_deg;
+  double across_deg;     // on either side, that is compared
+  double most_tilt_deg;  // of a plane to the guess
+};
+// Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
+constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
+constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
+// The line alone.
+constexpr Sweep kLine{0, 0, 0.04, 0.2, 0};
+// The sky whose slope is taken from a step: beyond what is compared, where an edge's own softness
+// has ended.
+constexpr double kSkyFromDeg = 0.3, kSkyToDeg = 1.1;
+constexpr float kLeastStepCodes = 1;  // across the line, beyond the slope of the sky
+
+// Bilinear; not a number outside, and on the own aircraft.
+float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
+  const double x = p.x() - 0.5;
+  const double y = p.y() - 0.5;
+  const int ix = static_cast<int>(std::floor(x));
+  const int iy = static_cast<int>(std::floor(y));
+  if (ix < 0 || iy < 0 || ix + 1 >= picture.width || iy + 1 >= picture.height) return kNothing;
+  if (own_aircraft != nullptr && !own_aircraft->is_free(ix, iy)) return kNothing;
+  const auto fx = static_cast<float>(x - ix);
+  const auto fy = static_cast<float>(y - iy);
+  const std::uint8_t* upper = picture.planes[0].row(iy) + ix;
+  const std::uint8_t* lower = picture.planes[0].row(iy + 1) + ix;
+  const float a = static_cast<float>(upper[0]) * (1 - fx) + static_cast<float>(upper[1]) * fx;
+  const float b = static_cast<float>(lower[0]) * (1 - fx) + static_cast<float>(lower[1]) * fx;
+  return a * (1 - fy) + b * fy;
+}
+
+// The step of luma from below to above, by azimuth and elevation, and the step that the slope of
+// the sky above makes over the same angle: 0 where that is not seen.
+struct Unrolled {
+  std::vector<double> azimuth_rad;
+  std::vector<float> step, sky;  // [column][row]
+  int rows = 0;
+  std::size_t at(std::size_t column, int row) const {
+    return column * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
+  }
+};
+
+// The mean over so many rows on either side of luma above less luma below.
+float step_at(const std::vector<float>& luma, int row, int across) {
+  float sum = 0;
+  for (int k = 1; k <= across; ++k)
+    sum += luma[static_cast<std::size_t>(row + k)] - luma[static_cast<std::size_t>(row - k)];
+  return sum / static_cast<float>(across);
+}
+
+struct Rows {
+  int across, sky_from, sky_to;
+};
+
+float sky_at(const std::vector<float>& luma, int row, const Rows& rows) {
+  float sum = 0;
+  int seen = 0;
+  for (int r = row + rows.sky_from; r <= row + rows.sky_to; ++r) {
+    const float step = step_at(luma, r, rows.across);
+    if (std::isnan(step)) continue;
+    sum += step;
+    ++seen;
+  }
+  return seen > 0 ? sum / static_cast<float>(seen) : 0;
+}
+
+Rows rows_of(const Sweep& sweep) {
+  const auto rows = [&](double deg) { return static_cast<int>(std::lround(deg / sweep.step_deg)); };
+  return {std::max(1, rows(sweep.across_deg)),
+          rows(sweep.across_deg + kSkyFromDeg),
+          rows(sweep.across_deg + kSkyToDeg)};
+}
+
+// Level: x ahead along the camera's own axis as far as it is level, y right, z down.
+Unrolled unroll(const image::Picture& picture,
+                const lens::Lens& lens,
+                const image::Mask* own_aircraft,
+                const Quaternion& cam_from_level,
+                const Sweep& sweep) {
+  Unrolled result;
+  const Rows rows = rows_of(sweep);
+  result.rows =
+      static_cast<int>(std::lround((sweep.high_deg - sweep.low_deg) / sweep.step_deg)) + 1;
+  const double half_rad = std::min(
+      kPi, radians(std::max(lens.horizontal_fov_deg(), lens.vertical_fov_deg())) / 2 * 1.1);
+  std::vector<float> luma(static_cast<std::size_t>(result.rows + 2 * rows.across + rows.sky_to));
+  for (int i = 0; i < kColumns; ++i) {
+    const double azimuth = half_rad * (2.0 * (i + 0.5) / kColumns - 1);
+    bool any = false;
+    for (std::size_t r = 0; r < luma.size(); ++r) {
+      const double e =
+          radians(sweep.low_deg + (static_cast<int>(r) - rows.across) * sweep.step_deg);
+      const Vector3 direction(
+          std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), -std::sin(e));
+      const auto pixel = lens.pixel_from_cam(cam_from_level * direction);
+      luma[r] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
+      any = any || !std::isnan(luma[r]);
+    }
+    if (!any) continue;
+    result.azimuth_rad.push_back(azimuth);
+    for (int r = rows.across; r < rows.across + result.rows; ++r) {
+      result.step.push_back(step_at(luma, r, rows.across));
+      result.sky.push_back(sky_at(luma, r, rows));
+    }
+  }
+  return result;
+}
+
+struct Line {
+  double pitch_deg = 0, roll_deg = 0;  // elevation = pitch cos(azimuth) + roll sin(azimuth)
+  float sum = 0;
+};
+
+// A step less what the slope of the sky makes of it; never of the other sign, or a strong edge
+// would cast one below itself. What is more than kLargestStep counts for little, which puts the
+// line of a strong edge into its middle.
+float edge_of(float step, float sky) {
+  constexpr float kShareOfMore = 0.02f;
+  if (std::isnan(step)) return kNothing;
+  const float size = std::max(0.0f, std::abs(step) - std::abs(sky));
+  const float more = std::max(0.0f, size - kLargestStep);
+  return std::copysign(size - more + kShareOfMore * more, step);
+}
+
+Line best_line(const Unrolled& picture, const Sweep& sweep) {
+  Line best;
+  std::vector<float> edges;
+  for (std::size_t i = 0; i < picture.step.size(); ++i)
+    edges.push_back(edge_of(picture.step[i], picture.sky[i]));
+  const std::size_t columns = picture.azimuth_rad.size();
+  for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
+    for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
+      float sum = 0;
+      int seen = 0;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double e =
+            pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
+        const int row = static_cast<int>(std::lround((e - sweep.low_deg) / sweep.step_deg));
+        if (row < 0 || row >= picture.rows) continue;
+        const float edge = edges[picture.at(i, row)];
+        if (std::isnan(edge)) continue;
+        sum += edge;
+        ++seen;
+      }
+      if (seen < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
+      best = {pitch, roll, sum};
+    }
+  return best;
+}
+
+double sharpness_of(const Unrolled& line) {
+  int seen = 0, up = 0, down = 0;
+  for (std::size_t i = 0; i < line.azimuth_rad.size(); ++i) {
+    if (std::isnan(line.step[i])) continue;
+    const float least = std::abs(line.sky[i]) + kLeastStepCodes;
+    ++seen;
+    up += line.step[i] > least ? 1 : 0;
+    down += line.step[i] < -least ? 1 : 0;
+  }
+  return seen < kFewestColumns ? 0 : double(std::max(up, down)) / seen;
+}
+
+// Level axes: ahead is the optical axis laid level. Empty where it looks straight up or down.
+std::optional<Quaternion> cam_from_level_axes(const Vector3& up_in_cam) {
+  const Vector3 down = -up_in_cam.normalized();
+  Vector3 ahead = Vector3::UnitZ() - down * down.z();
+  if (ahead.norm() < 0.1) return std::nullopt;
+  ahead.normalize();
+  Matrix3 axes;
+  axes << ahead, down.cross(ahead), down;
+  return Quaternion(axes);
+}
+
+Vector3 swept(const image::Picture& picture,
+              const lens::Lens& lens,
+              const image::Mask* own_aircraft,
+              const Vector3& up_in_cam,
+              const Sweep& sweep) {
+  const auto cam_from_level = cam_from_level_axes(up_in_cam);
+  if (!cam_from_level) return up_in_cam;
+  const Line line = best_line(unroll(picture, lens, own_aircraft, *cam_from_level, sweep), sweep);
+  // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
+  const Vector3 up =
+      Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1);
+  return *cam_from_level * up.normalized();
+}
+
+HorizonEdge weighed(const image::Picture& picture,
+                    const lens::Lens& lens,
+                    const image::Mask* own_aircraft,
+                    const Vector3& up_in_cam) {
+  const auto cam_from_level = cam_from_level_axes(up_in_cam);
+  if (!cam_from_level) return {up_in_cam, 0};
+  return {up_in_cam, sharpness_of(unroll(picture, lens, own_aircraft, *cam_from_level, kLine))};
+}
+
+}  // namespace
+
+HorizonEdge horizon_edge(const image::Picture& picture,
+                         const lens::Lens& lens,
+                         const image::Mask* own_aircraft,
+                         const Vector3& guess_up_in_cam) {
+  const Vector3 up = swept(picture, lens, own_aircraft, guess_up_in_cam, kWide);
+  return horizon_edge_beside(picture, lens, own_aircraft, up);
+}
+
+HorizonEdge horizon_edge_beside(const image::Picture& picture,
+                                const lens::Lens& lens,
+                                const image::Mask* own_aircraft,
+                                const Vector3& guess_up_in_cam) {
+  return weighed(
+      picture, lens, own_aircraft, swept(picture, lens, own_aircraft, guess_up_in_cam, kNarrow));
+}
+
+}  // namespace airtruth::motion

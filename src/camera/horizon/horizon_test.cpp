@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/horizon/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "foundation/base/seed.h"
+
+// A horizon is a line that is sharp from side to side. Pictures are drawn ray by ray from a level
+// that is known; what parts in two colours without such a line is refused.
+namespace airtruth::motion {
+namespace {
+
+constexpr int kSkyWidth = 640, kSkyHeight = 480;
+constexpr double kFovDeg = 60;
+
+lens::Lens the_lens() { return lens::pinhole_from_vertical_fov(kFovDeg, {kSkyWidth, kSkyHeight}); }
+
+Vector3 up_of(double pitch_deg, double roll_deg) {
+  const Quaternion world_from_camera_body = world_from_body({0, pitch_deg, roll_deg});
+  return cam_from_body() * (world_from_camera_body.conjugate() * Vector3(0, 0, -1));
+}
+
+// A colour of a place, by its azimuth and elevation over the level in degrees.
+struct Paint {
+  double luma, cb, cr;
+};
+using Scene = std::function<Paint(double azimuth_deg, double elevation_deg)>;
+const Paint kSky{190, 142, 116};
+const Paint kGround{90, 112, 126};
+
+Paint mixed(const Paint& low, const Paint& high, double share) {
+  return {low.luma + share * (high.luma - low.luma),
+          low.cb + share * (high.cb - low.cb),
+          low.cr + share * (high.cr - low.cr)};
+}
+
+image::Picture drawn(double pitch_deg, double roll_deg, double noise_codes, const Scene& scene) {
+  const lens::Lens lens = the_lens();
+  const Quaternion level_from_cam = cam_from_level(up_of(pitch_deg, roll_deg)).conjugate();
+  image::Picture picture = image::make_picture(kSkyWidth, kSkyHeight, image::Colour{});
+  Random random(7);
+  for (int y = 0; y < kSkyHeight; ++y)
+    for (int x = 0; x < kSkyWidth; ++x) {
+      const Vector3 ray = level_from_cam * *lens.ray_from_pixel({x + 0.5, y + 0.5});
+      const Paint paint =
+          scene(degrees(std::atan2(ray.y(), ray.x())), degrees(std::asin(-ray.z())));
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
+          std::clamp(std::round(paint.luma + noise_codes * random.normal()), 16.0, 235.0));
+      picture.planes[1].row(y / 2)[x / 2] = static_cast<std::uint8_t>(std::lround(paint.cb));
+      picture.planes[2].row(y / 2)[x / 2] = static_cast<std::uint8_t>(std::lround(paint.cr));
+    }
+  return picture;
+}
+
+bool is_refused(const image::Picture& picture) {
+  const auto found = HorizonFinder(the_lens(), nullptr).find(picture);
+  return !found || !found->is_sharp();
+}
+
+// Fields: squares of a few degrees that differ by 30 code values.
+double field(double azimuth_deg, double elevation_deg) {
+  const auto index = static_cast<int>(std::floor(azimuth_deg / 4) + 3 * std::floor(elevation_deg));
+  return 10 * (((index % 4) + 4) % 4);
+}
+
+TEST(Horizon, ASharpLineIsFoundWithItsRollAndItsPlace) {
+  const HorizonFinder finder(the_lens(), nullptr);
+  for (const auto& [pitch_deg, roll_deg] :
+       {std::pair(5.0, 0.0), std::pair(-3.0, 12.0), std::pair(2.0, -35.0)}) {
+    const image::Picture picture =
+        drawn(pitch_deg, roll_deg, 2, [](double azimuth_deg, double elevation_deg) {
+          if (elevation_deg > 0) return kSky;
+          Paint paint = kGround;
+          paint.luma += field(azimuth_deg, elevation_deg);
+          return paint;
+        });
+    const auto found = finder.find(picture);
+    ASSERT_TRUE(found && found->is_sharp()) << roll_deg;
+    EXPECT_GT(found->sharpness, 0.95);
+    const YawPitchRoll attitude = attitude_from_up(found->up_in_cam);
+    EXPECT_NEAR(attitude.roll_deg, roll_deg, 0.15);
+    EXPECT_NEAR(attitude.pitch_deg, pitch_deg, 0.15);
+    // Where a level line 5 degrees below the axis crosses the middle column:
+    // 240 + 240 / tan(30 deg) tan(5 deg) = 276.4 px.
+    if (roll_deg == 0) {
+      const Vector3& up = found->up_in_cam;
+      const double y_px = 240 - 240 / std::tan(radians(30)) * up.z() / up.y();
+      EXPECT_NEAR(y_px, 276.4, 1.0);
+    }
+    // Followed from a degree beside it, it is the same.
+    const auto followed = finder.follow(picture, up_of(pitch_deg + 0.7, roll_deg - 0.5));
+    EXPECT_TRUE(followed.is_sharp());
+    EXPECT_LT(degrees(std::acos(std::min(1.0, followed.up_in_cam.dot(found->up_in_cam)))), 0.15);
+  }
+}
+
+// Half a degree of hills and a haze that takes half of the step leave a horizon.
+TEST(Horizon, LowHillsInHazeAreAHorizonStill) {
+  const image::Picture picture = drawn(4, 8, 2, [](double azimuth_deg, double elevation_deg) {
+    const double hills_deg = 0.25 + 0.25 * std::sin(azimuth_deg / 3);
+    if (elevation_deg > hills_deg) return kSky;
+    const double haze = 0.6 * std::exp((elevation_deg - hills_deg) / 4);
+    return mixed(kGround, kSky, haze);
+  });
+  const auto found = HorizonFinder(the_lens(), nullptr).find(picture);
+  ASSERT_TRUE(found && found->is_sharp());
+  EXPECT_NEAR(attitude_from_up(found->up_in_cam).roll_deg, 8, 0.7);
+  EXPECT_NEAR(attitude_from_up(found->up_in_cam).pitch_deg, 4, 0.7);
+}
+
+// Sky that brightens downwards, or ground that fades into it over degrees: a slope is no edge,
+// however steep it is.
+TEST(Horizon, ABroadGradientIsRefused) {
+  for (const double width_deg : {70.0, 40.0, 24.0}) {
+    EXPECT_TRUE(is_refused(drawn(3, 10, 1, [&](double, double elevation_deg) {
+      const double place = std::clamp(elevation_deg / width_deg, -0.5, 0.5);
+      return mixed(kGround, kSky, 0.5 + 0.5 * std::sin(kPi * place));
+    }))) << width_deg;
+    EXPECT_TRUE(is_refused(drawn(0, 0, 0, [&](double, double elevation_deg) {
+      return mixed(kGround, kSky, std::clamp(0.5 + elevation_deg / width_deg, 0.0, 1.0));
+    }))) << width_deg;
+  }
+}
+
+// Level sea on one side under haze of nearly its colour, land with houses on the other, its skyline
+// rising to that side.
+Paint coast(double azimuth_deg, double elevation_deg, double slope, double side) {
+  const Paint sea{150, 136, 120}, haze{175, 134, 122};
+  const double inland_deg = side * azimuth_deg + 4;
+  const bool house = (static_cast<int>(std::floor(azimuth_deg / 1.7)) & 3) == 1;
+  const double skyline_deg = slope * inland_deg + (house ? 1.5 : 0);
+  if (inland_deg > 0 && elevation_deg < skyline_deg && elevation_deg > -2 * inland_deg) {
+    Paint land = kGround;
+    land.luma += field(azimuth_deg, 3 * elevation_deg);
+    return land;
+  }
+  if (elevation_deg < 0) return sea;
+  return mixed(haze, kSky, std::min(1.0, elevation_deg / 15));
+}
+
+// The plane that parts the colours of a coast is neither the sea's nor the skyline's.
+TEST(Horizon, ACoastIsRefused) {
+  for (const double slope : {0.2, 0.3, 0.4})
+    for (const double side : {-1.0, 1.0}) {
+      const image::Picture picture = drawn(0, 0, 1, [&](double azimuth_deg, double elevation_deg) {
+        return coast(azimuth_deg, elevation_deg, slope, side);
+      });
+      EXPECT_TRUE(is_refused(picture)) << slope << ' ' << side;
+    }
+}
+
+// Where the land is lower, the line that is taken is the sea's, which is level here.
+TEST(Horizon, OfALowCoastTheSeaIsFound) {
+  const image::Picture picture = drawn(0, 0, 1, [](double azimuth_deg, double elevation_deg) {
+    return coast(azimuth_deg, elevation_deg, 0.12, 1);
+  });
+  const auto found = HorizonFinder(the_lens(), nullptr).find(picture);
+  ASSERT_TRUE(found && found->is_sharp());
+  EXPECT_NEAR(attitude_from_up(found->up_in_cam).roll_deg, 0, 1);
+}
+
+// A bank of clouds, tilted: soft over six degrees, or sharp in tufts of two degrees.
+TEST(Horizon, ATiltedBankOfCloudsIsRefused) {
+  const Paint cloud{215, 128, 128}, blue{140, 150, 110};
+  EXPECT_TRUE(is_refused(drawn(2, 20, 1, [&](double, double elevation_deg) {
+    return mixed(cloud, blue, 1 / (1 + std::exp(-elevation_deg / 1.5)));
+  })));
+  EXPECT_TRUE(is_refused(drawn(2, 20, 1, [&](double azimuth_deg, double elevation_deg) {
+    return elevation_deg < 2.5 * std::abs(std::sin(azimuth_deg / 2.3)) ? cloud : blue;
+  })));
+}
+
+}  // namespace
+}  // namespace airtruth::motion

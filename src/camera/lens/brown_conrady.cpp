@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "camera/lens/models.h"
+
+namespace airtruth::lens {
+namespace {
+
+using Coefficients = std::array<double, 8>;  // OpenCV's order: k1 k2 p1 p2 k3 k4 k5 k6
+
+Coefficients coefficients(const BrownConrady& lens) {
+  Coefficients k{};
+  std::copy_n(lens.distortion.begin(), std::min<std::size_t>(lens.distortion.size(), 8), k.begin());
+  return k;
+}
+
+// Where an undistorted point (x/z, y/z) goes, and how the map stretches there. The derivative is
+// symmetric: the map is a gradient.
+struct Distorted {
+  Pixel value;
+  double xx, xy, yy;
+  double denominator;
+
+  double least_stretch() const {
+    return 0.5 * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy));
+  }
+  Pixel solve(const Pixel& right) const {
+    const double d = xx * yy - xy * xy;
+    return {(yy * right.x() - xy * right.y()) / d, (xx * right.y() - xy * right.x()) / d};
+  }
+};
+
+Distorted distort(const Coefficients& k, const Pixel& n) {
+  const double x = n.x();
+  const double y = n.y();
+  const double r2 = x * x + y * y;
+  const double up = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double down = 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
+  const double up_slope = k[0] + r2 * (2 * k[1] + r2 * 3 * k[4]);
+  const double down_slope = k[5] + r2 * (2 * k[6] + r2 * 3 * k[7]);
+  const double radial = up / down;
+  const double bend = 2 * (up_slope - radial * down_slope) / down;  // twice d radial / d r2
+  return {{x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x),
+           y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y},
+          radial + x * x * bend + 2 * k[2] * y + 6 * k[3] * x,
+          x * y * bend + 2 * k[2] * x + 2 * k[3] * y,
+          radial + y * y * bend + 6 * k[2] * y + 2 * k[3] * x,
+          down};
+}
+
+Coefficients radial_part(const Coefficients& k) {
+  return {k[0], k[1], 0, 0, k[4], k[5], k[6], k[7]};
+}
+
+constexpr int kDirections = 32;
+
+Pixel in_direction(int i, double radius) {
+  const double angle = 2 * kPi * i / kDirections;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+// The tangential terms tilt the curve: the valid field ends where the map folds in any direction.
+bool folds(const Coefficients& k, double angle_rad) {
+  const double radius = std::tan(angle_rad);
+  const double flat = kFlat / (1 + radius * radius);  // per radian, where the map is per tangent
+  const Distorted along = distort(radial_part(k), {radius, 0});
+  constexpr double kNearPole = 1e-3;  // beyond it the rational curve runs off to infinity
+  if (!(along.denominator > kNearPole) || !(along.least_stretch() > flat)) return true;
+  const Pixel tilt(k[3], k[2]);
+  if (tilt.isZero(0)) return false;
+  // Against the tilt the curve falls off first.
+  if (!(distort(k, -radius * tilt.normalized()).least_stretch() > flat)) return true;
+  for (int i = 0; i < kDirections; ++i)
+    if (!(distort(k, in_direction(i, radius)).least_stretch() > flat)) return true;
+  return false;
+}
+
+double max_angle(const Coefficients& k) {
+  constexpr int kSteps = 4000;
+  constexpr double kLimit = kPi / 2 - 1e-3;  // tan() beyond is of no use to any image
+  for (int i = 1; i <= kSteps; ++i) {
+    if (!folds(k, kLimit * i / kSteps)) continue;
+    double low = kLimit * (i - 1) / kSteps;
+    double high = kLimit * i / kSteps;
+    for (int n = 0; n < 50; ++n) {
+      const double middle = 0.5 * (low + high);
+      (folds(k, middle) ? high : low) = middle;
+    }
+    return low;
+  }
+  return kLimit;
+}
+
+// The undistorted radius from which the radial terms alone reach `target`: bisection.
+double radial_guess(const Coefficients& k, double target, double limit) {
+  const Coefficients radial = radial_part(k);
+  double low = 0;
+  double high = limit;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (low + high);
+    (distort(radial, {middle, 0}).value.x() < target ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+struct Guess {
+  Pixel n;
+  double miss;
+};
+
+double small(const Pixel& target) { return 1e-12 * (1 + target.norm()); }
+
+// Newton's method, each step shortened until it comes nearer and held within the valid field.
+Guess newton(const Coefficients& k, const Pixel& target, Pixel n, double limit, int steps) {
+  Distorted at = distort(k, n);
+  double miss = (at.value - target).norm();
+  for (int i = 0; i < steps && miss > 0; ++i) {
+    Pixel step = at.solve(target - at.value);
+    const double tried = miss;
+    for (int half = 0; half < 30 && miss == tried; ++half, step *= 0.5) {
+      Pixel next = n + step;
+      if (const double radius = next.norm(); radius > limit) next *= limit / radius;
+      const Distorted there = distort(k, next);
+      const double left = (there.value - target).norm();
+      if (left < miss) {
+        n = next;
+        at = there;
+        miss = left;
+      } else if (miss <= small(target)) {
+        break;  // as near as rounding lets it come
+      }
+    }
+    if (miss == tried) break;
+  }
+  return {n, miss};
+}
+
+// From the axis to the target in a straight line through the image, which stays within the field.
+Guess walk(const Coefficients& k, const Pixel& target, double limit) {
+  constexpr int kParts = 16;
+  Guess guess{Pixel::Zero(), 0};
+  for (int part = 1; part <= kParts; ++part)
+    guess = newton(k, target * part / kParts, guess.n, limit, part < kParts ? 10 : 60);
+  return guess;
+}
+
+}  // namespace
+
+Field field_of(const BrownConrady& lens) {
+  const Coefficients k = coefficients(lens);
+  Field field{max_angle(k), 0};
+  const double limit = std::tan(field.max_angle_rad);
+  for (int i = 0; i < kDirections; ++i)
+    field.max_radius = std::max(field.max_radius, distort(k, in_direction(i, limit)).value.norm());
+  field.max_radius *= 1.01;  // between the directions
+  return field;
+}
+
+std::optional<Pixel> project(const BrownConrady& lens, const Vector3& p, const Field& field) {
+  if (!(p.z() > 0)) return std::nullopt;
+  if (!(std::atan2(std::hypot(p.x(), p.y()), p.z()) <= field.max_angle_rad)) return std::nullopt;
+  const Pixel d = distort(coefficients(lens), {p.x() / p.z(), p.y() / p.z()}).value;
+  return Pixel(d.cwiseProduct(lens.focal_px) + lens.principal_point_px);
+}
+
+std::optional<Vector3> unproject(const BrownConrady& lens, const Pixel& pixel, const Field& field) {
+  const Coefficients k = coefficients(lens);
+  const Pixel target = (pixel - lens.principal_point_px).cwiseQuotient(lens.focal_px);
+  const double radius = target.norm();
+  if (!(radius <= field.max_radius)) return std::nullopt;
+  const double limit = std::tan(field.max_angle_rad);
+  Guess guess{target, HUGE_VAL};
+  if (radius <= limit) guess = newton(k, target, target, limit, 8);
+  if (guess.miss > small(target)) {
+    const Pixel start = target * (radial_guess(k, radius, limit) / radius);
+    guess = newton(k, target, start, limit, 30);
+  }
+  if (guess.miss > small(target)) guess = walk(k, target, limit);
+  if (guess.miss > small(target)) return std::nullopt;
+  return Vector3(guess.n.x(), guess.n.y(), 1).normalized();
+}
+
+}  // namespace airtruth::lens

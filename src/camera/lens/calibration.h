@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "camera/lens/lens.h"
+
+// What both file kinds come down to, still in the file's own image size and OpenCV's
+// integer-centred pixels.
+namespace airtruth::lens {
+
+struct Calibration {
+  bool fisheye = false;
+  std::array<double, 9> camera_matrix{};  // row by row
+  std::vector<double> distortion;
+  ImageSize size;
+  double max_angle_rad = kPi;  // of a fisheye, where the file states it
+  std::string camera;          // "GoPro Hero3+Black"; empty where the file names none
+};
+
+Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name);
+Calibration parse_opencv_calibration(std::string_view text, const std::filesystem::path& name);
+
+}  // namespace airtruth::lens

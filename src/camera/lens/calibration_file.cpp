@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/lens/calibration_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "camera/lens/calibration.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::lens {
+namespace {
+
+constexpr std::size_t kMaxBytes = 16u << 20;
+constexpr double kAspectTolerance = 0.01;
+// As the keys of [lens] in a scene (world/scene/limits.h).
+constexpr double kLeastFocal_px = 1;
+constexpr double kFarthest_px = 1e6;
+constexpr double kLargestCoefficient = 1e6;
+
+std::string shown(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
+}
+
+void check_matrix(const Calibration& c, const std::string& file) {
+  for (double value : c.camera_matrix)
+    if (!std::isfinite(value))
+      throw Error("the camera matrix holds a number that is not finite", {file});
+  const auto& m = c.camera_matrix;
+  if (std::abs(m[1]) > 1e-9)
+    throw Error("the camera matrix has a skew of " + std::to_string(m[1]) +
+                    "; expected 0 (no lens model here has skew)",
+                {file});
+  for (const std::size_t i : {std::size_t{0}, std::size_t{4}})
+    if (!(m[i] >= kLeastFocal_px && m[i] <= kFarthest_px))
+      throw Error(
+          "the camera matrix has a focal length of " + shown(m[i]) + "; expected 1 to 1e6 pixels",
+          {file});
+  for (const std::size_t i : {std::size_t{2}, std::size_t{5}})
+    if (std::abs(m[i]) > kFarthest_px)
+      throw Error("the camera matrix has its centre at " + shown(m[i]) + "; expected it within 1e6",
+                  {file});
+  for (const double k : c.distortion)
+    if (!(std::abs(k) <= kLargestCoefficient))
+      throw Error("has a distortion coefficient of " + shown(k) + "; expected it within 1e6",
+                  {file});
+  if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
+    throw Error("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]", {file});
+}
+
+bool same_aspect(ImageSize a, ImageSize b) {
+  const double ratio = static_cast<double>(a.width) * b.height / a.height / b.width;
+  return std::abs(ratio - 1) <= kAspectTolerance;
+}
+
+std::string words(ImageSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const std::string& file) {
+  const std::size_t most = fisheye ? 4 : 8;
+  for (std::size_t i = most; i < distortion.size(); ++i)
+    if (distortion[i] != 0)
+      throw Error("distortion coefficient " + std::to_string(i + 1) +
+                      (fisheye ? " of a fisheye" : " (thin prism or tilt)") +
+                      " is not 0; no lens model here has it",
+                  {file});
+  std::size_t size = std::min(distortion.size(), most);
+  if (!fisheye) {
+    const auto zero_from = [&](std::size_t i) {
+      return std::all_of(distortion.begin() + static_cast<std::ptrdiff_t>(std::min(i, size)),
+                         distortion.begin() + static_cast<std::ptrdiff_t>(size),
+                         [](double k) { return k == 0; });
+    };
+    size = size <= 4 || zero_from(4) ? 4 : size == 5 || zero_from(5) ? 5 : 8;
+  } else {
+    size = 4;
+  }
+  distortion.resize(size, 0.0);
+  return distortion;
+}
+
+Calibration parsed(std::string_view text, const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  Calibration c;
+  if (extension == ".json") {
+    c = parse_gyroflow_profile(text, name);
+  } else if (extension == ".yml" || extension == ".yaml" || extension == ".xml") {
+    c = parse_opencv_calibration(text, name);
+  } else {
+    throw Error("is no calibration file: expected .json (Gyroflow) or .yml, .yaml, .xml (OpenCV)",
+                {name.string()});
+  }
+  check_matrix(c, name.string());
+  return c;
+}
+
+bool has_size(const Calibration& c) { return c.size.width > 0 && c.size.height > 0; }
+
+// Of the same aspect ratio, or of no size at all.
+Lens lens_from(const Calibration& c, const std::string& file, ImageSize size) {
+  const ImageSize from = has_size(c) ? c.size : size;
+  const Pixel scale(static_cast<double>(size.width) / from.width,
+                    static_cast<double>(size.height) / from.height);
+  const Pixel focal(c.camera_matrix[0] * scale.x(), c.camera_matrix[4] * scale.y());
+  // OpenCV's (0, 0) is the middle of the first pixel; ours is its corner.
+  const Pixel centre((c.camera_matrix[2] + 0.5) * scale.x(),
+                     (c.camera_matrix[5] + 0.5) * scale.y());
+  const std::vector<double> distortion = trimmed(c.distortion, c.fisheye, file);
+  try {
+    if (c.fisheye) return Lens(Fisheye{focal, centre, distortion, c.max_angle_rad}, size);
+    if (std::all_of(distortion.begin(), distortion.end(), [](double k) { return k == 0; }))
+      return Lens(Pinhole{focal, centre}, size);
+    return Lens(BrownConrady{focal, centre, distortion}, size);
+  } catch (const Error& error) {
+    throw Error(error.message(), {file});
+  }
+}
+
+std::string refusal(const Calibration& c, ImageSize size) {
+  return "was made for " + words(c.size) + (c.camera.empty() ? "" : " of a " + c.camera) +
+         ", but the video is " + words(size) + ", another aspect ratio";
+}
+
+std::string how_to_crop(const std::filesystem::path& path, ImageSize size) {
+  return "; where the video is the middle of that picture, cut and not squeezed, `airtruth lens "
+         "crop " +
+         path.string() + " --size " + words(size) + " -o LENS.yml` writes its lens";
+}
+
+// Profiles of the same camera beside the file whose aspect ratio is the video's, at most three.
+std::string profiles_that_fit(const std::filesystem::path& path,
+                              const Calibration& c,
+                              ImageSize size) {
+  constexpr std::size_t kMostRead = 1000;
+  constexpr std::size_t kMostNamed = 3;
+  if (c.camera.empty()) return "";
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator at(path.has_parent_path() ? path.parent_path() : ".",
+                                              failed);
+       !failed && at != std::filesystem::directory_iterator() && files.size() < kMostRead;
+       at.increment(failed))
+    if (at->path().extension() == ".json" && at->is_regular_file(failed))
+      files.push_back(at->path());
+  std::sort(files.begin(), files.end());
+  std::string named;
+  std::size_t count = 0;
+  for (const std::filesystem::path& file : files) {
+    try {
+      const Calibration other = parsed(read_file(file, kMaxBytes), file);
+      if (other.camera != c.camera || !same_aspect(other.size, size)) continue;
+      if (++count <= kMostNamed)
+        named +=
+            (named.empty() ? "" : ", ") + file.filename().string() + " (" + words(other.size) + ")";
+    } catch (const Error&) {  // another JSON file, or a profile that cannot be honoured
+    }
+  }
+  return named.empty() ? "" : "; of the same camera and the video's aspect ratio: " + named;
+}
+
+}  // namespace
+
+Lens parse_calibration(std::string_view text, const std::filesystem::path& name, ImageSize size) {
+  const Calibration c = parsed(text, name);
+  if (has_size(c) && !same_aspect(c.size, size))
+    throw Error(refusal(c, size) + "; expected the same aspect ratio", {name.string()});
+  return lens_from(c, name.string(), size);
+}
+
+Lens read_calibration(const std::filesystem::path& path, ImageSize size) {
+  const Calibration c = parsed(read_file(path, kMaxBytes), path);
+  if (has_size(c) && !same_aspect(c.size, size))
+    throw Error(refusal(c, size) + profiles_that_fit(path, c, size) + how_to_crop(path, size),
+                {path.string()});
+  return lens_from(c, path.string(), size);
+}
+
+Lens read_calibration(const std::filesystem::path& path) {
+  const Calibration c = parsed(read_file(path, kMaxBytes), path);
+  if (!has_size(c))
+    throw Error(
+        "does not say which picture size it was made for; expected image_width and "
+        "image_height",
+        {path.string()});
+  return lens_from(c, path.string(), c.size);
+}
+
+}  // namespace airtruth::lens

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/lens/calibration_file.h"
+
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <unistd.h>
+
+#include "camera/lens/calibration_write.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::lens {
+namespace {
+
+const ImageSize kProfileSize{1280, 960};
+
+std::string error_of(std::string_view text, const char* name, ImageSize size = kProfileSize) {
+  try {
+    parse_calibration(text, name, size);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string profile(const std::string& extra = "") {
+  return "{\"calib_dimension\": {\"w\": 1280, \"h\": 960},\n" + extra +
+         "\"fisheye_params\": {\"camera_matrix\": [[560,0,639.5],[0,561,479.5],[0,0,1]],\n"
+         "\"distortion_coeffs\": [0.06, 0.01, -0.01, 0.004]}}";
+}
+
+TEST(Gyroflow, BecomesAFisheyeInOurPixels) {
+  const Lens lens = parse_calibration(profile(), "a.json", kProfileSize);
+  const auto& fisheye = std::get<Fisheye>(lens.model());
+  EXPECT_EQ(fisheye.focal_px, Pixel(560, 561));
+  EXPECT_EQ(fisheye.principal_point_px, Pixel(640, 480));
+  EXPECT_EQ(fisheye.distortion, (std::vector<double>{0.06, 0.01, -0.01, 0.004}));
+}
+
+TEST(Gyroflow, ScalesToAnotherSizeOfTheSameShapeAlone) {
+  const Lens lens = parse_calibration(profile(), "a.json", {640, 480});
+  EXPECT_EQ(std::get<Fisheye>(lens.model()).focal_px, Pixel(280, 280.5));
+  EXPECT_EQ(std::get<Fisheye>(lens.model()).principal_point_px, Pixel(320, 240));
+  EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}), testing::HasSubstr("same aspect ratio"));
+}
+
+// A camera that cuts 1280x720 out of the middle of its 1280x960: a ray lands 120 rows higher.
+TEST(Calibration, CroppedKeepsTheDirectionOfEveryPixelThatIsLeft) {
+  const Lens whole = parse_calibration(profile(), "a.json", kProfileSize);
+  const Lens wide = cropped(whole, {1280, 720});
+  const Lens small = cropped(whole, {640, 360});
+  const Lens narrow = cropped(whole, {720, 960});
+  for (const Pixel& p : {Pixel(640, 480), Pixel(300.5, 200.25), Pixel(900, 800)}) {
+    const Vector3 ray = whole.ray_from_pixel(p).value();
+    EXPECT_TRUE(wide.pixel_from_cam(ray)->isApprox(Pixel(p.x(), p.y() - 120), 1e-9));
+    EXPECT_TRUE(small.pixel_from_cam(ray)->isApprox(Pixel(p.x(), p.y() - 120) / 2, 1e-9));
+    EXPECT_TRUE(narrow.pixel_from_cam(ray)->isApprox(Pixel(p.x() - 280, p.y()), 1e-9));
+  }
+}
+
+TEST(Calibration, WhatIsWrittenIsReadAsTheSameLens) {
+  const Lens fisheye = parse_calibration(profile(), "a.json", {640, 480});
+  const Lens brown(BrownConrady{{900.25, 905}, {641, 479}, {-0.28, 0.09, 1e-3, -5e-4, 0.02}},
+                   kProfileSize);
+  const Lens pinhole(Pinhole{{1000, 1000}, {640, 480}}, kProfileSize);
+  for (const Lens& lens : {fisheye, brown, pinhole}) {
+    const Lens read = parse_calibration(opencv_calibration(lens, "a\nb"), "a.yml", lens.size());
+    EXPECT_STREQ(read.name(), lens.name());
+    const Vector3 ray(0.3, -0.2, 1);
+    EXPECT_TRUE(read.pixel_from_cam(ray)->isApprox(*lens.pixel_from_cam(ray), 1e-12));
+  }
+  // OpenCV itself reads it.
+  cv::FileStorage storage(opencv_calibration(brown, "a note"),
+                          cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  cv::Mat matrix;
+  storage["camera_matrix"] >> matrix;
+  EXPECT_EQ(matrix.at<double>(0, 2), 640.5);  // OpenCV's pixels have integer centres
+}
+
+TEST(Calibration, ARefusedShapeNamesTheCameraWhatFitsAndHowToCrop) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("airtruth_profiles_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const auto write = [&](const char* name, const std::string& model, const std::string& size) {
+    std::string text =
+        profile("\"camera_brand\": \"GoPro\", \"camera_model\": \"" + model + "\",\n");
+    text.replace(text.find("{\"w\": 1280, \"h\": 960}"), 21, size);
+    write_file(folder / name, text);
+  };
+  write("4by3.json", "Hero", "{\"w\": 1280, \"h\": 960}");
+  write("16by9.json", "Hero", "{\"w\": 1920, \"h\": 1080}");
+  write("other.json", "Max", "{\"w\": 1280, \"h\": 720}");
+  write_file(folder / "broken.json", "{");
+  std::string message;
+  try {
+    read_calibration(folder / "4by3.json", {1280, 720});
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  fs::remove_all(folder);
+  EXPECT_THAT(
+      message,
+      testing::HasSubstr("was made for 1280x960 of a GoPro Hero, but the video is 1280x720"));
+  EXPECT_THAT(message, testing::HasSubstr("video's aspect ratio: 16by9.json (1920x1080);"));
+  EXPECT_THAT(message, testing::HasSubstr("airtruth lens crop"));
+  EXPECT_THAT(message, testing::Not(testing::HasSubstr("other.json")));
+}
+
+TEST(Gyroflow, NamesTheFieldItCannotHonour) {
+  EXPECT_THAT(error_of(profile("\"input_horizontal_stretch\": 1.33,\n"), "a.json"),
+              testing::StartsWith("a.json:2: input_horizontal_stretch is not 1"));
+  EXPECT_THAT(error_of(profile("\"digital_lens\": \"gopro_superview\",\n"), "a.json"),
+              testing::HasSubstr("digital_lens"));
+  EXPECT_THAT(error_of(profile("\"distortion_model\": \"insta360\",\n"), "a.json"),
+              testing::HasSubstr("distortion_model"));
+  EXPECT_THAT(error_of(profile("\"interpolations\": {\"24\": {}},\n"), "a.json"),
+              testing::HasSubstr("interpolations is set"));
+  EXPECT_THAT(error_of(profile("\"use_opencv_standard\": true,\n"), "a.json"),
+              testing::HasSubstr("use_opencv_standard"));
+  EXPECT_THAT(error_of("{\"a\": 1e999}", "a.json"), testing::HasSubstr("too large"));
+  EXPECT_THAT(error_of("{\"a\": ", "a.json"), testing::HasSubstr("is not JSON"));
+  EXPECT_THAT(error_of("{}", "a.json"), testing::HasSubstr("fisheye_params"));
+}
+
+TEST(Gyroflow, EndsAtItsStatedRadius) {
+  std::string text = profile();
+  text.replace(text.find("\"distortion_coeffs\""), 0, "\"radial_distortion_limit\": 1.0, ");
+  EXPECT_NEAR(parse_calibration(text, "a.JSON", kProfileSize).max_angle_rad(), radians(45), 1e-12);
+}
+
+TEST(Gyroflow, ReadsARealProfile) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
+  const Lens lens = read_calibration(
+      std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kProfileSize);
+  EXPECT_STREQ(lens.name(), "fisheye");
+  EXPECT_NEAR(lens.horizontal_fov_deg(), 120, 5);  // what its note of origin says
+}
+
+// What OpenCV writes, we read: both file kinds, through OpenCV's own writer.
+TEST(OpenCv, ReadsWhatFileStorageWrites) {
+  const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
+  const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
+  for (const char* name : {"a.yml", "a.xml"}) {
+    cv::FileStorage storage(name, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    storage << "image_width" << 1280 << "image_height" << 960 << "camera_matrix" << matrix
+            << "distortion_coefficients" << distortion;
+    const Lens lens = parse_calibration(storage.releaseAndGetString(), name, kProfileSize);
+    const auto& model = std::get<BrownConrady>(lens.model());
+    EXPECT_EQ(model.focal_px, Pixel(900.25, 905)) << name;
+    EXPECT_EQ(model.principal_point_px, Pixel(640, 480)) << name;
+    EXPECT_EQ(model.distortion, (std::vector<double>{-0.28, 0.09, 1e-3, -5e-4, 0.02})) << name;
+  }
+}
+
+TEST(OpenCv, FisheyeWhereTheFileSaysSo) {
+  const std::string text =
+      "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 960\nfisheye_model: 1\n"
+      "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 560., 0., "
+      "639.5, 0., 561., 479.5,\n"
+      "       0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   "
+      "dt: d\n"
+      "   data: [ 0.06, 0.01, -0.01, 0.004 ]\n";
+  EXPECT_STREQ(parse_calibration(text, "a.yml", kProfileSize).name(), "fisheye");
+}
+
+TEST(OpenCv, ReadsAMatrixOfRowsOverSeveralLines) {
+  const Lens lens = parse_calibration(
+      "K: [[900, 0, 639.5],\n    [0, 905, 479.5],\n    [0, 0, 1]]\nD: [0, 0, 0, 0]\n",
+      "a.yml",
+      kProfileSize);
+  EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
+}
+
+TEST(OpenCv, RefusesSkewPrismAndGarbage) {
+  const auto yml = [](const std::string& matrix, const std::string& distortion) {
+    return "camera_matrix: [" + matrix + "]\ndistortion_coefficients: [" + distortion + "]\n";
+  };
+  EXPECT_THAT(error_of(yml("900,2,640,0,900,480,0,0,1", "0"), "a.yml"), testing::HasSubstr("skew"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0,0,0,0,0,0,0,0,0.1"), "a.yml"),
+              testing::HasSubstr("thin prism"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,x,480,0,0,1", "0"), "a.yml"),
+              testing::StartsWith("a.yml:1: camera_matrix holds 'x'"));
+  EXPECT_THAT(error_of(yml("-900,0,640,0,900,480,0,0,1", "0"), "a.yml"),
+              testing::HasSubstr("focal length of -900; expected 1 to 1e6 pixels"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "image_width: 1280\n", "a.yml"),
+              testing::HasSubstr("only one of image_width"));
+  EXPECT_THAT(error_of(yml("900,0,640,0,900,480,0,0,1", "0") + "fisheye_model: maybe\n", "a.yml"),
+              testing::StartsWith("a.yml:3: fisheye_model is 'maybe'"));
+  EXPECT_THAT(error_of("<a", "a.xml"), testing::HasSubstr("is not XML"));
+  EXPECT_THAT(error_of("", "a.yml"), testing::HasSubstr("no camera_matrix"));
+  EXPECT_THAT(error_of("", "a.txt"), testing::HasSubstr("is no calibration file"));
+}
+
+}  // namespace
+}  // namespace airtruth::lens

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/motion.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+#include <unistd.h>
+
+#include "camera/motion/cache.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/median.h"
+#include "foundation/base/seed.h"
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kWidth = 480;
+constexpr int kHeight = 360;
+
+// A large textured wall, of which each frame sees a part through a known homography.
+cv::Mat wall() {
+  cv::Mat sum(900, 1200, CV_32F, cv::Scalar(0));
+  Random random = Seed(11).stream("wall");
+  for (int octave = 0; octave < 6; ++octave) {
+    const int cells = 10 << octave;
+    cv::Mat noise(cells, cells, CV_32F);
+    for (int i = 0; i < cells * cells; ++i)
+      noise.at<float>(i / cells, i % cells) = static_cast<float>(random.normal());
+    cv::Mat large;
+    cv::resize(noise, large, sum.size(), 0, 0, cv::INTER_CUBIC);
+    sum += large * std::pow(0.62, octave);
+  }
+  cv::Mat grey;
+  sum.convertTo(grey, CV_8U, 34, 118);
+  return grey;
+}
+
+// Where frame k lies: drift, shake, roll and a little perspective, in OpenCV's pixels.
+Homography frame_from_wall(double k) {
+  Homography h = Homography::Identity();
+  const double a = 0.01 * std::sin(0.3 * k);
+  h << std::cos(a), -std::sin(a), -340 - 0.8 * k + 5 * std::sin(1.1 * k), std::sin(a), std::cos(a),
+      -260 + 4 * std::cos(1.7 * k), 1.5e-5 * std::sin(0.2 * k), 1e-5 * std::cos(0.37 * k), 1;
+  return h;
+}
+
+image::Picture frame(const cv::Mat& texture, double k, double noise = 1.5) {
+  const Homography h = frame_from_wall(k);
+  cv::Mat seen;
+  const cv::Matx33d m(
+      h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1), h(2, 2));
+  cv::warpPerspective(texture, seen, m, {kWidth, kHeight}, cv::INTER_CUBIC);
+  image::Picture picture = image::make_picture(kWidth, kHeight, {image::Chroma::kNone});
+  Random random = Seed(5).stream("noise", static_cast<std::uint64_t>(k * 7));
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(
+          std::clamp(seen.at<unsigned char>(y, x) + noise * random.normal(), 0.0, 255.0));
+  return picture;
+}
+
+Homography ours(const Homography& cv) {
+  Homography t = Homography::Identity();
+  t(0, 2) = t(1, 2) = 0.5;
+  return t * cv * t.inverse();
+}
+
+double corner_error(const Homography& a, const Homography& b) {
+  double sum = 0;
+  for (const Pixel& p : {Pixel(0, 0), Pixel(kWidth, 0), Pixel(0, kHeight), Pixel(kWidth, kHeight)})
+    sum += (apply(a, p) - apply(b, p)).norm();
+  return sum / 4;
+}
+
+image::Picture blank() {
+  image::Picture picture = image::make_picture(kWidth, kHeight, {image::Chroma::kNone});
+  for (int y = 0; y < kHeight; ++y)
+    std::fill_n(picture.planes[0].row(y), kWidth, std::uint8_t{120});
+  return picture;
+}
+
+TEST(Estimator, FollowsAKnownMotionBesideMovingClutter) {
+  const cv::Mat texture = wall();
+  Estimator estimator(kWidth, kHeight, {});
+  Random random(9);
+  std::vector<double> step_errors;
+  Homography last = Homography::Identity();
+  const Homography first = ours(frame_from_wall(0));
+  double final_error = 0;
+  for (int k = 0; k < 60; ++k) {
+    image::Picture picture = frame(texture, k);
+    // A fifth of the picture is a patch of another wall that drifts by itself.
+    const image::Picture other = frame(texture, 200 + 3.0 * k, 0);
+    for (int y = 40; y < 200; ++y)
+      std::copy_n(other.planes[0].row(y) + 100, 216, picture.planes[0].row(y) + 40);
+    const FrameMotion motion = estimator.next(picture, k / 30.0);
+    ASSERT_EQ(motion.state, k == 0 ? State::kReference : State::kMeasured) << k;
+    const Homography truth = ours(frame_from_wall(k)) * first.inverse();
+    if (k > 0) {
+      const Homography measured_step = motion.frame_from_reference * last.inverse();
+      const Homography true_step =
+          ours(frame_from_wall(k)) * ours(frame_from_wall(k - 1)).inverse();
+      step_errors.push_back(corner_error(measured_step, true_step));
+    }
+    last = motion.frame_from_reference;
+    final_error = corner_error(motion.frame_from_reference, truth);
+  }
+  const double median_px = median(step_errors);
+  RecordProperty("median_step_error_px", std::to_string(median_px));
+  EXPECT_LT(median_px, 0.3);
+  EXPECT_LT(final_error, 2.0);
+}
+
+TEST(Estimator, SaysWhenItDoesNotKnow) {
+  const cv::Mat texture = wall();
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 5; ++k) estimator.next(frame(texture, k), k / 30.0);
+  const FrameMotion before = estimator.next(frame(texture, 5), 5 / 30.0);
+  const FrameMotion bridged = estimator.next(blank(), 6 / 30.0);
+  EXPECT_EQ(bridged.state, State::kBridged);
+  EXPECT_EQ(bridged.inliers, 0);
+  EXPECT_TRUE(bridged.frame_from_reference.isApprox(
+      before.frame_from_reference));  // carried on, not identity
+  EXPECT_FALSE(bridged.frame_from_reference.isIdentity(1e-3));
+  // Linked again across the gap.
+  const FrameMotion after = estimator.next(frame(texture, 7), 7 / 30.0);
+  EXPECT_EQ(after.state, State::kMeasured);
+  EXPECT_LT(corner_error(after.frame_from_reference,
+                         ours(frame_from_wall(7)) * ours(frame_from_wall(0)).inverse()),
+            1.0);
+  EXPECT_EQ(estimator.next(frame(texture, 8), 8 / 30.0, true).state, State::kBridged);  // damaged
+}
+
+TEST(Estimator, FlagsACut) {
+  const cv::Mat texture = wall();
+  cv::Mat other;
+  cv::flip(texture, other, -1);
+  cv::bitwise_not(other, other);
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 4; ++k) estimator.next(frame(texture, k), k / 30.0);
+  EXPECT_EQ(estimator.next(frame(other, 4), 4 / 30.0).state, State::kCut);
+  EXPECT_EQ(estimator.next(frame(other, 5), 5 / 30.0).state, State::kMeasured);
+}
+
+// Of skies alone there are no corners whose loss would tell.
+TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 4; ++k) estimator.next(blank(), k / 30.0);
+  EXPECT_EQ(estimator.next(blank(), 4 / 30.0).state, State::kBridged);
+  EXPECT_EQ(estimator.next(blank(), 5 / 30.0, false, true).state, State::kCut);
+  EXPECT_EQ(estimator.next(blank(), 6 / 30.0).state, State::kBridged);
+}
+
+// Something bright that suddenly covers a third of the view changes the picture as a cut does; the
+// rest of it goes on.
+TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
+  const cv::Mat texture = wall();
+  Estimator estimator(kWidth, kHeight, {});
+  for (int k = 0; k < 4; ++k) estimator.next(frame(texture, k), k / 30.0);
+  image::Picture covered = frame(texture, 4);
+  for (int y = 0; y < kHeight; ++y)
+    std::fill_n(covered.planes[0].row(y), kWidth / 3, std::uint8_t{230});
+  const FrameMotion after = estimator.next(covered, 4 / 30.0, false, true);
+  EXPECT_EQ(after.state, State::kMeasured);
+  EXPECT_LT(corner_error(after.frame_from_reference,
+                         ours(frame_from_wall(4)) * ours(frame_from_wall(0)).inverse()),
+            1.5);
+}
+
+// Two shots, each with its shake and drift: what is smoothed of each is what it is by itself.
+TEST(Smoothed, DoesNotRunAcrossACut) {
+  const cv::Mat texture = wall();
+  cv::Mat other;
+  cv::flip(texture, other, 0);
+  Options options;
+  options.smoothing_s = 0.3;
+  constexpr int kShot = 20;
+  Estimator both(kWidth, kHeight, options), second(kWidth, kHeight, options);
+  std::vector<FrameMotion> spliced, alone;
+  for (int k = 0; k < 2 * kShot; ++k) {
+    const double time_s = k / 30.0;
+    const image::Picture picture = frame(k < kShot ? texture : other, k);
+    spliced.push_back(both.next(picture, time_s, false, k == kShot));
+    if (k >= kShot) alone.push_back(second.next(picture, time_s));
+  }
+  ASSERT_EQ(spliced[kShot].state, State::kCut);
+  const auto steady = smoothed(spliced, options), steady_alone = smoothed(alone, options);
+  for (int k = 0; k < kShot; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    EXPECT_LT(
+        corner_error(steady[i + kShot].frame_from_reference, steady_alone[i].frame_from_reference),
+        0.05)
+        << k;
+  }
+}
+
+TEST(Estimator, IgnoresTheOwnAircraft) {
+  const cv::Mat texture = wall();
+  image::Mask mask{kWidth, kHeight, std::vector<unsigned char>(kWidth * kHeight, 255)};
+  const image::Picture own = frame(texture, 300, 0);  // stands still in every frame
+  const int top = kHeight * 55 / 100;
+  for (int y = top; y < kHeight; ++y)
+    std::fill_n(mask.free.begin() + y * kWidth, kWidth, static_cast<unsigned char>(0));
+  Estimator estimator(kWidth, kHeight, {}, &mask);
+  FrameMotion motion;
+  for (int k = 0; k < 20; ++k) {
+    image::Picture picture = frame(texture, k);
+    for (int y = top; y < kHeight; ++y)
+      std::copy_n(own.planes[0].row(y), kWidth, picture.planes[0].row(y));
+    motion = estimator.next(picture, k / 30.0);
+  }
+  EXPECT_EQ(motion.state, State::kMeasured);
+  EXPECT_LT(corner_error(motion.frame_from_reference,
+                         ours(frame_from_wall(19)) * ours(frame_from_wall(0)).inverse()),
+            2.0);
+}
+
+TEST(Estimator, TwoRunsAgreeToTheBit) {
+  const cv::Mat texture = wall();
+  std::vector<std::string> runs;
+  for (int threads : {1, 2}) {
+    cv::setNumThreads(threads);
+    Estimator estimator(kWidth, kHeight, {});
+    std::vector<FrameMotion> all;
+    for (int k = 0; k < 8; ++k) all.push_back(estimator.next(frame(texture, k), k / 30.0));
+    runs.push_back(csv_from_motion(all));
+  }
+  cv::setNumThreads(-1);
+  EXPECT_EQ(runs[0], runs[1]);
+}
+
+std::vector<FrameMotion> shaking(double drift_px, double shake_px, int count) {
+  std::vector<FrameMotion> motion;
+  for (int k = 0; k < count; ++k) {
+    FrameMotion m;
+    m.frame = k;
+    m.time_s = k / 30.0;
+    m.frame_from_reference(0, 2) = drift_px * k + shake_px * std::sin(2 * kPi * 7.5 * m.time_s);
+    m.state = k == 0 ? State::kReference : State::kMeasured;
+    motion.push_back(m);
+  }
+  return motion;
+}
+
+TEST(Smoothed, KeepsTheShakeAndDropsTheDrift) {
+  Options options;
+  options.smoothing_s = 0.5;
+  const auto still = smoothed(shaking(4, 0, 120), options);
+  EXPECT_LT(std::abs(apply(still[60].frame_from_reference, {100, 100}).x() - 100), 1e-6);
+  const auto shake = smoothed(shaking(4, 6, 120), options);
+  for (int k = 40; k < 80; ++k)
+    EXPECT_NEAR(
+        apply(shake[static_cast<std::size_t>(k)].frame_from_reference, {100, 100}).x() - 100,
+        6 * std::sin(2 * kPi * 7.5 * k / 30.0),
+        0.35);
+}
+
+TEST(Csv, GivesTheSameNumbersBack) {
+  auto motion = shaking(0.1, 1.0 / 3, 4);
+  motion[2].state = State::kBridged;
+  motion[3].state = State::kCut;
+  motion[3].rms_px = 0.1 + 0.2;
+  const std::string text = csv_from_motion(motion);
+  EXPECT_EQ(csv_from_motion(motion_from_csv(text, "m.csv")), text);
+  EXPECT_THROW(motion_from_csv("frame\n", "m.csv"), Error);
+  EXPECT_THROW(motion_from_csv(text + "1,2\n", "m.csv"), Error);
+  EXPECT_THROW(motion_from_csv(text.substr(0, text.size() - 4) + "cat\n", "m.csv"), Error);
+}
+
+TEST(Cache, TrustsOnlyWhatIsWhole) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("airtruth_cache_" + std::to_string(::getpid()));
+  CacheKey key;
+  key.video_sha256 = "a";
+  EXPECT_FALSE(cached(folder, key));
+  store(folder, key, shaking(1, 1, 5));
+  ASSERT_TRUE(cached(folder, key));
+  EXPECT_EQ(cached(folder, key)->size(), 5u);
+  CacheKey other = key;
+  other.options.ransac_px = 2;
+  EXPECT_FALSE(cached(folder, other));
+  const std::string text = read_file(folder / key.file_name());
+  write_file(folder / key.file_name(), text.substr(0, text.size() - 30));
+  EXPECT_FALSE(cached(folder, key));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace airtruth::motion

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/rotation_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/SVD>
+
+#include "foundation/base/seed.h"
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kTrials = 300;
+constexpr int kRefinements = 12;
+constexpr double kMinTurnShare = 0.15;
+constexpr double kMinSpreadRad = 0.02;  // of the inliers about their own middle, rms
+constexpr double kShortestBaseRad = 0.05;
+constexpr int kFarSteps = 4;  // of kRefinements, in which near points do not count
+
+// From two directions: the axes of their common plane, before and after (Black 1964, "TRIAD").
+std::optional<Quaternion> from_pair(const Bearings& p, const Bearings& q) {
+  const auto axes = [](const Vector3& a, const Vector3& b) -> std::optional<Matrix3> {
+    const Vector3 normal = a.cross(b);
+    const double length = normal.norm();
+    if (length < kShortestBaseRad) return std::nullopt;
+    const Vector3 middle = (a + b).normalized();
+    Matrix3 m;
+    m << middle, normal / length, middle.cross(normal / length);
+    return m;
+  };
+  const auto before = axes(p.in_reference, q.in_reference);
+  const auto after = axes(p.in_cam, q.in_cam);
+  if (!before || !after) return std::nullopt;
+  return Quaternion(Matrix3(*after * before->transpose()));
+}
+
+double miss(const Matrix3& r, const Bearings& b) {
+  return (b.in_cam - r * b.in_reference).squaredNorm();
+}
+
+int count_within(const std::vector<Bearings>& bearings, const Matrix3& r, double limit_rad) {
+  int count = 0;
+  for (const Bearings& b : bearings) count += miss(r, b) <= limit_rad * limit_rad ? 1 : 0;
+  return count;
+}
+
+std::vector<Bearings> far_of(const std::vector<Bearings>& bearings) {
+  std::vector<Bearings> result;
+  for (const Bearings& b : bearings)
+    if (b.near.is_far) result.push_back(b);
+  return result;
+}
+
+// The best of kTrials pairs; empty where fewer than min_inliers, or kMinTurnShare of all, agree.
+std::optional<Matrix3> consensus(const std::vector<Bearings>& bearings,
+                                 double limit_rad,
+                                 int min_inliers,
+                                 std::uint64_t seed) {
+  const std::size_t n = bearings.size();
+  if (n < 2 || static_cast<int>(n) < min_inliers) return std::nullopt;
+  Random random(seed);
+  int most = 0;
+  Matrix3 best = Matrix3::Identity();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto one = static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    const auto other = static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    const auto rotation = from_pair(bearings[one], bearings[other]);
+    if (!rotation) continue;
+    const Matrix3 r = rotation->toRotationMatrix();
+    const int count = count_within(bearings, r, limit_rad);
+    if (count > most) most = count, best = r;
+  }
+  if (most < min_inliers || most < kMinTurnShare * static_cast<double>(n)) return std::nullopt;
+  return best;
+}
+
+double spread_of(const std::vector<Bearings>& bearings, const std::vector<bool>& chosen) {
+  Vector3 middle = Vector3::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < bearings.size(); ++i)
+    if (chosen[i]) middle += bearings[i].in_cam, ++count;
+  if (count == 0) return 0;
+  middle.normalize();
+  double squares = 0;
+  for (std::size_t i = 0; i < bearings.size(); ++i)
+    if (chosen[i]) squares += (bearings[i].in_cam - middle).squaredNorm();
+  return std::sqrt(squares / count);
+}
+
+}  // namespace
+
+Quaternion best_rotation(const std::vector<Bearings>& bearings,
+                         const std::vector<double>& weights) {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < bearings.size(); ++i)
+    sum += weights[i] * bearings[i].in_cam * bearings[i].in_reference.transpose();
+  const Eigen::JacobiSVD<Matrix3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3 sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  return Quaternion(Matrix3(svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose()))
+      .normalized();
+}
+
+std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
+                                        double limit_rad,
+                                        int min_inliers,
+                                        std::uint64_t seed) {
+  const std::size_t n = bearings.size();
+  const std::vector<Bearings> far = far_of(bearings);
+  std::optional<Matrix3> start;
+  const bool some_near = far.size() < n;
+  if (some_near && spread_of(far, std::vector<bool>(far.size(), true)) >= kMinSpreadRad)
+    start = consensus(far, limit_rad, 2 * min_inliers, seed);
+  const bool by_far = start.has_value();
+  if (!start) start = consensus(bearings, limit_rad, min_inliers, seed);
+  if (!start) return std::nullopt;
+
+  RotationFit fit;
+  fit.cam_from_reference = Quaternion(*start);
+  std::vector<double> weights(n);
+  double scale = limit_rad;  // narrows to what the points themselves are worth
+  const double noise_rad = limit_rad / 4;
+  for (int step = 0; step < kRefinements; ++step) {
+    const Matrix3 r = fit.cam_from_reference.toRotationMatrix();
+    Parallax parallax(noise_rad);
+    if (by_far)
+      for (const Bearings& b : bearings) parallax.add(miss(r, b), b.near);
+    const double variance = parallax.variance();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Nearness& near = bearings[i].near;
+      weights[i] = by_far && step < kFarSteps && !near.is_far
+                       ? 0
+                       : weight_of(miss(r, bearings[i]),
+                                   noise_rad,
+                                   scale,
+                                   limit_rad,
+                                   variance * near.value * near.value);
+    }
+    fit.cam_from_reference = best_rotation(bearings, weights);
+    scale = std::max(0.7 * scale, limit_rad / 4);
+  }
+  const Matrix3 r = fit.cam_from_reference.toRotationMatrix();
+  fit.is_inlier.assign(n, false);
+  double squares = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (miss(r, bearings[i]) > limit_rad * limit_rad) continue;
+    fit.is_inlier[i] = true;
+    ++fit.inliers;
+    squares += miss(r, bearings[i]);
+  }
+  if (fit.inliers < min_inliers || spread_of(bearings, fit.is_inlier) < kMinSpreadRad)
+    return std::nullopt;
+  fit.rms_rad = std::sqrt(squares / fit.inliers);
+  return fit;
+}
+
+}  // namespace airtruth::motion

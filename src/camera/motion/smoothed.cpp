@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "camera/motion/motion.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::motion {
+namespace {
+
+Homography unit_determinant(const Homography& h) {
+  // The cube root keeps the sign: h33 = 1 makes -H of an H that has turned past a right angle.
+  const double d = h.determinant();
+  return d != 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
+}
+
+// Consecutive frames: b_from_a of neighbours, from the composed maps.
+Homography step(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+  return unit_determinant(motion[to].frame_from_reference *
+                          motion[from].frame_from_reference.inverse());
+}
+
+// How frame `to` is turned against `from`, as a rotation vector.
+Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+  const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
+  return turned.angle() * turned.axis();
+}
+
+// The same on the group of rotations, where every frame of the window can be held against k at
+// once.
+void smooth_rotations(const std::vector<FrameMotion>& against_first,
+                      double sigma_s,
+                      std::vector<FrameMotion>& result) {
+  for (std::size_t k = 0; k < against_first.size(); ++k) {
+    Vector3 sum = Vector3::Zero();
+    double total = 1;
+    const auto add = [&](std::size_t i) {
+      const double dt = (against_first[i].time_s - against_first[k].time_s) / sigma_s;
+      if (std::abs(dt) > 2.5) return false;
+      const double weight = std::exp(-0.5 * dt * dt);
+      sum += weight * turn(against_first, k, i);
+      total += weight;
+      return true;
+    };
+    for (std::size_t i = k + 1; i < against_first.size(); ++i)
+      if (against_first[i].state == State::kCut || !add(i)) break;
+    for (std::size_t i = k; i > 0; --i)
+      if (against_first[i].state == State::kCut || !add(i - 1)) break;
+    const Vector3 steady = sum / total;
+    const double angle = steady.norm();
+    result[k].rotation =
+        angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle)) : Quaternion::Identity();
+  }
+}
+
+}  // namespace
+
+// Around frame k its neighbours i are seen through i_from_k. The steady camera is the one to which
+// the weighted mean of log(i_from_k) is zero: steady_from_k = exp(sum w_i log(i_from_k)), a
+// first-order mean on the group of homographies (Fletcher 2004); the frame's shake is the inverse.
+// Only maps between frames close in time are used, so that a long turn never meets a homography
+// that is no longer one, and nothing is smoothed across a cut.
+std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
+                                  const Options& options) {
+  check(options.smoothing_s > 0, "smoothing takes time");
+  std::vector<FrameMotion> result = against_first;
+  const std::size_t n = against_first.size();
+  const double sigma = options.smoothing_s;
+  if (n > 0 && against_first.front().rotation) {
+    smooth_rotations(against_first, sigma, result);
+    return result;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    Homography sum = Homography::Zero();
+    double total = 1;
+    const auto walk = [&](int direction) {
+      Homography i_from_k = Homography::Identity();
+      std::size_t i = k;
+      while (direction > 0 ? i + 1 < n : i > 0) {
+        const std::size_t next = direction > 0 ? i + 1 : i - 1;
+        if (against_first[std::max(i, next)].state == State::kCut) return;
+        const double dt = (against_first[next].time_s - against_first[k].time_s) / sigma;
+        if (std::abs(dt) > 2.5) return;
+        i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
+        const double weight = std::exp(-0.5 * dt * dt);
+        // log of a matrix near the identity, to second order in the step from it: enough within the
+        // window.
+        const Homography e = i_from_k - Homography::Identity();
+        const Homography log = e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3)
+                                              : Homography(i_from_k.log());
+        if (!log.allFinite()) return;
+        sum += weight * log;
+        total += weight;
+        i = next;
+      }
+    };
+    walk(+1);
+    walk(-1);
+    const Homography steady_from_k = (sum / total).exp();
+    const Homography shake = steady_from_k.inverse();
+    result[k].frame_from_reference =
+        shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());
+  }
+  return result;
+}
+
+}  // namespace airtruth::motion

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/build.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "dataset/build/backgrounds.h"
+#include "dataset/build/manifest.h"
+#include "dataset/catalogue/check.h"
+#include "dataset/catalogue/folder.h"
+#include "foundation/base/error.h"
+#include "foundation/base/file_lock.h"
+#include "foundation/base/files.h"
+#include "foundation/base/pattern.h"
+#include "sequence/sequence/sequence.h"
+#include "sequence/sequence/stopwatch.h"
+
+namespace airtruth::dataset {
+namespace {
+
+// One build: its share of the catalogue, on several threads.
+class Work {
+ public:
+  Work(const Catalogue& catalogue, const Folder& folder, const BuildOptions& options)
+      : catalogue_(catalogue), folder_(folder), options_(options), expansion_(catalogue) {
+    jobs_ = options.jobs > 0 ? options.jobs
+                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  }
+
+  BuildSummary run() {
+    count();
+    jobs_ = static_cast<int>(std::clamp<std::int64_t>(missing_, 1, jobs_));
+    prepare_backgrounds();
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < std::min<std::int64_t>(jobs_, missing_); ++i)
+      threads.emplace_back([this] { make_sequences(); });
+    threads.clear();  // waits
+    if (options_.stop.stop_requested()) throw Interrupted();
+    std::sort(summary_.failures.begin(),
+              summary_.failures.end(),
+              [](const Failure& a, const Failure& b) { return a.name < b.name; });
+    return summary_;
+  }
+
+ private:
+  bool is_wanted(const Item& item) const { return matches(options_.only, item.name); }
+
+  // What there is to do, and which backgrounds and how much of them it takes.
+  void count() {
+    needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
+    is_used_.assign(catalogue_.backgrounds.size(), false);
+    bool any = false;
+    for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
+      const Item item = expansion_.at(i);
+      if (!is_wanted(item)) continue;
+      any = true;
+      ++total_;
+      if (folder_.holds(item.name)) {
+        ++summary_.kept;
+        continue;
+      }
+      ++missing_;
+      is_used_[item.background] = true;
+      // A clip that begins anywhere is measured from its own first frame, as it is made.
+      if (item.rule != nullptr && item.rule->starts_at_random) continue;
+      auto& needed = needed_[item.background];
+      needed =
+          item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
+    }
+    if (!any && options_.only != "*")
+      throw Error("no sequence of the catalogue fits '" + options_.only + "'");
+  }
+
+  void prepare_backgrounds() {
+    files_.resize(catalogue_.backgrounds.size());
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!is_used_[i]) continue;
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const WaitingLock lock(
+          folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
+      files_[i] = prepare(catalogue_.backgrounds[i], folder_, options_);
+      measure(i);
+    }
+  }
+
+  // The motion and the camera of a background, once for all the sequences over it.
+  void measure(std::size_t i) {
+    scene::Scene scene = scene_over(catalogue_, i);
+    scene.background.video = files_[i].video;
+    scene.background.mask = files_[i].mask;
+    scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
+    if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
+    sequence::Options how;
+    how.cache = folder_.cache();
+    how.stop = options_.stop;
+    how.warn = options_.warn;
+    const std::string& name = catalogue_.backgrounds[i].name;
+    std::string stage = "measuring the motion of " + name;
+    how.progress = [&](const sequence::Progress& p) {
+      report({p.frames_done, p.frames_total, stage});
+    };
+    if (needed_[i]) sequence::measure_ahead(scene, how);
+    stage = "measuring the camera of " + name;
+    try {
+      sequence::calibrate_ahead(scene, how);
+    } catch (const Error&) {  // each sequence over this background says so; the others are made
+    }
+  }
+
+  void make_sequences() {
+    for (;;) {
+      if (options_.stop.stop_requested()) return;
+      const std::int64_t i = options_.share + next_.fetch_add(1) * options_.shares;
+      if (i >= expansion_.size()) return;
+      Item item = expansion_.at(i);
+      if (is_wanted(item) && !folder_.holds(item.name)) make(item);
+    }
+  }
+
+  void make(Item& item) {
+    sequence::Options how;
+    how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
+    how.cache = folder_.cache();
+    how.stop = options_.stop;
+    how.warn = [&](const std::string& message) {
+      const std::lock_guard lock(mutex_);
+      warn(options_.warn, item.name + ": " + message);
+    };
+    try {
+      place(item, catalogue_, files_[item.background]);
+      const sequence::Summary done = sequence::render(item.scene, folder_.sequences(), how);
+      const std::lock_guard lock(mutex_);
+      ++summary_.made;
+      summary_.frames += done.frames;
+    } catch (const Interrupted&) {
+      return;
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      summary_.failures.push_back({item.name, error.what()});
+    }
+    const std::lock_guard lock(mutex_);
+    const auto failed = static_cast<std::int64_t>(summary_.failures.size());
+    if (options_.progress)
+      options_.progress({summary_.made + summary_.kept + failed, total_, "building"});
+  }
+
+  void report(const BuildProgress& progress) {
+    const std::lock_guard lock(mutex_);
+    if (options_.progress) options_.progress(progress);
+  }
+
+  const Catalogue& catalogue_;
+  const Folder& folder_;
+  const BuildOptions& options_;
+  Expansion expansion_;
+  int jobs_ = 1;
+  std::int64_t total_ = 0;
+  std::int64_t missing_ = 0;
+  std::vector<bool> is_used_;  // each background
+  // Of each background: frames whose motion is measured ahead, 0 to its end; empty: none.
+  std::vector<std::optional<std::int64_t>> needed_;
+  std::vector<BackgroundFiles> files_;
+  std::atomic<std::int64_t> next_ = 0;
+  std::mutex mutex_;
+  BuildSummary summary_;
+};
+
+}  // namespace
+
+BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
+  check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
+  const sequence::Stopwatch watch;
+  // Records of sequences name their backgrounds in full: virtual flights lie in the data set.
+  require_utf8(fs::absolute(out));
+  for (const auto& [name, video] : options.videos) {
+    require_utf8(fs::absolute(video));
+    const bool known = std::any_of(catalogue.backgrounds.begin(),
+                                   catalogue.backgrounds.end(),
+                                   [&, n = name](const Background& b) { return b.name == n; });
+    if (!known)
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+  }
+  check_sources(catalogue, options.videos);
+  const Folder folder = open_folder(catalogue, out);
+  const FolderLock lock(folder, options.shares > 1);
+  BuildSummary summary = Work(catalogue, folder, options).run();
+  write_failures(folder.failed(options.share, options.shares), summary.failures);
+  // Of several workers none knows that it is the last: `finish` is theirs.
+  if (options.shares == 1) summary.complete = write_manifest(catalogue, folder);
+  summary.seconds = watch.seconds();
+  return summary;
+}
+
+bool finish(const fs::path& root) {
+  const Folder folder{root};
+  const Catalogue catalogue = read_catalogue(folder.catalogue());
+  const FolderLock lock(folder, false);
+  return write_manifest(catalogue, folder);
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "dataset/build/build.h"
+#include "dataset/build/verify.h"
+#include "dataset/catalogue/small_catalogue.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_catalogue(text, "c.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Catalogue, AProductMakesEveryCombinationOnce) {
+  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  const Expansion expansion(catalogue);
+  ASSERT_EQ(expansion.size(), 4);
+  std::set<std::string> names;
+  for (std::int64_t i = 0; i < 4; ++i) names.insert(expansion.at(i).name);
+  EXPECT_EQ(names,
+            (std::set<std::string>{
+                "sky-across-b737", "sky-across-c172", "more-across-b737", "more-across-c172"}));
+  EXPECT_EQ(expansion.at(0).frame_count, 8);  // the flight's
+}
+
+TEST(Catalogue, WhatItNamesMustBeThere) {
+  std::string text = kCatalogue;
+  const auto with = [&](const std::string& more) { return error_of(text + more); };
+  EXPECT_THAT(with("[[sequence]]\nname = \"a\"\nbackground = \"sjy\"\ntrajectory = "
+                   "\"across\"\naircraft = \"b737\"\n"),
+              HasSubstr("did you mean 'sky'?"));
+  EXPECT_THAT(with("[[sequence]]\nname = \"a\"\nbackground = \"sky\"\ntrajectory = "
+                   "\"across\"\naircraft = \"b737\"\n"
+                   "[[sequence]]\nname = \"a\"\nbackground = \"sky\"\ntrajectory = "
+                   "\"across\"\naircraft = \"c172\"\n"),
+              HasSubstr("two sequences are named 'a'"));
+  EXPECT_THAT(with("[[sequense]]\n"), HasSubstr("sequence"));
+  EXPECT_THAT(with("[[random]]\naircraft = [\"nosuch/*\"]\n"),
+              HasSubstr("no aircraft fits 'nosuch/*'"));
+  EXPECT_THAT(with("[[random]]\nname = \"same\"\naircraft = [\"738/*\"]\n"), HasSubstr("{index}"));
+  EXPECT_THAT(error_of("name = \"empty\"\n"), HasSubstr("makes no sequence"));
+}
+
+TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
+  const Catalogue catalogue = parse_catalogue(
+      std::string(kCatalogue) +
+          "[[random]]\ncount = 1000000\nframe_count = 30\naircraft = [\"738/*\", \"c172/*\"]\n",
+      "c.toml");
+  const Expansion expansion(catalogue);
+  EXPECT_EQ(expansion.size(), 1000004);
+  const Item last = expansion.at(1000003);
+  EXPECT_EQ(last.name, "r999999");
+  // The same whoever asks, in whatever order.
+  const Item again = Expansion(catalogue).at(1000003);
+  EXPECT_EQ(again.scene.intruders[0].waypoints_ned_m, last.scene.intruders[0].waypoints_ned_m);
+}
+
+// A drawn intruder meets the asked range in the asked direction at some moment of the clip.
+TEST(Catalogue, DrawnIntrudersComeIntoTheRangesThatWereAskedFor) {
+  const Catalogue catalogue =
+      parse_catalogue(std::string(kCatalogue) +
+                          "[[random]]\ncount = 200\nframe_count = 90\naircraft = "
+                          "[\"738/*\"]\nrange_m = [300, 500]\nazimuth_deg = [-10, 10]\n"
+                          "elevation_deg = [2, 8]\nspeed_mps = [50, 60]\n",
+                      "c.toml");
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 4; i < expansion.size(); ++i) {
+    const Item item = expansion.at(i);
+    const auto& points = item.scene.intruders[0].waypoints_ned_m;
+    const double speed = *item.scene.intruders[0].speed_mps;
+    EXPECT_GE(speed, 50);
+    EXPECT_LT(speed, 60);
+    const Vector3 along = (points[1] - points[0]).normalized();
+    bool met = false;
+    for (double t = 0; t <= 3 && !met; t += 0.002) {
+      const Vector3 at = points[0] + t * speed * along - Vector3(0, 0, -150);
+      const double azimuth = degrees(std::atan2(at.y(), at.x()));
+      const double elevation = degrees(std::asin(-at.z() / at.norm()));
+      met = at.norm() > 299 && at.norm() < 501 && std::abs(azimuth) < 10.1 && elevation > 1.9 &&
+            elevation < 8.1;
+    }
+    EXPECT_TRUE(met) << item.name;
+  }
+}
+
+class Build : public testing::Test {
+ protected:
+  Build() : root_(fs::temp_directory_path() / ("airtruth_dataset_" + std::to_string(::getpid()))) {
+    fs::create_directories(root_);
+  }
+  ~Build() override { fs::remove_all(root_); }
+
+  // SHA-256 of every file that the sequences and the manifest hold, by name.
+  static std::map<std::string, std::string> bytes_of(const fs::path& folder) {
+    std::map<std::string, std::string> result;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = fs::relative(entry.path(), folder).string();
+      if (entry.is_regular_file() &&
+          (name.starts_with("sequences/") || name.starts_with("manifest/")) &&
+          !name.ends_with("sequence.json"))
+        result[name] = sha256_of_file(entry.path());
+    }
+    return result;
+  }
+
+  fs::path root_;
+};
+
+TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
+  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  BuildOptions options;
+  options.jobs = 1;
+  const BuildSummary first = build(catalogue, root_ / "one", options);
+  EXPECT_EQ(first.made, 4);
+  EXPECT_TRUE(first.complete);
+  options.jobs = 2;
+  options.only = "sky*";
+  const BuildSummary part = build(catalogue, root_ / "two", options);
+  EXPECT_EQ(part.made, 2);
+  EXPECT_FALSE(part.complete);
+  EXPECT_EQ(dataset::status(root_ / "two").missing.size(), 2u);
+  options.only = "*";
+  const BuildSummary rest = build(catalogue, root_ / "two", options);
+  EXPECT_EQ(rest.made, 2);
+  EXPECT_EQ(rest.kept, 2);
+  EXPECT_TRUE(rest.complete);
+  EXPECT_EQ(bytes_of(root_ / "one").size(), 4u * 4u + 1u);
+  const auto one = bytes_of(root_ / "one");
+  for (const auto& [name, hash] : bytes_of(root_ / "two"))
+    if (name.ends_with(".xml") || name.ends_with(".jsonl") || name.ends_with(".mkv")) {
+      if (!name.starts_with("manifest/")) {
+        EXPECT_EQ(hash, one.at(name)) << name;
+      }
+    }
+  EXPECT_TRUE(verify(root_ / "two", {}).faults.empty());
+}
+
+TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
+  const auto error = [&](const std::string& text) -> std::string {
+    try {
+      build(parse_catalogue(text, "c.toml"), root_ / "never", {});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  const std::string text = kCatalogue;
+  EXPECT_THAT(error(text + "[[aircraft]]\nname = \"none\"\naircraft = \"738/738-Ryanaair\"\n"),
+              testing::MatchesRegex(
+                  "c.toml:[0-9]+:12: unknown aircraft '738/738-Ryanaair'.*738-Ryanair.*"));
+  EXPECT_THAT(error(text + "[[background]]\nname = \"gone\"\nvideo = \"nowhere.mp4\"\nlens = { "
+                           "vertical_fov_deg = 60 }\n"),
+              HasSubstr("the video of background 'gone', nowhere.mp4, does not exist"));
+  EXPECT_THAT(error(text + "[[sequence]]\nname = \"sky-across-b737\"\nbackground = "
+                           "\"sky\"\ntrajectory = \"across\"\naircraft = \"b737\"\n"),
+              HasSubstr("two sequences are named 'sky-across-b737'"));
+  EXPECT_FALSE(fs::exists(root_ / "never"));
+}
+
+TEST_F(Build, OneBadSequenceDoesNotStopTheOthers) {
+  std::string text = kCatalogue;
+  write_file(root_ / "broken.ac", "this is no model");
+  text += "[[aircraft]]\nname = \"none\"\naircraft = \"" + (root_ / "broken.ac").string() + "\"\n";
+  const BuildSummary summary = build(parse_catalogue(text, "c.toml"), root_ / "bad", {});
+  EXPECT_EQ(summary.made, 4);
+  ASSERT_EQ(summary.failures.size(), 2u);
+  EXPECT_THAT(summary.failures[0].reason, HasSubstr("broken.ac"));
+  EXPECT_FALSE(summary.complete);
+  EXPECT_TRUE(fs::exists(root_ / "bad" / "failed.jsonl"));
+}
+
+TEST_F(Build, VerifyFindsWhatWasChanged) {
+  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  build(catalogue, root_ / "set", {});
+  const fs::path truth = root_ / "set" / "sequences" / "sky-across-b737" / "truth.jsonl";
+  const std::string text = read_file(truth);
+  write_file(truth, text.substr(0, text.size() / 2));
+  EXPECT_FALSE(verify(root_ / "set", {}).faults.empty());
+  write_file(truth, text);
+  EXPECT_TRUE(verify(root_ / "set", {}).faults.empty());
+}
+
+TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
+  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  BuildOptions little;
+  little.only = "sky-across-c172";
+  build(catalogue, root_ / "set", little);
+  const Catalogue other = parse_catalogue(std::string(kCatalogue) + "quality = 20\n", "c.toml");
+  EXPECT_THROW(build(other, root_ / "set", little), Error);
+}
+
+}  // namespace
+}  // namespace airtruth::dataset

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/manifest.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/count_in.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/version.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kLinesInAFile = 10'000;
+
+Json line_of(const Folder& folder, const Item& item) {
+  const fs::path file = folder.sequence(item.name) / "sequence.json";
+  try {
+    const Json record = Json::parse(read_file(file));
+    const Json& summary = record.at("summary");
+    return {{"index", item.index},
+            {"name", item.name},
+            {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
+            {"frames", count_in(summary, "frames", file)},
+            {"frames_with_an_intruder_visible",
+             count_in(summary, "frames_with_an_intruder_visible", file)},
+            {"outputs", record.at("outputs")}};
+  } catch (const Json::exception&) {
+    throw Error("is not a record that airtruth wrote", {file.string()});
+  }
+}
+
+}  // namespace
+
+void write_failures(const fs::path& file, const std::vector<Failure>& failures) {
+  std::error_code ignored;
+  if (failures.empty()) {
+    fs::remove(file, ignored);
+    return;
+  }
+  std::string text;
+  for (const Failure& failure : failures)
+    text += Json{{"name", failure.name}, {"reason", failure.reason}}.dump(
+                -1, ' ', false, Json::error_handler_t::replace) +
+            "\n";
+  write_file(file, text);
+}
+
+bool write_manifest(const Catalogue& catalogue, const Folder& folder) {
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < expansion.size(); ++i)
+    if (!folder.holds(expansion.at(i).name)) return false;
+  fs::create_directories(folder.manifest());
+  Json files = Json::array();
+  std::int64_t frames = 0;
+  for (std::int64_t first = 0; first < expansion.size(); first += kLinesInAFile) {
+    std::string text;
+    for (std::int64_t i = first; i < std::min(expansion.size(), first + kLinesInAFile); ++i) {
+      const Json line = line_of(folder, expansion.at(i));
+      frames += line.at("frames").get<std::int64_t>();
+      text += line.dump() + "\n";
+    }
+    const fs::path file = folder.manifest() / fmt::format("{:05}.jsonl", first / kLinesInAFile);
+    write_file(file, text);
+    files.push_back(
+        {{"name", fs::relative(file, folder.root).string()}, {"sha256", sha256_of(text)}});
+  }
+  const Json record = {{"format", "airtruth dataset 1"},
+                       {"version", kVersion},
+                       {"name", catalogue.name},
+                       {"seed", catalogue.seed},
+                       {"catalogue_sha256", sha256_of(catalogue.text)},
+                       {"sequences", expansion.size()},
+                       {"frames", frames},
+                       {"manifest", files}};
+  write_file(folder.record(), record.dump(2) + "\n");
+  return true;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/plan.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "dataset/build/backgrounds.h"
+#include "dataset/labelled/labelled_set.h"
+#include "foundation/base/error.h"
+#include "sequence/sequence/flyable.h"
+#include "sequence/sequence/sequence.h"
+#include "sequence/sequence/world.h"
+
+namespace airtruth::dataset {
+namespace {
+
+// What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
+constexpr double kCoreSecondsPerFrame = 0.034;
+constexpr double kCoreSecondsPerFlownFrame = 0.16;
+constexpr double kCoreSecondsPerCalibratedFrame = 0.126;
+constexpr double kBytesPerFrame = 15'000;
+constexpr double kBytesPerSequence = 580'000;  // preview.jpg
+constexpr double kUsualPixels = 1280.0 * 960.0;
+
+class Planner {
+ public:
+  explicit Planner(const Catalogue& catalogue) : catalogue_(catalogue) {
+    facts_.resize(catalogue.backgrounds.size());
+    is_used_.resize(catalogue.backgrounds.size(), false);
+  }
+
+  void add(const Item& item) {
+    const Facts& facts = facts_of(item.background);
+    const std::int64_t frames = frames_of(item, facts);
+    ++plan_.sequences;
+    plan_.frames += frames;
+    plan_.open_ended += frames == 0 ? 1 : 0;
+    plan_.core_s += static_cast<double>(frames) * facts.size * kCoreSecondsPerFrame;
+    plan_.bytes +=
+        static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
+    plan_.negatives += item.scene.intruders.empty() ? 1 : 0;
+    plan_.intruders += std::ssize(item.scene.intruders);
+    for (const scene::Intruder& intruder : item.scene.intruders)
+      ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
+    for (const Encounter& encounter : item.drawn.encounters) {
+      if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
+      if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
+    }
+    const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
+    fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
+  }
+
+  Plan result() { return std::move(plan_); }
+
+ private:
+  struct Facts {
+    BackgroundFiles files;
+    double size = 1;  // of a frame, in frames of 1280x960
+  };
+
+  // Of a background that is used; the first time, what it costs itself is counted.
+  const Facts& facts_of(std::size_t i) {
+    Facts& facts = facts_[i];
+    if (is_used_[i]) return facts;
+    is_used_[i] = true;
+    const Background& background = catalogue_.backgrounds[i];
+    const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+    if (flight != nullptr) {
+      facts.files.width = flight->width;
+      facts.files.height = flight->height;
+      facts.files.frames = flight->frame_count;
+      facts.files.frame_rate_hz = flight->frame_rate_hz;
+    } else {
+      facts.files.video = std::get<fs::path>(background.source);
+      add_facts(facts.files);
+    }
+    facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
+    const double whole = static_cast<double>(facts.files.frames) * facts.size;
+    if (flight != nullptr) plan_.core_s += whole * kCoreSecondsPerFlownFrame;
+    if (sequence::needs_calibration(scene_over(catalogue_, i))) {
+      plan_.calibration_s += whole * kCoreSecondsPerCalibratedFrame;
+      plan_.core_s += whole * kCoreSecondsPerCalibratedFrame;
+    }
+    return facts;
+  }
+
+  std::int64_t frames_of(const Item& item, const Facts& facts) const {
+    if (item.frame_count > 0) return item.frame_count;
+    const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
+    return std::max<std::int64_t>(0, facts.files.frames - first_frame);
+  }
+
+  // Paths that were drawn have their speed, climb and bank already, whatever their range becomes.
+  void fly(const Item& item, double clip_s) {
+    for (const scene::Intruder& intruder : item.scene.intruders) {
+      const std::string words =
+          sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, clip_s);
+      if (words.empty()) continue;
+      ++plan_.not_flyable;
+      if (plan_.not_flyable_words.size() < Plan::kMostNamed)
+        plan_.not_flyable_words.push_back(item.name + ": " + words);
+    }
+  }
+
+  const Catalogue& catalogue_;
+  std::vector<Facts> facts_;
+  std::vector<bool> is_used_;
+  Plan plan_;
+};
+
+}  // namespace
+
+void Spread::add(double value) {
+  constexpr std::size_t kMostKept = 65'536;
+  low_ = count_ == 0 ? value : std::min(low_, value);
+  high_ = count_ == 0 ? value : std::max(high_, value);
+  if (count_++ % every_ != 0) return;
+  kept_.push_back(value);
+  if (kept_.size() < kMostKept) return;
+  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+  kept_.resize(kMostKept / 2);
+  every_ *= 2;
+}
+
+double Spread::median() const {
+  std::vector<double> sorted = kept_;
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+Plan plan_of(const Catalogue& catalogue,
+             const std::function<void(const Item&)>& each,
+             const std::stop_token& stop) {
+  const Expansion expansion(catalogue);
+  Planner planner(catalogue);
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    const Item item = expansion.at(i);
+    planner.add(item);
+    if (each) each(item);
+  }
+  return planner.result();
+}
+
+}  // namespace airtruth::dataset

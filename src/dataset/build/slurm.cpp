@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/slurm.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include "dataset/catalogue/check.h"
+#include "dataset/catalogue/expand.h"
+#include "dataset/catalogue/slurm_options.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr std::int64_t kMostTasks = 1000;
+
+// As one word of a shell's.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+    } else {
+      result += c;
+    }
+  }
+  return result + "'";
+}
+
+// The options of the catalogue, then those of the command line: of two of one name the later
+// counts.
+std::vector<std::string> options_of(const Catalogue& catalogue, const SlurmOptions& options) {
+  std::vector<std::string> result = catalogue.slurm;
+  if (!options.partition.empty()) result.push_back("--partition=" + options.partition);
+  for (const std::string& given : options.sbatch) {
+    try {
+      result.push_back(sbatch_option(given));
+    } catch (const Error& error) {
+      throw Error("--sbatch: " + error.message());
+    }
+  }
+  return result;
+}
+
+std::string head(const std::string& name,
+                 const std::string& log,
+                 const std::vector<std::string>& options) {
+  std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name + "\n#SBATCH --output=" + log +
+                     "\n#SBATCH --open-mode=append\n";
+  for (const std::string& option : options) text += "#SBATCH " + option + "\n";
+  return text;
+}
+
+std::string work_script(const Catalogue& catalogue,
+                        const fs::path& out,
+                        const SlurmOptions& options,
+                        std::int64_t tasks) {
+  std::string text = head("airtruth",
+                          sbatch_log((out / "slurm").string(), "work-%a.log"),
+                          options_of(catalogue, options));
+  text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
+  text += fmt::format(
+      "exec {} dataset work {} --out {} --index \"$SLURM_ARRAY_TASK_ID\" --of {} --jobs "
+      "\"${{SLURM_CPUS_ON_NODE:-1}}\"",
+      quoted(options.program.string()),
+      quoted(fs::absolute(catalogue.file).string()),
+      quoted(out.string()),
+      tasks);
+  for (const auto& [name, video] : options.videos)
+    text += " --background " + quoted(name + "=" + video.string());
+  return text + "\n";
+}
+
+std::string verify_script(const Catalogue& catalogue,
+                          const fs::path& out,
+                          const SlurmOptions& options) {
+  return head("airtruth-verify",
+              sbatch_log((out / "slurm").string(), "verify.log"),
+              options_of(catalogue, options)) +
+         fmt::format("exec {} dataset verify {} --finish\n",
+                     quoted(options.program.string()),
+                     quoted(out.string()));
+}
+
+// The first line that a command prints; Error where it fails.
+std::string first_line(const std::string& command) {
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  check(pipe != nullptr, "a process can be started");
+  std::string output;
+  std::array<char, 4096> buffer;
+  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), got);
+  const int status = ::pclose(pipe);
+  const std::string line = output.substr(0, output.find('\n'));
+  if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw Error("sbatch failed: " + (line.empty() ? "no word why" : line) +
+                "; expected Slurm's client tools and a running cluster");
+  return line;
+}
+
+}  // namespace
+
+Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options) {
+  const fs::path root = fs::absolute(out).lexically_normal();
+  require_utf8(root);
+  const auto odd = [](char c) {
+    return !std::isalnum(static_cast<unsigned char>(c)) &&
+           std::string_view("_-.,").find(c) == std::string_view::npos;
+  };
+  if (std::any_of(options.partition.begin(), options.partition.end(), odd))
+    throw Error("'" + options.partition + "' is no name of a Slurm partition");
+  check_sources(catalogue, options.videos);
+  const std::int64_t sequences = Expansion(catalogue).size();
+  const std::int64_t tasks = options.array_size > 0
+                                 ? std::min<std::int64_t>(options.array_size, sequences)
+                                 : std::min(kMostTasks, sequences);
+  // Everything that may be refused is refused before the folder is made.
+  const std::string work = work_script(catalogue, root, options, tasks);
+  const std::string verify = verify_script(catalogue, root, options);
+  open_folder(catalogue, root);
+  fs::create_directories(root / "slurm");
+  Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};
+  write_file(submitted.work_script, work);
+  write_file(submitted.verify_script, verify);
+  if (options.dry_run) return submitted;
+  submitted.work_job = first_line("sbatch --parsable " + quoted(submitted.work_script.string()));
+  submitted.work_job = submitted.work_job.substr(0, submitted.work_job.find(';'));
+  submitted.verify_job =
+      first_line("sbatch --parsable --dependency=afterany:" + submitted.work_job + " " +
+                 quoted(submitted.verify_script.string()));
+  submitted.verify_job = submitted.verify_job.substr(0, submitted.verify_job.find(';'));
+  return submitted;
+}
+
+}  // namespace airtruth::dataset

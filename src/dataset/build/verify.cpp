@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/verify.h"
+
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/composite/cover.h"
+#include "picture/video/reader.h"
+#include "sequence/sequence/finished.h"
+#include "sequence/sequence/masks.h"
+#include "sequence/sequence/recompose.h"
+#include "truth/annotation/in_view.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr std::size_t kMostNamed = 100;
+
+Catalogue catalogue_of(const Folder& folder) {
+  if (!fs::exists(folder.catalogue()))
+    throw Error("is no data set: it holds no catalogue.toml", {folder.root.string()});
+  return read_catalogue(folder.catalogue());
+}
+
+bool is_at_work(const Folder& folder) {
+  try {
+    const FolderLock lock(folder, false);
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+// Records name files below their own folder alone, whatever links lie between.
+bool is_below(const fs::path& folder, const fs::path& name) {
+  const fs::path relative =
+      fs::weakly_canonical(folder / name).lexically_relative(fs::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// Sequences of one data set, looked into one by one.
+class Check {
+ public:
+  Check(const Folder& folder, const VerifyOptions& options, VerifyResult& result)
+      : folder_(folder), options_(options), result_(result) {}
+
+  void sequence(const Item& item) {
+    name_ = item.name;
+    ++result_.sequences;
+    if (!folder_.holds(item.name)) return fault("is not there");
+    try {
+      files(nlohmann::json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
+      const sequence::Finished finished = sequence::open_finished(folder_.sequence(item.name));
+      truth(finished);
+      if (options_.deep_every > 0) deep(finished);
+    } catch (const nlohmann::json::exception&) {
+      fault("sequence.json is not a record that airtruth wrote");
+    } catch (const Error& error) {
+      fault(error.what());
+    }
+  }
+
+ private:
+  void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
+
+  void files(const nlohmann::json& record) {
+    std::set<std::string> known = {"sequence.json"};
+    for (const nlohmann::json& output : record.at("outputs")) {
+      const std::string name = output.at("name");
+      known.insert(name);
+      const fs::path file = folder_.sequence(name_) / name;
+      if (!is_below(folder_.sequence(name_), name))
+        fault("'" + name.substr(0, 80) + "' is outside of this sequence");
+      else if (!fs::exists(file))
+        fault(name + " is missing");
+      else if (sha256_of_file(file) != output.at("sha256"))
+        fault(name + " is not as it was written (its SHA-256 differs)");
+    }
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.sequence(name_)))
+      if (entry.is_regular_file() &&
+          !known.contains(fs::relative(entry.path(), folder_.sequence(name_)).string()))
+        fault(entry.path().filename().string() + " is not of this sequence");
+  }
+
+  void truth(const sequence::Finished& finished) {
+    video::Reader reader(finished.video);
+    const int width = reader.info().width;
+    const int height = reader.info().height;
+    std::size_t frames = 0;
+    while (reader.next()) ++frames;
+    if (frames != finished.truth.frames.size())
+      fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
+            std::to_string(finished.truth.frames.size()));
+    const lens::Lens lens = annotation::lens_from(finished.truth.lens);
+    for (const annotation::Frame& frame : finished.truth.frames)
+      for (const annotation::Intruder& intruder : frame.intruders) {
+        box(frame, intruder, width, height);
+        view(frame, intruder, lens);
+        if (finished.scene && finished.scene->output.masks) mask(finished, frame, intruder);
+      }
+    result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
+  }
+
+  void deep(const sequence::Finished& finished) {
+    const auto recomposed = sequence::recompose(finished, options_.deep_every, options_.stop);
+    result_.recomposed += recomposed.compared;
+    for (const std::string& what : recomposed.faults) fault(what);
+  }
+
+  void view(const annotation::Frame& frame,
+            const annotation::Intruder& intruder,
+            const lens::Lens& lens) {
+    result_.in_view += annotation::is_in_view(frame, intruder, lens) ? 1 : 0;
+    if (!annotation::lacks_box(frame, intruder, lens)) return;
+    ++result_.in_view_without_box;
+    fault("frame " + std::to_string(frame.frame) + ", " + intruder.id +
+          ": in view by its position, and without a box");
+  }
+
+  void box(const annotation::Frame& frame,
+           const annotation::Intruder& intruder,
+           int width,
+           int height) {
+    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const bool visible = intruder.state == annotation::State::kVisible;
+    if (visible != intruder.visible_box_px.has_value())
+      return fault(where + (visible ? "visible without a box" : "a box, and not visible"));
+    for (const auto& [what, box] : {std::pair("visible", intruder.visible_box_px),
+                                    std::pair("covered", intruder.covered_box_px)})
+      if (box && !lies_in({0, 0, width, height}, *box))
+        fault(where + "its " + what + " box reaches out of the frame");
+  }
+
+  static bool lies_in(const PixelBox& frame, const PixelBox& box) {
+    return box.width > 0 && box.height > 0 && intersection(frame, box) == box;
+  }
+
+  // A mask for each intruder that is visible, and none more; its pixels are those of the covered
+  // box.
+  void mask(const sequence::Finished& finished,
+            const annotation::Frame& frame,
+            const annotation::Intruder& intruder) {
+    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const auto mask =
+        sequence::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
+    if (mask && intruder.state != annotation::State::kVisible)
+      return fault(where + "a mask, and not visible");
+    const auto bounds = mask ? composite::covered_box(*mask) : std::nullopt;
+    if (bounds != intruder.covered_box_px)
+      fault(where + (mask ? "its mask is not of its covered box" : "a covered box without a mask"));
+  }
+
+  const Folder& folder_;
+  const VerifyOptions& options_;
+  VerifyResult& result_;
+  std::string name_;
+};
+
+void check_manifest(const Folder& folder, VerifyResult& result) {
+  if (!fs::exists(folder.record())) {
+    result.faults.emplace_back("dataset.json is not there: the data set is not complete");
+    return;
+  }
+  try {
+    const nlohmann::json record = nlohmann::json::parse(read_file(folder.record()));
+    if (record.at("catalogue_sha256") != sha256_of_file(folder.catalogue()))
+      result.faults.emplace_back("dataset.json was written for another catalogue");
+    for (const nlohmann::json& file : record.at("manifest")) {
+      const std::string name = file.at("name").get<std::string>();
+      const fs::path path = folder.root / name;
+      if (!is_below(folder.root, name))
+        result.faults.push_back("'" + name.substr(0, 80) + "' of dataset.json is outside of it");
+      else if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
+        result.faults.push_back(path.filename().string() + " is not as it was written");
+    }
+  } catch (const nlohmann::json::exception&) {
+    result.faults.emplace_back("dataset.json is not a record that airtruth wrote");
+  }
+}
+
+}  // namespace
+
+Status status(const fs::path& root) {
+  const Folder folder{root};
+  const Catalogue catalogue = catalogue_of(folder);
+  const Expansion expansion(catalogue);
+  Status status;
+  status.name = catalogue.name;
+  status.sequences = expansion.size();
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    const Item item = expansion.at(i);
+    if (folder.holds(item.name))
+      ++status.whole;
+    else if (status.missing.size() < kMostNamed)
+      status.missing.push_back(item.name);
+    if (fs::exists(folder.sequences() / ("." + item.name + ".part"))) ++status.half;
+  }
+  status.at_work = is_at_work(folder);
+  status.complete = fs::exists(folder.record());
+  return status;
+}
+
+VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
+  const Folder folder{root};
+  const Catalogue catalogue = catalogue_of(folder);
+  const Expansion expansion(catalogue);
+  VerifyResult result;
+  Check check(folder, options, result);
+  for (std::int64_t i = 0; i < expansion.size(); ++i) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    check.sequence(expansion.at(i));
+    if (options.progress) options.progress(i + 1, expansion.size());
+  }
+  check_manifest(folder, result);
+  return result;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/catalogue.h"
+
+#include <algorithm>
+#include <set>
+
+#include "dataset/catalogue/drawn_rule.h"
+#include "dataset/catalogue/names.h"
+#include "dataset/catalogue/slurm_options.h"
+#include "foundation/base/files.h"
+#include "world/scene/tables.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using scene::TableReader;
+
+std::string required(const TableReader& table, std::string_view key) {
+  if (auto text = table.text(key)) return *text;
+  throw Error("has no " + std::string(key), table.where());
+}
+
+std::string required_name(const TableReader& table) {
+  if (auto name = table.file_name("name")) return *name;
+  throw Error("has no name", table.where());
+}
+
+synthetic::FlightOptions flight_from(const TableReader& table) {
+  synthetic::FlightOptions flight;
+  flight.frame_count = 300;
+  flight.seed = static_cast<std::uint64_t>(
+      table.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+  flight.frame_count =
+      static_cast<int>(table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count));
+  flight.width = static_cast<int>(table.whole("width", 64, 8192).value_or(flight.width));
+  flight.height = static_cast<int>(table.whole("height", 64, 8192).value_or(flight.height));
+  flight.cloud_cover = table.number("cloud_cover", scene::kShare).value_or(flight.cloud_cover);
+  flight.speed_mps = table.number("speed_mps", scene::kOwnSpeed).value_or(flight.speed_mps);
+  flight.altitude_m = table.number("altitude_m", scene::kAltitude).value_or(flight.altitude_m);
+  return flight;
+}
+
+Background background_from(const TableReader& table) {
+  Background background;
+  background.where = table.where();
+  background.name = required_name(table);
+  table.exclude("video", {"flight"});
+  if (const auto video = table.path("video")) {
+    background.source = *video;
+  } else if (table.has("flight")) {
+    background.source = flight_from(table.table(
+        "flight",
+        {"seed", "frame_count", "width", "height", "cloud_cover", "speed_mps", "altitude_m"}));
+  } else {
+    throw Error("background '" + background.name + "' has neither video nor flight", table.where());
+  }
+  background.mask = table.path("mask");
+  background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
+  background.lens = scene::lens_in(table);
+  background.camera = scene::camera_in(table);
+  background.motion = scene::motion_in(table);
+  background.camera_model = scene::camera_model_in(table);
+  background.realism = scene::realism_in(table);
+  background.light = scene::light_in(table);
+  return background;
+}
+
+Trajectory trajectory_from(const TableReader& table) {
+  Trajectory trajectory;
+  trajectory.where = table.where();
+  trajectory.name = required_name(table);
+  const auto points = table.points("waypoints_ned_m", scene::kPosition);
+  if (!points || points->size() < 2)
+    throw Error("trajectory '" + trajectory.name + "' has fewer than two waypoints_ned_m",
+                table.where());
+  trajectory.waypoints_ned_m = *points;
+  table.exclude("speed_mps", {"times_s"});
+  trajectory.speed_mps = table.number("speed_mps", scene::kSpeed);
+  trajectory.times_s = table.numbers("times_s", scene::kTime).value_or(std::vector<double>{});
+  if (!trajectory.speed_mps && trajectory.times_s.size() != trajectory.waypoints_ned_m.size())
+    throw Error("trajectory '" + trajectory.name + "' has " +
+                    std::to_string(trajectory.waypoints_ned_m.size()) + " waypoints and " +
+                    std::to_string(trajectory.times_s.size()) +
+                    " times_s; expected one for each, or speed_mps",
+                table.where());
+  trajectory.frame_count = table.whole("frame_count", 1, kMost);
+  return trajectory;
+}
+
+template <typename Things>
+void refuse_twice(const Things& things, const char* what, const std::string& file) {
+  std::set<std::string> seen;
+  for (const auto& thing : things)
+    if (!seen.insert(thing.name).second)
+      throw Error("two tables [[" + std::string(what) + "]] are named '" + thing.name + "'",
+                  {file});
+}
+
+Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
+  Listed listed;
+  listed.name = required_name(table);
+  listed.where = table.where("name");
+  listed.background = place_of(catalogue.backgrounds,
+                               required(table, "background"),
+                               "background",
+                               table.where("background"));
+  listed.trajectory = place_of(catalogue.trajectories,
+                               required(table, "trajectory"),
+                               "trajectory",
+                               table.where("trajectory"));
+  listed.aircraft = place_of(
+      catalogue.aircraft, required(table, "aircraft"), "aircraft", table.where("aircraft"));
+  listed.frame_count = table.whole("frame_count", 1, kMost);
+  return listed;
+}
+
+Product product_from(const TableReader& table, const Catalogue& catalogue) {
+  Product product;
+  product.name = table.file_name("name").value_or("{background}{trajectory}{aircraft}");
+  product.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
+  product.trajectories = places_of(table, "trajectories", catalogue.trajectories, "trajectory");
+  product.aircraft = places_of(table, "aircraft", catalogue.aircraft, "aircraft");
+  product.frame_count = table.whole("frame_count", 1, kMost);
+  const auto varies = [&](const char* part, std::size_t count) {
+    if (count > 1 && product.name.find(part) == std::string::npos)
+      table.fail(
+          "name",
+          "name lacks " + std::string(part) + ", of which there are " + std::to_string(count));
+  };
+  varies("{background}", product.backgrounds.size());
+  varies("{trajectory}", product.trajectories.size());
+  varies("{aircraft}", product.aircraft.size());
+  return product;
+}
+
+void refuse_same_names(const Catalogue& catalogue) {
+  std::set<std::string> seen;
+  for (const Rule& rule : catalogue.rules)
+    if (const auto* listed = std::get_if<Listed>(&rule);
+        listed != nullptr && !seen.insert(listed->name).second)
+      throw Error("two sequences are named '" + listed->name + "'", listed->where);
+}
+
+}  // namespace
+
+Catalogue read_catalogue(const fs::path& file) {
+  return parse_catalogue(read_file(file, scene::kLargestToml), file);
+}
+
+Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
+  const toml::table parsed = scene::parsed_toml(text, file.string());
+  const TableReader root(parsed,
+                         "a catalogue",
+                         file.string(),
+                         {"name",
+                          "seed",
+                          "background",
+                          "aircraft",
+                          "trajectory",
+                          "sequence",
+                          "product",
+                          "random",
+                          "render",
+                          "composite",
+                          "output",
+                          "slurm"});
+  Catalogue catalogue;
+  catalogue.file = file;
+  catalogue.text = text;
+  catalogue.name = root.file_name("name").value_or(file.stem().string());
+  catalogue.seed = static_cast<std::uint64_t>(
+      root.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+  catalogue.render = scene::render_in(root);
+  catalogue.composite = scene::composite_in(root);
+  catalogue.output = scene::output_in(root);
+  catalogue.slurm = slurm_in(root);
+  for (const TableReader& table : root.tables("background",
+                                              {"name",
+                                               "video",
+                                               "flight",
+                                               "mask",
+                                               "first_frame",
+                                               "lens",
+                                               "camera",
+                                               "motion",
+                                               "light",
+                                               "shutter",
+                                               "air",
+                                               "optics",
+                                               "sensor",
+                                               "realism"}))
+    catalogue.backgrounds.push_back(background_from(table));
+  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
+    catalogue.aircraft.push_back(
+        {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
+  for (const TableReader& table : root.tables(
+           "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
+    catalogue.trajectories.push_back(trajectory_from(table));
+  refuse_twice(catalogue.backgrounds, "background", file.string());
+  refuse_twice(catalogue.aircraft, "aircraft", file.string());
+  refuse_twice(catalogue.trajectories, "trajectory", file.string());
+  for (const TableReader& table :
+       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(listed_from(table, catalogue));
+  for (const TableReader& table :
+       root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(product_from(table, catalogue));
+  for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
+  if (catalogue.rules.empty())
+    throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
+                {file.string()});
+  refuse_same_names(catalogue);
+  return catalogue;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "aircraft/fleet/fleet.h"
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/error.h"
+#include "picture/video/reader.h"
+#include "sequence/sequence/scene_check.h"
+
+namespace airtruth::dataset {
+namespace {
+
+void check_aircraft(const Aircraft& aircraft) {
+  if (fs::path(aircraft.aircraft).has_extension()) {
+    if (!fs::exists(aircraft.aircraft))
+      throw Error("model file '" + aircraft.aircraft + "' does not exist", aircraft.where);
+    return;
+  }
+  try {
+    aircraft::find_aircraft(aircraft.aircraft);
+  } catch (const Error& error) {
+    throw Error(error.message(), aircraft.where);
+  }
+}
+
+void check_video(const fs::path& video, const std::string& background, const Where& where) {
+  // A pattern of numbered images is for the reader to look at.
+  if (video.string().find('%') == std::string::npos && !fs::exists(video))
+    throw Error(
+        "the video of background '" + background + "', " + video.string() + ", does not exist",
+        where);
+}
+
+video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
+  video::StreamInfo info;
+  info.width = flight.width;
+  info.height = flight.height;
+  info.frame_rate = {static_cast<int>(std::lround(1000 * flight.frame_rate_hz)), 1000};
+  return info;
+}
+
+// Mask, lens, camera file and path of a background. How much of the clip is used is each
+// sequence's, and the camera's path must be as long as that alone.
+void check_background(const Catalogue& catalogue,
+                      std::size_t place,
+                      const std::map<std::string, fs::path>& videos) {
+  const Background& background = catalogue.backgrounds[place];
+  scene::Scene scene = scene_over(catalogue, place);
+  const auto given = videos.find(background.name);
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  video::StreamInfo info;
+  if (given == videos.end() && flight != nullptr) {
+    info = stream_of(*flight);
+  } else {
+    const bool own = given == videos.end();
+    const fs::path video = own ? std::get<fs::path>(background.source) : given->second;
+    check_video(video, background.name, own ? background.where : Where{});
+    info = video::Reader(video, {.threads = 1}).info();
+    if (own) scene.background.mask = background.mask;
+  }
+  info.frame_count_estimate = 0;  // unknown
+  sequence::check_scene(scene, info);
+}
+
+// One rule's names differ by construction; those of two may meet. Hashes, since a million names
+// are to cost eight bytes each.
+void check_names(const Catalogue& catalogue) {
+  if (catalogue.rules.size() < 2) return;
+  const Expansion expansion(catalogue);
+  std::vector<std::size_t> hashes;
+  hashes.reserve(static_cast<std::size_t>(expansion.size()));
+  const std::hash<std::string> hash;
+  for (std::int64_t i = 0; i < expansion.size(); ++i) hashes.push_back(hash(expansion.at(i).name));
+  std::vector<std::size_t> sorted = hashes;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twin == sorted.end()) return;
+  const auto first = std::find(hashes.begin(), hashes.end(), *twin);
+  const auto second = std::find(first + 1, hashes.end(), *twin);
+  const std::string name = expansion.at(first - hashes.begin()).name;
+  if (expansion.at(second - hashes.begin()).name == name)
+    throw Error("two sequences are named '" + name + "'", {catalogue.file.string()});
+}
+
+}  // namespace
+
+void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos) {
+  for (const Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
+  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i)
+    check_background(catalogue, i, videos);
+  check_names(catalogue);
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "aircraft/fleet/flight_limits.h"
+#include "dataset/catalogue/sun_position.h"
+#include "foundation/base/seed.h"
+#include "foundation/geometry/transform.h"
+
+namespace airtruth::dataset {
+namespace {
+
+// Where nothing is stated and the type has no class (aircraft/fleet/flight_limits.h).
+constexpr Range kAnySpeedMps{40, 140};
+constexpr Range kAnyHours{8, 17};
+constexpr double kAnyBankDeg = 30;
+constexpr double kUsualClimbDeg = 5;
+
+double drawn(Random& random, const Range& range) { return random.uniform(range.low, range.high); }
+
+double drawn_evenly_in_logarithm(Random& random, const Range& range) {
+  return range.low * std::pow(range.high / range.low, random.uniform());
+}
+
+template <typename T>
+const T& drawn(Random& random, const std::vector<T>& things) {
+  return things[std::min(
+      things.size() - 1,
+      static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size())))];
+}
+
+// A type, then a livery of it, of one number: its whole part and the rest.
+const std::string& drawn_aircraft(Random& random, const std::vector<AircraftType>& types) {
+  const double at = random.uniform() * static_cast<double>(types.size());
+  const std::size_t type = std::min(types.size() - 1, static_cast<std::size_t>(at));
+  const auto& liveries = types[type].liveries;
+  const double rest = at - static_cast<double>(type);
+  return liveries[std::min(liveries.size() - 1,
+                           static_cast<std::size_t>(rest * static_cast<double>(liveries.size())))];
+}
+
+Range speed_range(const Drawn& rule, const aircraft::FlightLimits* limits) {
+  if (rule.speed_mps) return *rule.speed_mps;
+  return limits != nullptr ? Range{limits->usual_low_mps, limits->usual_high_mps} : kAnySpeedMps;
+}
+
+// No steeper than the type climbs and descends at that speed.
+Range climb_range(const Drawn& rule, const aircraft::FlightLimits* limits, double speed_mps) {
+  if (rule.climb_deg) return *rule.climb_deg;
+  Range range{-kUsualClimbDeg, kUsualClimbDeg};
+  if (limits == nullptr) return range;
+  const auto angle_deg = [&](double vertical_mps) {
+    return degrees(std::asin(std::min(1.0, vertical_mps / speed_mps)));
+  };
+  range.low = std::max(range.low, -angle_deg(limits->most_descent_mps));
+  range.high = std::min(range.high, angle_deg(limits->most_climb_mps));
+  return range;
+}
+
+double drawn_bank_deg(Random random, const Drawn& rule, const aircraft::FlightLimits* limits) {
+  if (rule.bank_deg) return drawn(random, *rule.bank_deg);
+  if (!rule.bank_suits_type) return 0;
+  const double most_deg = limits != nullptr ? limits->usual_bank_deg : kAnyBankDeg;
+  return random.uniform(-most_deg, most_deg);
+}
+
+Encounter drawn_encounter(Random& random, const Random& of_bank, const Drawn& rule) {
+  Encounter encounter;
+  encounter.aircraft = drawn_aircraft(random, rule.types);
+  const aircraft::FlightLimits* limits = aircraft::flight_limits(encounter.aircraft);
+  encounter.speed_mps = drawn(random, speed_range(rule, limits));
+  encounter.meeting_share = random.uniform(0.2, 0.8);
+  if (rule.size_px)
+    encounter.size_px = drawn_evenly_in_logarithm(random, *rule.size_px);
+  else
+    encounter.range_m = drawn_evenly_in_logarithm(random, rule.range_m);
+  encounter.azimuth_deg = drawn(random, rule.azimuth_deg);
+  encounter.elevation_deg = drawn(random, rule.elevation_deg);
+  encounter.heading_deg = drawn(random, rule.heading_deg);
+  encounter.climb_deg = drawn(random, climb_range(rule, limits, encounter.speed_mps));
+  encounter.bank_deg = drawn_bank_deg(of_bank, rule, limits);
+  return encounter;
+}
+
+// Every 1/share-th sequence, counted from a place that the seed draws.
+bool is_negative(const Drawn& rule, const Seed& seed, std::int64_t index) {
+  Random random = seed.stream("negatives of " + rule.name);
+  const double before = static_cast<double>(index) * rule.negatives + random.uniform();
+  return std::floor(before + rule.negatives) > std::floor(before);
+}
+
+// At an hour of daylight.
+SunPosition drawn_sun(Random random, const DaytimeRange& daytime, const std::string& aircraft) {
+  Range hours = kAnyHours;
+  if (daytime.hours)
+    hours = *daytime.hours;
+  else if (const auto* limits = aircraft::flight_limits(aircraft))
+    hours = {limits->first_hour, limits->last_hour};
+  const Range light =
+      daylight_hours(daytime.latitude_deg, daytime.day_of_year).value_or(Range{12, 12});
+  const double low = std::clamp(hours.low, light.low, light.high);
+  const double high = std::clamp(hours.high, light.low, light.high);
+  return sun_position(random.uniform(low, high), daytime.latitude_deg, daytime.day_of_year);
+}
+
+}  // namespace
+
+DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t index) {
+  const Seed seed(seed_value);
+  const auto number = static_cast<std::uint64_t>(index);
+  const auto stream = [&](const std::string& of) { return seed.stream(of + rule.name, number); };
+  DrawnSequence result;
+  Random random = stream("sequence ");
+  result.background = drawn(random, rule.backgrounds);
+  result.encounters.push_back(drawn_encounter(random, stream("bank of sequence "), rule));
+  if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
+  if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
+  Random of_count = stream("intruders of sequence ");
+  const auto kinds = static_cast<double>(rule.most_intruders - rule.fewest_intruders + 1);
+  const std::int64_t count =
+      std::min(rule.most_intruders,
+               rule.fewest_intruders + static_cast<std::int64_t>(of_count.uniform() * kinds));
+  for (std::int64_t k = 1; k < count; ++k) {
+    const std::string which = std::to_string(k + 1) + " of sequence ";
+    Random other = stream("intruder " + which);
+    result.encounters.push_back(drawn_encounter(other, stream("bank of intruder " + which), rule));
+  }
+  if (rule.daytime) {
+    const SunPosition sun =
+        drawn_sun(stream("time of sequence "), *rule.daytime, result.encounters[0].aircraft);
+    result.sun_azimuth_deg = sun.azimuth_deg;
+    result.sun_elevation_deg = sun.elevation_deg;
+  }
+  Random of_start = stream("start of sequence ");
+  result.start_share = of_start.uniform();
+  if (is_negative(rule, seed, index)) result.encounters.clear();
+  return result;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "dataset/catalogue/catalogue.h"
+#include "world/scene/table_reader.h"
+
+namespace airtruth::dataset {
+
+// The tables [[random]] of a catalogue whose backgrounds are read. Throws Error with line and
+// column.
+std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& catalogue);
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/expand.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "dataset/catalogue/meeting.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr double kAssumedRateHz = 30;        // of a background whose own rate is not known
+constexpr double kProvisionalRangeM = 1000;  // where the range follows from a size, until place()
+
+std::int64_t size_of(const Rule& rule) {
+  if (const auto* product = std::get_if<Product>(&rule))
+    return static_cast<std::int64_t>(product->backgrounds.size()) *
+           static_cast<std::int64_t>(product->trajectories.size()) *
+           static_cast<std::int64_t>(product->aircraft.size());
+  if (const auto* drawn = std::get_if<Drawn>(&rule)) return drawn->count;
+  return 1;
+}
+
+std::string filled(std::string pattern, std::string_view key, const std::string& value) {
+  for (std::size_t at = pattern.find(key); at != std::string::npos;
+       at = pattern.find(key, at + value.size()))
+    pattern.replace(at, key.size(), value);
+  return pattern;
+}
+
+std::int64_t frames_of(const Catalogue& catalogue,
+                       std::size_t background,
+                       const std::optional<std::int64_t>& own,
+                       const std::optional<std::int64_t>& of_trajectory) {
+  if (own) return *own;
+  if (of_trajectory) return *of_trajectory;
+  const auto* flight =
+      std::get_if<synthetic::FlightOptions>(&catalogue.backgrounds[background].source);
+  return flight != nullptr ? flight->frame_count : 0;  // 0: to the video's end
+}
+
+Item item_of(const Catalogue& catalogue,
+             const std::string& name,
+             std::size_t background,
+             std::size_t trajectory,
+             std::size_t aircraft,
+             const std::optional<std::int64_t>& frame_count) {
+  Item item;
+  item.name = name;
+  item.background = background;
+  const Trajectory& path = catalogue.trajectories[trajectory];
+  item.frame_count = frames_of(catalogue, background, frame_count, path.frame_count);
+  item.scene = scene_over(catalogue, background);
+  scene::Intruder intruder;
+  intruder.id = catalogue.aircraft[aircraft].name;
+  intruder.aircraft = catalogue.aircraft[aircraft].aircraft;
+  intruder.waypoints_ned_m = path.waypoints_ned_m;
+  intruder.times_s = path.times_s;
+  intruder.speed_mps = path.speed_mps;
+  intruder.where = path.where;
+  item.scene.intruders = {intruder};
+  return item;
+}
+
+Item item_of(const Catalogue& catalogue, const Listed& rule, std::int64_t) {
+  return item_of(
+      catalogue, rule.name, rule.background, rule.trajectory, rule.aircraft, rule.frame_count);
+}
+
+Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index) {
+  auto i = static_cast<std::size_t>(index);
+  const std::size_t aircraft = rule.aircraft[i % rule.aircraft.size()];
+  i /= rule.aircraft.size();
+  const std::size_t trajectory = rule.trajectories[i % rule.trajectories.size()];
+  const std::size_t background = rule.backgrounds[i / rule.trajectories.size()];
+  std::string name = filled(rule.name, "{background}", catalogue.backgrounds[background].name);
+  name = filled(name, "{trajectory}", catalogue.trajectories[trajectory].name);
+  name = filled(name, "{aircraft}", catalogue.aircraft[aircraft].name);
+  return item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
+}
+
+// What a rule of [[random]] draws for one sequence. Its paths are provisional: those of a clip at
+// kAssumedRateHz, until place() knows the background.
+Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
+  Item item;
+  item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
+  item.rule = &rule;
+  item.drawn = draw(rule, catalogue.seed, index);
+  item.background = item.drawn.background;
+  item.frame_count = rule.frame_count;
+  item.scene = scene_over(catalogue, item.background);
+  if (item.drawn.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = *item.drawn.sun_azimuth_deg;
+  if (item.drawn.sun_elevation_deg)
+    item.scene.light.sun_elevation_deg = *item.drawn.sun_elevation_deg;
+  const DrawnClip clip{rule.frame_count, kAssumedRateHz};
+  for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
+    const Encounter& encounter = item.drawn.encounters[k];
+    scene::Intruder intruder = intruder_of(rule, encounter, k);
+    lay_path(intruder,
+             encounter,
+             item.scene.camera,
+             clip,
+             encounter.range_m.value_or(kProvisionalRangeM));
+    item.scene.intruders.push_back(std::move(intruder));
+  }
+  return item;
+}
+
+}  // namespace
+
+scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
+  const Background& background = catalogue.backgrounds[place];
+  scene::Scene scene;
+  scene.lens = background.lens;
+  scene.camera = background.camera;
+  scene.motion = background.motion;
+  scene.camera_model = background.camera_model;
+  scene.realism = background.realism;
+  scene.light = background.light;
+  scene.render = catalogue.render;
+  scene.composite = catalogue.composite;
+  scene.output = catalogue.output;
+  scene.seed = catalogue.seed;
+  scene.file = catalogue.file;
+  scene.background.where = background.where;
+  return scene;
+}
+
+Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
+  for (const Rule& rule : catalogue.rules) {
+    first_.push_back(size_);
+    size_ += size_of(rule);
+  }
+}
+
+Item Expansion::at(std::int64_t index) const {
+  check(index >= 0 && index < size_, "a sequence's number is within its catalogue");
+  const auto after = std::upper_bound(first_.begin(), first_.end(), index);
+  const auto rule = static_cast<std::size_t>(after - first_.begin()) - 1;
+  Item item =
+      std::visit([&](const auto& r) { return item_of(catalogue_, r, index - first_[rule]); },
+                 catalogue_.rules[rule]);
+  item.index = index;
+  item.scene.name = item.name;
+  return item;
+}
+
+namespace {
+
+// The first frame of a clip that begins anywhere in its background where it fits.
+std::int64_t random_first_frame(const Item& item,
+                                std::int64_t first_frame,
+                                const BackgroundFiles& files) {
+  if (files.frames <= 0)
+    throw Error("start is random, but " + files.video.string() +
+                    " does not state how many frames it has; expected start = \"first\", or a "
+                    "file that does",
+                item.rule->where);
+  const std::int64_t places =
+      std::max<std::int64_t>(1, files.frames - first_frame - item.frame_count + 1);
+  const auto place = static_cast<std::int64_t>(item.drawn.start_share * double(places));
+  return first_frame + std::min(place, places - 1);
+}
+
+}  // namespace
+
+void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
+  const Background& background = catalogue.backgrounds[item.background];
+  scene::Background& placed = item.scene.background;
+  placed.video = files.video;
+  placed.mask = files.mask;
+  placed.first_frame = background.first_frame;
+  if (item.frame_count > 0) placed.frame_count = item.frame_count;
+  if (item.rule == nullptr) return;
+  if (item.rule->starts_at_random)
+    placed.first_frame = random_first_frame(item, background.first_frame, files);
+  DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
+  if (files.frames > placed.first_frame)
+    clip.frames = std::min(clip.frames, files.frames - placed.first_frame);
+  for (std::size_t k = 0; k < item.scene.intruders.size(); ++k)
+    meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height});
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/meeting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "aircraft/model/mesh.h"
+#include "foundation/base/error.h"
+#include "sequence/sequence/world.h"
+#include "truth/annotation/exact_box.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr double kStandardGravityMps2 = 9.80665;
+constexpr double kStraightBankDeg = 0.01;  // less than that is no turn
+constexpr double kPastClip_s = 1;
+// Of a turn: its waypoints are at most so far apart in angle and time, and so many lie beyond the
+// clip at either end, where the natural spline through them loses its bend (by 0.27 a waypoint).
+constexpr double kTurnStepDeg = 4;
+constexpr double kTurnStep_s = 0.5;
+constexpr int kTurnMargin = 8;
+constexpr int kMostTurnSteps = 100'000;
+
+Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {
+  const double azimuth = radians(encounter.azimuth_deg);
+  const double elevation = radians(encounter.elevation_deg);
+  const Vector3 in_body(std::cos(elevation) * std::cos(azimuth),
+                        std::cos(elevation) * std::sin(azimuth),
+                        -std::sin(elevation));
+  return world_from_camera_body * in_body;
+}
+
+void lay_straight(scene::Intruder& intruder,
+                  const Encounter& encounter,
+                  const Vector3& meeting,
+                  double meets_s,
+                  double clip_s) {
+  const double heading = radians(encounter.heading_deg);
+  const double climb = radians(encounter.climb_deg);
+  const Vector3 velocity = encounter.speed_mps * Vector3(std::cos(climb) * std::cos(heading),
+                                                         std::cos(climb) * std::sin(heading),
+                                                         -std::sin(climb));
+  intruder.waypoints_ned_m = {meeting - meets_s * velocity,
+                              meeting + (clip_s + kPastClip_s - meets_s) * velocity};
+}
+
+// From the meeting point, after a time, on the helix.
+Vector3 turned(const Encounter& encounter, double turn_rate, double after_s) {
+  const double heading = radians(encounter.heading_deg);
+  const double climb = radians(encounter.climb_deg);
+  const double over_ground_mps = encounter.speed_mps * std::cos(climb);
+  const double radius_m = over_ground_mps / turn_rate;  // signed
+  const double now = heading + turn_rate * after_s;
+  return {radius_m * (std::sin(now) - std::sin(heading)),
+          radius_m * (std::cos(heading) - std::cos(now)),
+          -encounter.speed_mps * std::sin(climb) * after_s};
+}
+
+void lay_turn(scene::Intruder& intruder,
+              const Encounter& encounter,
+              const Vector3& meeting,
+              double meets_s,
+              double clip_s) {
+  const double over_ground_mps = encounter.speed_mps * std::cos(radians(encounter.climb_deg));
+  const double turn_rate =
+      kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
+  const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
+  const double begin_s = -kTurnMargin * step_s;
+  const double span_s = clip_s + kPastClip_s - begin_s;
+  if (!(span_s / step_s < kMostTurnSteps))
+    throw Error(
+        fmt::format("bank_deg: a turn of {:.0f} degrees of bank at {:.1f} m/s over {:.0f} s "
+                    "is a path of more than {} points; expected a shorter clip",
+                    encounter.bank_deg,
+                    encounter.speed_mps,
+                    span_s,
+                    kMostTurnSteps),
+        intruder.where);
+  const auto steps = static_cast<int>(std::ceil(span_s / step_s)) + kTurnMargin;
+  intruder.waypoints_ned_m.clear();
+  for (int i = 0; i <= steps; ++i)
+    intruder.waypoints_ned_m.push_back(
+        meeting + turned(encounter, turn_rate, begin_s + i * step_s - meets_s));
+  intruder.start_s = begin_s;
+}
+
+void lay_through(scene::Intruder& intruder,
+                 const Encounter& encounter,
+                 const Vector3& meeting,
+                 const DrawnClip& clip) {
+  const double meets_s = meeting_s(encounter, clip);
+  if (std::abs(encounter.bank_deg) < kStraightBankDeg)
+    lay_straight(intruder, encounter, meeting, meets_s, clip.duration_s());
+  else
+    lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
+}
+
+// Finds the range at which an aircraft has a size.
+class Sizer {
+ public:
+  Sizer(const scene::Scene& scene,
+        const lens::ImageSize& size,
+        const trajectory::State& camera,
+        double meets_s)
+      : lens_(sequence::lens_of(scene.lens, size)), camera_(camera), meets_s_(meets_s) {
+    sight_.lens = &lens_;
+    sight_.cam_from_world =
+        (camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()})
+            .inverse();
+  }
+  Sizer(const Sizer&) = delete;
+  Sizer& operator=(const Sizer&) = delete;
+
+  double focal_px() const { return lens_.focal_px(); }
+
+  // Where the aircraft is then; empty where no range gives the size.
+  std::optional<Vector3> position(const aircraft::Mesh& mesh,
+                                  const Quaternion& world_from_body,
+                                  const Vector3& direction,
+                                  double size_px,
+                                  double first_guess_m) const {
+    constexpr double kWithinShare = 1e-5;
+    constexpr int kMostRounds = 60;
+    const annotation::Silhouette silhouette{&mesh, aircraft::silhouette_points(mesh)};
+    double range_m = first_guess_m;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const Vector3 at = raised(camera_.position_in_world + range_m * direction);
+      const auto exact =
+          annotation::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);
+      if (!exact.box || exact.partly_unseen) {
+        range_m *= 2;  // part of it is behind the camera or beyond the lens's field
+        if (range_m > kFarthestM) return std::nullopt;
+        continue;
+      }
+      const double ratio = std::max(exact.box->width, exact.box->height) / size_px;
+      if (std::abs(ratio - 1) < kWithinShare) return at;
+      range_m *= ratio;  // far away, size times range stays the same
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr double kFarthestM = 1e6;
+
+  Vector3 raised(Vector3 at) const {
+    if (camera_.position_in_world.z() < -kLowestFlightM) at.z() = std::min(at.z(), -kLowestFlightM);
+    return at;
+  }
+
+  lens::Lens lens_;
+  annotation::Sight sight_;
+  trajectory::State camera_;
+  double meets_s_ = 0;
+};
+
+trajectory::State camera_at(const scene::Camera& camera, double time_s) {
+  const auto state = sequence::camera_path(camera).at(time_s);
+  if (!state)
+    throw Error(
+        fmt::format("the camera's path does not reach {:.2f} s, where an intruder meets it; "
+                    "expected a path as long as the clip",
+                    time_s),
+        camera.where);
+  return *state;
+}
+
+}  // namespace
+
+scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k) {
+  scene::Intruder intruder;
+  intruder.id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder";
+  intruder.aircraft = encounter.aircraft;
+  intruder.speed_mps = encounter.speed_mps;
+  intruder.where = rule.where;
+  return intruder;
+}
+
+double meeting_s(const Encounter& encounter, const DrawnClip& clip) {
+  if (!encounter.size_px) return encounter.meeting_share * clip.duration_s();
+  return std::floor(encounter.meeting_share * static_cast<double>(clip.frames)) /
+         clip.frame_rate_hz;
+}
+
+void lay_path(scene::Intruder& intruder,
+              const Encounter& encounter,
+              const scene::Camera& camera,
+              const DrawnClip& clip,
+              double range_m) {
+  const double meets_s = meeting_s(encounter, clip);
+  const Vector3 meeting =
+      camera.position_ned_m + meets_s * camera.velocity_ned_mps +
+      range_m * direction_in_world(encounter, world_from_body(camera.attitude_yaw_pitch_roll_deg));
+  lay_through(intruder, encounter, meeting, clip);
+}
+
+void meet(scene::Scene& scene,
+          std::size_t k,
+          const Encounter& encounter,
+          const DrawnClip& clip,
+          const lens::ImageSize& size) {
+  constexpr double kUsualLengthM = 15;  // for a first guess
+  scene::Intruder& intruder = scene.intruders[k];
+  const double meets_s = meeting_s(encounter, clip);
+  const trajectory::State camera = camera_at(scene.camera, meets_s);
+  const Vector3 direction = direction_in_world(encounter, camera.world_from_body);
+  if (encounter.range_m) {
+    lay_through(
+        intruder, encounter, camera.position_in_world + *encounter.range_m * direction, clip);
+    return;
+  }
+  const Sizer sizer(scene, size, camera, meets_s);
+  const double guess_m = sizer.focal_px() * kUsualLengthM / *encounter.size_px;
+  lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
+  const trajectory::Path path = sequence::path_of(intruder);
+  const auto type = sequence::aircraft_of(intruder, path, {});
+  const auto position = sizer.position(
+      type->mesh, path.at(meets_s)->world_from_body, direction, *encounter.size_px, guess_m);
+  if (!position)
+    throw Error(
+        fmt::format("{} has a size of {:.1f} px at no range in the direction azimuth {:.1f}, "
+                    "elevation {:.1f} degrees through this lens",
+                    encounter.aircraft,
+                    *encounter.size_px,
+                    encounter.azimuth_deg,
+                    encounter.elevation_deg),
+        intruder.where);
+  lay_through(intruder, encounter, *position, clip);
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/error.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/suggest.h"
+#include "world/scene/table_reader.h"
+
+// For the readers of catalogues: names of its tables, looked up.
+namespace airtruth::dataset {
+
+constexpr std::int64_t kMost = 1'000'000'000;  // of what a catalogue counts
+
+// The place of the thing of that name; Error at `where` with the nearest spelling.
+template <typename Things>
+std::size_t place_of(const Things& things,
+                     const std::string& name,
+                     const char* what,
+                     const Where& where) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto nearest = nearest_spelling(name, names);
+  throw Error("there is no " + std::string(what) + " '" + name + "'" +
+                  (nearest ? "; did you mean '" + *nearest + "'?" : ""),
+              where);
+}
+
+// Names in the array at `key`, each a pattern over the things' names; all of them where the key is
+// absent.
+template <typename Things>
+std::vector<std::size_t> places_of(const scene::TableReader& table,
+                                   std::string_view key,
+                                   const Things& things,
+                                   const char* what) {
+  std::vector<std::size_t> result;
+  const auto patterns = table.texts(key);
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const bool wanted =
+        !patterns ||
+        std::any_of(patterns->begin(), patterns->end(), [&](const std::string& pattern) {
+          return matches(pattern, things[i].name);
+        });
+    if (wanted) result.push_back(i);
+  }
+  for (const std::string& pattern : patterns.value_or(std::vector<std::string>{})) {
+    const bool used = std::any_of(things.begin(), things.end(), [&](const auto& thing) {
+      return matches(pattern, thing.name);
+    });
+    if (!used) place_of(things, pattern, what, table.where(key));
+  }
+  if (result.empty()) throw Error("there is no [[" + std::string(what) + "]]", table.where());
+  return result;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/slurm_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace airtruth::dataset {
+namespace {
+
+// Options that a job script of airtruth sets itself, or that would make sbatch do something other
+// than submit that script (sbatch(1) of Slurm 22.05).
+constexpr std::array<std::string_view, 16> kOwnOptions = {"array",
+                                                          "output",
+                                                          "open-mode",
+                                                          "requeue",
+                                                          "no-requeue",
+                                                          "dependency",
+                                                          "parsable",
+                                                          "wrap",
+                                                          "wait",
+                                                          "test-only",
+                                                          "help",
+                                                          "usage",
+                                                          "version",
+                                                          "chdir",
+                                                          "input",
+                                                          "batch"};
+
+// What may stand in a value: letters, digits, and the marks of lists, node ranges, sizes, times,
+// addresses, constraints and file names. None of them means anything to sbatch's reader of #SBATCH
+// lines.
+constexpr std::string_view kValueMarks = "_-.,:=/+@%[]()*&|~^";
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+std::string shown_text(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
+  return result + (text.size() > 60 ? "...'" : "'");
+}
+
+bool is_option_name(std::string_view name) {
+  return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+           return std::islower(static_cast<unsigned char>(c)) ||
+                  std::isdigit(static_cast<unsigned char>(c)) || c == '-';
+         });
+}
+
+bool is_value(std::string_view value) {
+  return !value.empty() && std::all_of(value.begin(), value.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < 0x80 && std::isalnum(static_cast<unsigned char>(c))) ||
+           kValueMarks.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_digits(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return std::isdigit(static_cast<unsigned char>(c));
+  });
+}
+
+// "minutes", "minutes:seconds", "hours:minutes:seconds", "days-hours", "days-hours:minutes" and
+// "days-hours:minutes:seconds" (sbatch(1), --time).
+bool is_time(std::string_view text) {
+  if (const auto dash = text.find('-'); dash != std::string_view::npos) {
+    if (!is_digits(text.substr(0, dash))) return false;
+    text.remove_prefix(dash + 1);
+  }
+  for (int parts = 0; parts < 3; ++parts) {
+    const auto colon = text.find(':');
+    if (!is_digits(text.substr(0, colon))) return false;
+    if (colon == std::string_view::npos) return true;
+    text.remove_prefix(colon + 1);
+  }
+  return false;
+}
+
+// A whole number, in megabytes unless a suffix says otherwise (sbatch(1), --mem).
+bool is_memory(std::string_view text) {
+  if (!text.empty() && std::string_view("KMGT").find(text.back()) != std::string_view::npos)
+    text.remove_suffix(1);
+  return is_digits(text);
+}
+
+using ValueRule = bool (*)(std::string_view);
+
+struct SlurmKey {
+  std::string_view key;
+  std::string_view option;
+  ValueRule holds;
+  std::string_view expected;
+};
+
+constexpr std::array<SlurmKey, 5> kSlurmKeys = {{
+    {"time",
+     "--time",
+     is_time,
+     "minutes, [hours:]minutes:seconds or days-hours[:minutes[:seconds]]"},
+    {"memory", "--mem", is_memory, "a whole number with K, M, G or T, as \"4G\""},
+    {"partition", "--partition", is_value, "the name of a partition"},
+    {"account", "--account", is_value, "the name of an account"},
+    {"qos", "--qos", is_value, "the name of a quality of service"},
+}};
+
+}  // namespace
+
+std::string sbatch_option(const std::string& given, const Where& where) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(shown_text(given) + " is no option for sbatch: " + why, where);
+  };
+  const auto break_at = given.find_first_of("= ");
+  const std::string name = given.substr(0, break_at);
+  if (name.size() < 3 || name.compare(0, 2, "--") != 0 || !is_option_name(name.substr(2)))
+    refuse("expected --name=value");
+  const auto own = std::find(kOwnOptions.begin(), kOwnOptions.end(), name.substr(2));
+  if (own != kOwnOptions.end())
+    refuse("--" + std::string(*own) + " is set by airtruth's own job scripts");
+  if (break_at == std::string::npos) return name;
+  const std::string value = given.substr(break_at + 1);
+  if (!is_value(value))
+    refuse("its value is not one word of letters, digits and " + std::string(kValueMarks));
+  return name + "=" + value;
+}
+
+std::vector<std::string> slurm_in(const scene::TableReader& root) {
+  const scene::TableReader table =
+      root.table("slurm", {"time", "memory", "partition", "account", "qos", "cpus", "sbatch"});
+  std::vector<std::string> result;
+  for (const SlurmKey& key : kSlurmKeys) {
+    const auto value = table.text(key.key);
+    if (!value) continue;
+    if (!key.holds(*value))
+      table.fail(key.key,
+                 fmt::format("{} is {}; expected {}", key.key, shown_text(*value), key.expected));
+    result.push_back(fmt::format("{}={}", key.option, *value));
+  }
+  if (const auto cpus = table.whole("cpus", 1, 4096))
+    result.push_back(fmt::format("--cpus-per-task={}", *cpus));
+  const auto more = table.texts("sbatch").value_or(std::vector<std::string>{});
+  for (std::size_t i = 0; i < more.size(); ++i)
+    result.push_back(sbatch_option(more[i], table.where("sbatch", i)));
+  return result;
+}
+
+std::string sbatch_log(const std::string& folder, std::string_view pattern) {
+  if (std::any_of(folder.begin(), folder.end(), is_control))
+    throw Error("has a control character in its name, which no line of a job script can hold",
+                {shown_text(folder)});
+  if (folder.find('\\') != std::string::npos)
+    throw Error("has a backslash in its name, which Slurm does not take in the name of a log",
+                {folder});
+  std::string result = "\"";
+  for (const char c : folder) {
+    if (c == '"') result += '\\';
+    result += c;
+    if (c == '%') result += '%';
+  }
+  return result + "/" + std::string(pattern) + "\"";
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/labelled/export.h"
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/count_in.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* extension_of(Images images) { return images == Images::kPng ? ".png" : ".jpg"; }
+
+// The pictures that are written; Error for those that the format's reader does not open.
+Images images_of(const ExportOptions& options) {
+  const exchange::Pictures wanted = exchange::pictures_of(options.format);
+  if (!options.images) return wanted == exchange::Pictures::kPngAlone ? Images::kPng : Images::kJpg;
+  if (wanted == exchange::Pictures::kPngAlone && *options.images == Images::kJpg)
+    throw Error(std::string("images is jpg, and the readers of ") + exchange::name(options.format) +
+                " open names that end in .png alone; expected png or none");
+  if (wanted == exchange::Pictures::kJpgExpected && *options.images == Images::kPng)
+    warn(options.warn,
+         std::string("the got10k toolkit reads *.jpg alone of ") + exchange::name(options.format) +
+             " sequences, and the pictures are png");
+  return *options.images;
+}
+
+// What decides every byte of an export.
+Json options_json(const fs::path& set, const ExportOptions& options) {
+  const char* split = options.split == Split::kNone           ? "none"
+                      : options.split == Split::kByBackground ? "by-background"
+                                                              : "by-sequence";
+  const fs::path record = set / "dataset.json";
+  Json json = {
+      {"set", fs::absolute(set).lexically_normal().string()},
+      {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
+      {"format", exchange::name(options.format)},
+      {"images", *options.images == Images::kNone ? "none" : extension_of(*options.images) + 1},
+      {"every", options.every},
+      {"split", split},
+      {"shares", options.shares},
+      {"seed", options.seed},
+      {"boxes", name(options.boxes)},
+      {"one_class", options.one_class}};
+  if (options.mot_classes) json["mot_classes"] = true;
+  return json;
+}
+
+std::string boxes_text(Boxes boxes) {
+  switch (boxes) {
+    case Boxes::kCovered:
+      return "Boxes are the covered ones (`covered_box_px` of truth.jsonl): bounds of the pixels "
+             "that the aircraft covers with an alpha of 0.08 or more. An aircraft that covers no "
+             "pixel "
+             "so far has no box.\n";
+    case Boxes::kExact:
+      return "Boxes are the exact ones (`exact_box_px` of truth.jsonl), cut by the frame: bounds "
+             "of the projected shape, in fractions of a pixel.\n";
+    case Boxes::kVisible:
+      break;
+  }
+  return "Boxes are the visible ones (`visible_box_px` of truth.jsonl): bounds of the pixels that "
+         "changed, with what blur, sharpening, noise and the codec's quantiser add around the "
+         "aircraft.\n";
+}
+
+// The folder of an export while it is being made.
+class Place {
+ public:
+  Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
+    if (fs::exists(record())) {
+      const Json found = Json::parse(read_file(record()), nullptr, false);
+      if (!found.is_object() || found.value("options", Json()) != options_)
+        throw Error("holds an export made with other options; expected a new folder",
+                    {root_.string()});
+      complete_ = true;
+      fs::remove_all(root_ / ".export");  // of a run that ended between the two last steps
+      return;
+    }
+    const bool begun = fs::exists(begun_file());
+    if (begun && Json::parse(read_file(begun_file()), nullptr, false) != options_)
+      throw Error(
+          "holds an unfinished export with other options; expected the same, or a new folder",
+          {root_.string()});
+    if (!begun && fs::exists(root_) && (!fs::is_directory(root_) || !fs::is_empty(root_)))
+      throw Error("exists and is not empty; expected a new folder", {root_.string()});
+    std::error_code failed;
+    fs::create_directories(done_folder(), failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
+    write_file(begun_file(), options_.dump());
+  }
+
+  bool is_complete() const { return complete_; }
+  const fs::path& root() const { return root_; }
+  bool has_images_of(const std::string& name) const { return fs::exists(done_folder() / name); }
+  void mark_images_of(const std::string& name) const {
+    flush_files(root_);
+    write_file(done_folder() / name, "");
+  }
+  void finish(const Json& summary) const {
+    flush_files(root_);
+    write_file(record(), Json{{"options", options_}, {"summary", summary}}.dump(2) + "\n");
+    fs::remove_all(root_ / ".export");
+  }
+  fs::path record() const { return root_ / "export.json"; }
+
+ private:
+  fs::path begun_file() const { return root_ / ".export" / "options.json"; }
+  fs::path done_folder() const { return root_ / ".export" / "done"; }
+
+  fs::path root_;
+  Json options_;
+  bool complete_ = false;
+};
+
+class Export {
+ public:
+  Export(const LabelledSet& set, const Place& place, const ExportOptions& options)
+      : set_(set), place_(place), options_(options) {}
+
+  ExportSummary run() {
+    survey();
+    if (*options_.images != Images::kNone) write_images();
+    write_labels();
+    write_file(place_.root() / "LOSS.md", exchange::loss(options_.format) + about_boxes());
+    place_.finish({{"sequences", summary_.sequences},
+                   {"frames", summary_.frames},
+                   {"frames_of_part", summary_.frames_of_part}});
+    return summary_;
+  }
+
+ private:
+  void survey() {
+    std::vector<ClipFacts> facts;
+    std::set<std::string> categories;
+    for (const std::string& name : set_.names()) {
+      facts.push_back(set_.facts(name));
+      for (const std::string& category : facts.back().categories)
+        categories.insert(options_.one_class ? "aircraft" : category);
+    }
+    parts_ = parted(facts, options_.split, options_.shares, options_.seed, options_.warn);
+    // GOT-10k's toolkit asserts that a subset is train, val or test, and scores val by its truth.
+    if (options_.format == exchange::Format::kGot10k)
+      for (auto& [name, part] : parts_)
+        if (part == "all") part = "val";
+    write_.categories = {categories.begin(), categories.end()};
+    write_.image_extension = extension_of(*options_.images);
+    write_.with_images = *options_.images != Images::kNone;
+    write_.mot_classes = options_.mot_classes;
+    const std::vector<std::string> order = {"train", "val", "test", "all"};
+    for (const std::string& part : order)
+      if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
+        write_.parts.push_back(part);
+    writer_ = exchange::make_writer(options_.format, place_.root(), write_);
+  }
+
+  exchange::Clip clip_of(const std::string& name, bool with_masks = false) const {
+    exchange::Clip clip = set_.clip(name, options_.boxes, with_masks);
+    std::erase_if(clip.frames, [&](const exchange::LabelledFrame& frame) {
+      return frame.frame % options_.every != 0;
+    });
+    if (clip.frame_rate_hz) *clip.frame_rate_hz /= static_cast<double>(options_.every);
+    if (options_.one_class)
+      for (exchange::LabelledFrame& frame : clip.frames)
+        for (exchange::Label& label : frame.labels) label.category = "aircraft";
+    return clip;
+  }
+
+  void write_images() {
+    for (const std::string& name : set_.names())
+      if (!place_.has_images_of(name)) check_has_video(name, clip_of(name));
+    in_parallel(
+        set_.names().size(),
+        options_.jobs,
+        [this](std::size_t i) { write_images_of(set_.names()[i]); },
+        options_.progress,
+        options_.stop);
+  }
+
+  static void check_has_video(const std::string& name, const exchange::Clip& clip) {
+    if (clip.media.empty())
+      throw Error(name + " has no video to take pictures from; expected --images none");
+  }
+
+  void write_images_of(const std::string& name) {
+    if (place_.has_images_of(name)) return;
+    const exchange::Clip clip = clip_of(name);
+    check_has_video(name, clip);
+    const std::string& part = parts_.at(name);
+    const std::map<std::int64_t, std::vector<fs::path>> wanted = places_of(clip, part);
+    video::Reader reader(clip.media, {.threads = 1});
+    std::int64_t written = 0;
+    std::size_t left = wanted.size();
+    while (left > 0) {
+      const auto frame = reader.next();
+      if (!frame) break;
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const auto found = wanted.find(frame->index);
+      if (found == wanted.end()) continue;
+      --left;
+      for (const fs::path& file : found->second) {
+        fs::create_directories(file.parent_path());
+        video::write_still(file, frame->picture, Flush::kLater);
+        ++written;
+      }
+    }
+    if (left > 0)
+      throw Error("ends before the labels of " + name + " do: " + std::to_string(left) +
+                      " labelled frames are not in it",
+                  {clip.media.string()});
+    place_.mark_images_of(name);
+    const std::lock_guard lock(mutex_);
+    summary_.images += written;
+  }
+
+  // The clips that the format makes of one. The toolkits of single objects refuse sequences of one
+  // frame, whose truth they read as four numbers and no table.
+  std::vector<exchange::Clip> arranged(const exchange::Clip& clip) const {
+    std::vector<exchange::Clip> clips = exchange::arranged(options_.format, clip);
+    if (exchange::is_single_object(options_.format))
+      std::erase_if(clips, [](const exchange::Clip& one) { return one.frames.size() < 2; });
+    return clips;
+  }
+
+  // Which pictures are made of which frame.
+  std::map<std::int64_t, std::vector<fs::path>> places_of(const exchange::Clip& clip,
+                                                          const std::string& part) const {
+    std::map<std::int64_t, std::vector<fs::path>> places;
+    for (const exchange::Clip& one : arranged(clip)) {
+      const std::vector<fs::path> files = writer_->images(one, part);
+      for (std::size_t i = 0; i < one.frames.size(); ++i)
+        places[one.frames[i].frame].push_back(place_.root() / files[i]);
+    }
+    return places;
+  }
+
+  void write_labels() {
+    for (const std::string& name : set_.names()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
+      const std::string& part = parts_.at(name);
+      count_boxes(clip, set_.is_imported(name));
+      ++summary_.sequences;
+      summary_.frames += std::ssize(clip.frames);
+      summary_.frames_of_part[part] += std::ssize(clip.frames);
+      const auto clips = arranged(clip);
+      if (const std::size_t tracks = exchange::tracks_of(clip).size();
+          exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
+        warn(options_.warn,
+             name +
+                 (tracks == 0 ? " never shows an object" : " shows an object in one frame alone") +
+                 ", and " + exchange::name(options_.format) +
+                 " has no place for such a sequence: it is left out");
+      for (const exchange::Clip& one : clips) writer_->add(one, part);
+    }
+    writer_->finish();
+  }
+
+  void count_boxes(const exchange::Clip& clip, bool is_imported) {
+    (is_imported ? imported_ : rendered_) += 1;
+    for (const exchange::LabelledFrame& frame : clip.frames)
+      for (const exchange::Label& label : frame.labels) {
+        ++boxes_;
+        summary_.masks += label.mask ? 1 : 0;
+      }
+  }
+
+  // What the boxes of this export are, and what the masks are.
+  std::string about_boxes() const {
+    std::string text = "\n";
+    if (rendered_ > 0) text += boxes_text(options_.boxes);
+    if (imported_ > 0) text += "Boxes of imported clips are as they were imported.\n";
+    if (options_.format != exchange::Format::kCoco) return text;
+    text +=
+        summary_.masks > 0
+            ? fmt::format(
+                  "\n`segmentation` of {} of {} boxes holds the run lengths of the pixels with an "
+                  "alpha of 0.08 or more, and `area` their number; any other is its box.\n",
+                  summary_.masks,
+                  boxes_)
+            : "\n`segmentation` is the box as a polygon, no outline: the set has no masks "
+              "([output] masks = true makes them).\n";
+    return text;
+  }
+
+  const LabelledSet& set_;
+  const Place& place_;
+  const ExportOptions& options_;
+  exchange::WriteOptions write_;
+  std::unique_ptr<exchange::Writer> writer_;
+  std::map<std::string, std::string> parts_;
+  std::mutex mutex_;
+  std::int64_t rendered_ = 0, imported_ = 0, boxes_ = 0;
+  ExportSummary summary_;
+};
+
+}  // namespace
+
+ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& wanted) {
+  ExportOptions options = wanted;
+  options.images = images_of(wanted);
+  if (options.mot_classes && options.format != exchange::Format::kMot)
+    throw Error(std::string("numbered classes are asked for, and ") +
+                exchange::name(options.format) + " holds its classes anyway; expected format mot");
+  const LabelledSet labelled(set);
+  // XML, JSON and YAML hold the names of folders.
+  require_utf8(fs::absolute(set));
+  require_utf8(fs::absolute(out));
+  for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
+  if (options.boxes == Boxes::kCovered)
+    for (const std::string& name : labelled.names()) labelled.expect_covered_boxes(name);
+  const Place place(out, options_json(set, options));
+  if (place.is_complete()) {
+    ExportSummary summary;
+    try {
+      const Json record = Json::parse(read_file(place.record())).at("summary");
+      summary.sequences = count_in(record, "sequences", place.record());
+      summary.frames = count_in(record, "frames", place.record());
+      for (const auto& [part, frames] : record.at("frames_of_part").items())
+        summary.frames_of_part[part] =
+            count_in(record.at("frames_of_part"), part.c_str(), place.record());
+    } catch (const Json::exception&) {
+      throw Error("is not a record that airtruth wrote", {place.record().string()});
+    }
+    summary.was_there = true;
+    return summary;
+  }
+  if (labelled.missing() > 0)
+    warn(options.warn,
+         set.string() + ": " + std::to_string(labelled.missing()) +
+             " sequences of the catalogue are not there yet; the export is of the others");
+  return Export(labelled, place, options).run();
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/labelled/export.h"
+
+#include <fstream>
+#include <functional>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "dataset/build/build.h"
+#include "dataset/build/verify.h"
+#include "dataset/catalogue/small_catalogue.h"
+#include "dataset/labelled/import.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/image/colour.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "sequence/sequence/finished.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A small data set, made once for all the tests.
+class Made : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("airtruth_export_" + std::to_string(::getpid()));
+    fs::create_directories(root_);
+    write_file(root_ / "c.toml", std::string(kCatalogue) + "masks = true\n");
+    const BuildSummary summary = build(read_catalogue(root_ / "c.toml"), set(), {});
+    ASSERT_EQ(summary.made, 4);
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  static fs::path set() { return root_ / "set"; }
+  fs::path fresh() {
+    static int number = 0;
+    return root_ / ("out" + std::to_string(number++));
+  }
+  static std::set<std::string> files(const fs::path& folder) {
+    std::set<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file()) found.insert(fs::relative(entry.path(), folder).string());
+    return found;
+  }
+  // A copy of the set in which the first frame's truth of a sequence was changed, and its record
+  // made to fit.
+  fs::path changed(const std::string& sequence,
+                   const std::function<void(nlohmann::ordered_json&)>& change) {
+    const fs::path copy = fresh();
+    fs::copy(set(), copy, fs::copy_options::recursive);
+    const fs::path folder = copy / "sequences" / sequence;
+    std::string truth = read_file(folder / "truth.jsonl");
+    const std::size_t end = truth.find('\n');
+    auto line = nlohmann::ordered_json::parse(truth.substr(0, end));
+    change(line["intruders"][0]);
+    const std::string before = sha256_of(truth);
+    truth = line.dump() + truth.substr(end);
+    write_file(folder / "truth.jsonl", truth);
+    std::string record = read_file(folder / "sequence.json");
+    record.replace(record.find(before), before.size(), sha256_of(truth));
+    write_file(folder / "sequence.json", record);
+    finish(copy);  // the manifest too
+    return copy;
+  }
+  inline static fs::path root_;
+};
+
+const std::vector<exchange::Format> kAll = {exchange::Format::kCoco,
+                                            exchange::Format::kYolo,
+                                            exchange::Format::kMot,
+                                            exchange::Format::kVoc,
+                                            exchange::Format::kCvat,
+                                            exchange::Format::kAot,
+                                            exchange::Format::kOtb,
+                                            exchange::Format::kGot10k,
+                                            exchange::Format::kVot};
+
+TEST_F(Made, EveryFormatComesBackWithTheBoxesOfTheTruthAndPicturesOfTheVideo) {
+  const LabelledSet made(set());
+  for (const exchange::Format format : kAll) {
+    SCOPED_TRACE(exchange::name(format));
+    ExportOptions options;
+    options.format = format;
+    options.images = Images::kPng;
+    const fs::path out = fresh();
+    const ExportSummary summary = export_set(set(), out, options);
+    EXPECT_EQ(summary.sequences, 4);
+    EXPECT_EQ(summary.frames, 32);
+    EXPECT_TRUE(fs::exists(out / "LOSS.md"));
+    EXPECT_FALSE(fs::exists(out / ".export"));
+    ImportOptions back;
+    back.format = format;
+    const fs::path again = fresh();
+    EXPECT_EQ(import_set(out, again, back).clips, 4);
+    const LabelledSet read(again);
+    EXPECT_EQ(read.names(), made.names());
+    for (const std::string& name : made.names()) {
+      const auto expected = exchange::arranged(format, made.clip(name)).at(0);
+      const exchange::Clip clip = read.clip(name);
+      ASSERT_EQ(clip.frames.size(), expected.frames.size());
+      EXPECT_EQ(clip.width, 160);
+      for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+        ASSERT_EQ(clip.frames[i].labels.size(), expected.frames[i].labels.size());
+        if (clip.frames[i].labels.empty()) continue;
+        EXPECT_NEAR(clip.frames[i].labels[0].box_px.x, expected.frames[i].labels[0].box_px.x, 1e-9);
+      }
+      // The picture of the second frame is the video's: boxes and pixels are of one frame.
+      video::Reader pictures(clip.media);
+      video::Reader frames(expected.media);
+      for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+        auto frame = frames.next();
+        while (frame->index < expected.frames[i].frame) frame = frames.next();
+        const image::Rgb8 a = image::rgb8_from_picture(pictures.next()->picture);
+        const image::Rgb8 b = image::rgb8_from_picture(frame->picture);
+        ASSERT_TRUE(std::equal(a.at(0, 0), a.at(0, 0) + 3 * 160 * 120, b.at(0, 0))) << name;
+      }
+    }
+  }
+}
+
+TEST_F(Made, AnExportGoesOnWhereItStoppedAndTheSecondRunCostsNothing) {
+  ExportOptions options;
+  options.format = exchange::Format::kMot;
+  const fs::path whole = fresh();
+  export_set(set(), whole, options);
+  const fs::path out = fresh();
+  std::stop_source source;
+  ExportOptions stopped = options;
+  stopped.jobs = 1;
+  stopped.stop = source.get_token();
+  stopped.progress = [&](std::int64_t done, std::int64_t) {
+    if (done == 2) source.request_stop();
+  };
+  EXPECT_THROW(export_set(set(), out, stopped), Interrupted);
+  EXPECT_FALSE(fs::exists(out / "export.json"));
+  const ExportSummary rest = export_set(set(), out, options);
+  EXPECT_EQ(rest.images, 16);  // of 32
+  EXPECT_EQ(files(out), files(whole));
+  for (const std::string& name : files(out))
+    EXPECT_EQ(sha256_of_file(out / name), sha256_of_file(whole / name)) << name;
+  EXPECT_TRUE(export_set(set(), out, options).was_there);
+}
+
+TEST_F(Made, AnExportOverSomethingElseIsRefused) {
+  const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
+    try {
+      export_set(set(), out, options);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  const fs::path out = fresh();
+  fs::create_directories(out);
+  write_file(out / "mine.txt", "precious");
+  EXPECT_THAT(error(out, {}), HasSubstr("exists and is not empty"));
+  EXPECT_THAT(files(out), ElementsAre("mine.txt"));
+  const fs::path other = fresh();
+  ExportOptions options;
+  options.images = Images::kNone;
+  export_set(set(), other, options);
+  options.every = 2;
+  EXPECT_THAT(error(other, options), HasSubstr("made with other options"));
+  EXPECT_THAT(error(fresh() / "x", {.jobs = 1}), "no error");
+}
+
+TEST_F(Made, CountsOfRecordsThatWereChangedAreOneLine) {
+  const auto changed = [](const fs::path& file, const std::string& from, const std::string& to) {
+    std::string text = read_file(file);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << file;
+    write_file(file, text.replace(at, from.size(), to));
+  };
+  const fs::path out = fresh();
+  ExportOptions options;
+  options.images = Images::kNone;
+  export_set(set(), out, options);
+  fs::create_directories(out / ".export" / "done");  // of a run that was killed at its last step
+  EXPECT_TRUE(export_set(set(), out, options).was_there);
+  EXPECT_FALSE(fs::exists(out / ".export"));
+  changed(out / "export.json", "\"frames\": 32", "\"frames\": 1e308");
+  try {
+    export_set(set(), out, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message(), "frames is 1e+308; expected a whole number from 0");
+  }
+  const fs::path copy = fresh();
+  fs::copy(set(), copy, fs::copy_options::recursive);
+  const LabelledSet labelled(copy);
+  const std::string first = labelled.names().front();
+  // 2^64 - 1 is -1 in 64 bits.
+  changed(labelled.folder(first) / "sequence.json",
+          "\"frames\": 8",
+          "\"frames\": 18446744073709551615");
+  try {
+    labelled.facts(first);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message(), "frames is 18446744073709551615; expected a whole number from 0");
+  }
+}
+
+TEST_F(Made, ABackgroundIsInOnePartAloneUnlessAskedFor) {
+  std::vector<std::string> warnings;
+  ExportOptions options;
+  options.format = exchange::Format::kMot;
+  options.images = Images::kNone;
+  options.shares = {0.5, 0.5, 0};
+  options.warn = [&](const std::string& w) { warnings.push_back(w); };
+  const fs::path out = fresh();
+  const ExportSummary summary = export_set(set(), out, options);
+  EXPECT_THAT(warnings, ElementsAre());
+  EXPECT_EQ(summary.frames_of_part,
+            (std::map<std::string, std::int64_t>{{"train", 16}, {"val", 16}}));
+  for (const char* part : {"train", "val"}) {
+    std::set<std::string> backgrounds;
+    for (const auto& entry : fs::directory_iterator(out / part))
+      backgrounds.insert(entry.path().filename().string().substr(0, 3));
+    EXPECT_EQ(backgrounds.size(), 1u) << part;
+  }
+  options.split = Split::kBySequence;
+  options.shares = {0.75, 0.25, 0};
+  export_set(set(), fresh(), options);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("in more than one part")));
+}
+
+TEST_F(Made, EveryNthFrameAndOneClass) {
+  ExportOptions options;
+  options.format = exchange::Format::kYolo;
+  options.images = Images::kNone;
+  options.every = 3;
+  options.one_class = true;
+  options.split = Split::kNone;
+  const fs::path out = fresh();
+  EXPECT_EQ(export_set(set(), out, options).frames, 12);
+  EXPECT_THAT(read_file(out / "data.yaml"), HasSubstr("0: \"aircraft\"\n"));
+  const auto truth = LabelledSet(set()).clip("sky-across-b737");
+  ASSERT_FALSE(truth.frames[3].labels.empty());
+  const std::string second = read_file(out / "labels/all/sky-across-b737_000001.txt");
+  const Box& box = truth.frames[3].labels[0].box_px;
+  EXPECT_THAT(
+      second,
+      testing::StartsWith("0 " + std::to_string((box.x + box.width / 2) / 160).substr(0, 5)));
+}
+
+TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
+  const LabelledSet set_of_boxes(set());
+  const std::string name = "sky-across-b737";
+  const auto truth = sequence::open_finished(set_of_boxes.folder(name)).truth.frames;
+  const auto covered = set_of_boxes.clip(name).frames;
+  const auto exact = set_of_boxes.clip(name, Boxes::kExact).frames;
+  const auto visible = set_of_boxes.clip(name, Boxes::kVisible).frames;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const annotation::Intruder& one = truth[k].intruders[0];
+    ASSERT_TRUE(one.covered_box_px && one.visible_box_px && one.exact_box_px);
+    const PixelBox& c = *one.covered_box_px;
+    const PixelBox& v = *one.visible_box_px;
+    EXPECT_EQ(covered[k].labels.at(0).box_px,
+              (Box{double(c.x), double(c.y), double(c.width), double(c.height)}));
+    EXPECT_EQ(visible[k].labels.at(0).box_px,
+              (Box{double(v.x), double(v.y), double(v.width), double(v.height)}));
+    const Box& e = exact[k].labels.at(0).box_px;
+    EXPECT_GE(e.x, 0);
+    EXPECT_LE(e.right(), 160);
+    if (one.cut_by_frame == 0) {
+      EXPECT_EQ(e, *one.exact_box_px);
+    }
+  }
+  ExportOptions options;
+  options.format = exchange::Format::kCvat;
+  options.images = Images::kNone;
+  for (const auto& [boxes, key] : {std::pair(Boxes::kCovered, "`covered_box_px`"),
+                                   std::pair(Boxes::kExact, "`exact_box_px`"),
+                                   std::pair(Boxes::kVisible, "`visible_box_px`")}) {
+    options.boxes = boxes;
+    const fs::path out = fresh();
+    export_set(set(), out, options);
+    EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr(key));
+  }
+  EXPECT_EQ(boxes_from_name("exact"), Boxes::kExact);
+  EXPECT_THROW(boxes_from_name("tight"), Error);
+}
+
+TEST_F(Made, CocoHoldsThePixelsOfSetsThatHaveMasks) {
+  ExportOptions options;
+  options.images = Images::kNone;
+  options.split = Split::kNone;
+  const fs::path out = fresh();
+  EXPECT_EQ(export_set(set(), out, options).masks, 32);
+  EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr("`segmentation` of 32 of 32 boxes"));
+  const auto coco = nlohmann::json::parse(read_file(out / "annotations/instances_all.json"));
+  for (const nlohmann::json& one : coco.at("annotations")) {
+    EXPECT_EQ(one.at("segmentation").at("size"), nlohmann::json::parse("[120, 160]"));
+    EXPECT_TRUE(one.at("segmentation").at("counts").is_string());
+    const auto box = one.at("bbox").get<std::array<double, 4>>();
+    EXPECT_GT(one.at("area"), 0.1 * box[2] * box[3]);
+    EXPECT_LE(one.at("area"), box[2] * box[3]);
+  }
+}
+
+TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
+  EXPECT_THAT(verify(set(), {}).faults, ElementsAre());
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["covered_box_px"][2] = intruder["covered_box_px"][2].get<int>() - 1;
+  });
+  EXPECT_THAT(verify(copy, {}).faults,
+              ElementsAre(HasSubstr("its mask is not of its covered box")));
+}
+
+// A set that was made before truth had covered boxes.
+TEST_F(Made, AnOlderSetIsRefusedWithOneLineOrTakenByItsVisibleBoxes) {
+  const fs::path old = fresh();
+  fs::copy(set(), old, fs::copy_options::recursive);
+  for (const auto& folder : fs::directory_iterator(old / "sequences")) {
+    auto record = nlohmann::ordered_json::parse(read_file(folder.path() / "sequence.json"));
+    record.erase("covered_alpha");
+    write_file(folder.path() / "sequence.json", record.dump());
+  }
+  ExportOptions options;
+  options.images = Images::kNone;
+  std::string said = "nothing";
+  const fs::path refused = fresh();
+  try {
+    export_set(old, refused, options);
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  EXPECT_THAT(said, HasSubstr("was made before truth had covered boxes"));
+  EXPECT_THAT(said, HasSubstr("--boxes visible"));
+  EXPECT_EQ(said.find('\n'), std::string::npos);
+  EXPECT_FALSE(fs::exists(refused));
+  options.boxes = Boxes::kVisible;
+  EXPECT_EQ(export_set(old, fresh(), options).frames, 32);
+  std::vector<std::string> warnings;
+  const Warn warn = [&](const std::string& w) { warnings.push_back(w); };
+  EXPECT_EQ(LabelledSet(old).usual_boxes(warn), Boxes::kVisible);
+  EXPECT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(LabelledSet(set()).usual_boxes(warn), Boxes::kCovered);
+  EXPECT_EQ(warnings.size(), 1u);
+}
+
+TEST_F(Made, WhatIsImportedCanBeLookedAt) {
+  const fs::path out = fresh();
+  ImportOptions options;
+  options.format = exchange::Format::kCsv;
+  const fs::path csv = root_ / "boxes.csv";
+  write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n5,11.5,20,30,40\n");
+  options.videos[""] = LabelledSet(set()).clip("sky-across-b737").media;
+  import_set(csv, out, options);
+  const auto finished = sequence::open_finished(out / "sequences" / "boxes");
+  ASSERT_EQ(finished.truth.frames.size(), 6u);
+  EXPECT_EQ(*finished.truth.frames[5].intruders[0].visible_box_px, (PixelBox{11, 20, 31, 40}));
+  sequence::write_overlay(finished, root_ / "look.mp4", {});
+  EXPECT_TRUE(fs::exists(root_ / "look.mp4"));
+  EXPECT_THROW(import_set(csv, out, options), Error);
+}
+
+TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
+  VerifyOptions options;
+  options.deep_every = 1;
+  const VerifyResult sound = verify(set(), options);
+  EXPECT_THAT(sound.faults, ElementsAre());
+  EXPECT_EQ(sound.recomposed, 32);
+  // A visible box that was moved by one pixel.
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["visible_box_px"][0] = intruder["visible_box_px"][0].get<int>() + 1;
+  });
+  EXPECT_THAT(verify(copy, options).faults,
+              testing::Contains(HasSubstr("has another truth when it is computed again")));
+}
+
+TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
+  EXPECT_GT(verify(set(), {}).in_view, 16);
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["state"] = "outside";
+    intruder.erase("visible_box_px");
+    intruder.erase("covered_box_px");
+  });
+  const VerifyResult result = verify(copy, {});
+  EXPECT_EQ(result.in_view_without_box, 1);
+  EXPECT_THAT(result.faults,
+              ElementsAre(HasSubstr("in view by its position, and without a box"),
+                          HasSubstr("a mask, and not visible")));
+}
+
+}  // namespace
+}  // namespace airtruth::dataset

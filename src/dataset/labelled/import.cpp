@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/labelled/import.h"
+
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "foundation/base/version.h"
+#include "picture/video/numbered_images.h"
+#include "picture/video/reader.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbered pictures are read in the order of their numbers from the first on; labels go with them
+// only where there is one for each.
+void match_pictures(exchange::Clip& clip, const Warn& warn) {
+  if (clip.media.empty() || fs::is_regular_file(clip.media)) return;
+  const auto images = video::numbered_images(clip.media);
+  const std::size_t pictures = images ? images->files.size() : 0;
+  if (pictures != clip.frames.size()) {
+    airtruth::warn(warn,
+                   clip.media.string() + ": holds " + std::to_string(pictures) +
+                       " pictures, and there are labels for " + std::to_string(clip.frames.size()) +
+                       " frames of " + clip.name + "; they are imported without the pictures");
+    clip.media.clear();
+    return;
+  }
+  for (std::size_t i = 0; i < clip.frames.size(); ++i)
+    clip.frames[i].frame = static_cast<std::int64_t>(i);
+}
+
+// Sizes, rates and times that the labels do not say and the video does.
+void ask_video(exchange::Clip& clip, const Warn& warn) {
+  if (clip.media.empty()) return;
+  const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
+  if (clip.width == 0) {
+    clip.width = info.width;
+    clip.height = info.height;
+  } else if (clip.width != info.width || clip.height != info.height) {
+    throw Error("is " + std::to_string(info.width) + "x" + std::to_string(info.height) +
+                    ", and the labels of " + clip.name + " are for " + std::to_string(clip.width) +
+                    "x" + std::to_string(clip.height),
+                {clip.media.string()});
+  }
+  const bool is_video = fs::is_regular_file(clip.media);
+  if (!clip.frame_rate_hz && is_video) clip.frame_rate_hz = info.frame_rate.value();
+  const std::int64_t labelled = clip.frames.empty() ? 0 : clip.frames.back().frame + 1;
+  if (is_video && info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
+    airtruth::warn(warn,
+                   clip.media.string() + ": has about " +
+                       std::to_string(info.frame_count_estimate) + " frames, and the labels of " +
+                       clip.name + " go on to the " + std::to_string(labelled) + "th");
+}
+
+Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
+  std::set<std::string> categories;
+  std::int64_t labels = 0;
+  for (const exchange::LabelledFrame& frame : clip.frames)
+    for (const exchange::Label& label : frame.labels) {
+      categories.insert(label.category);
+      ++labels;
+    }
+  Json record = {{"format", "airtruth labelled clip 1"},
+                 {"version", kVersion},
+                 {"name", clip.name},
+                 {"imported_from", exchange::name(options.format)},
+                 {"frames", clip.frames.size()},
+                 {"labels", labels},
+                 {"categories", categories}};
+  if (!clip.media.empty()) record["media"] = clip.media.string();
+  return record;
+}
+
+void expect_rate(const exchange::Clip& clip, const fs::path& source) {
+  constexpr double kHighestRate_hz = 1e6;  // as in labels.jsonl
+  if (clip.frame_rate_hz && !(*clip.frame_rate_hz > 0 && *clip.frame_rate_hz <= kHighestRate_hz))
+    throw Error(fmt::format("{}: the frame rate is {} Hz; expected a number above 0, up to {}",
+                            clip.name,
+                            *clip.frame_rate_hz,
+                            kHighestRate_hz),
+                {source.string()});
+}
+
+// Names that are good for a folder, each once.
+std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
+  std::string name = wanted;
+  // Labels, records and other formats' files are UTF-8.
+  const bool is_utf8 = utf8_fault(name) == std::string::npos;
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '/' || byte < 0x20 || (byte >= 0x80 && !is_utf8)) c = '-';
+  }
+  if (name.empty() || name == "." || name == "..") name = "clip";
+  if (name.size() > 200) {
+    std::size_t end = 200;
+    while (is_utf8 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
+    name.resize(end);
+  }
+  std::string unique = name;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "-" + std::to_string(i);
+  return unique;
+}
+
+}  // namespace
+
+ImportSummary import_set(const fs::path& source,
+                         const fs::path& out,
+                         const ImportOptions& options) {
+  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
+    throw Error("exists and is not empty; expected a new folder", {out.string()});
+  check_output_folder(out);
+  std::vector<exchange::Clip> clips =
+      exchange::read_clips(options.format, source, options.read, options.warn);
+  std::set<std::string> taken;
+  for (exchange::Clip& clip : clips) {
+    auto video = options.videos.find(clip.name);
+    if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
+    if (video != options.videos.end()) clip.media = video->second;
+    if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    require_utf8(clip.media);
+    match_pictures(clip, options.warn);
+    ask_video(clip, options.warn);
+    clip.name = free_name(clip.name, taken);
+    expect_rate(clip, source);
+  }
+  // Nothing is written before everything is read.
+  ImportSummary summary;
+  for (const exchange::Clip& clip : clips) {
+    const fs::path folder = out / "sequences" / clip.name;
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
+    const Json record = record_of(clip, options);
+    write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
+    // Categories are as the labels have them, and may be no UTF-8.
+    write_file(folder / "sequence.json",
+               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+               Flush::kLater);
+    ++summary.clips;
+    summary.frames += std::ssize(clip.frames);
+    summary.labels += record.at("labels").get<std::int64_t>();
+  }
+  flush_files(out);
+  return summary;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "foundation/base/log.h"
+#include "truth/exchange/exchange.h"
+
+namespace airtruth::dataset {
+
+namespace fs = std::filesystem;
+
+struct ImportOptions {
+  exchange::Format format = exchange::Format::kCoco;
+  exchange::ReadOptions read;
+  // Clip name -> its video, where that is not found beside the labels. "" for the only clip.
+  std::map<std::string, fs::path> videos;
+  Warn warn;
+};
+
+struct ImportSummary {
+  std::int64_t clips = 0;
+  std::int64_t frames = 0;
+  std::int64_t labels = 0;
+};
+
+// Reads labelled video of another format and leaves out/sequences/NAME/labels.jsonl and
+// sequence.json (docs/formats/labels.md), which `overlay`, `dataset export` and the evaluation read
+// as they read what was rendered. Videos stay where they are. Error where `out` exists and is not
+// empty.
+ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/labelled/split.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr std::array<const char*, 3> kParts = {"train", "val", "test"};
+
+struct Group {
+  std::string name;
+  std::string order;  // drawn: groups of one size go in no order of names
+  std::vector<std::string> sequences;
+  std::int64_t frames = 0;
+};
+
+std::vector<Group> groups_of(const std::vector<ClipFacts>& clips, Split split, std::uint64_t seed) {
+  std::map<std::string, Group> groups;
+  for (const ClipFacts& clip : clips) {
+    Group& group = groups[split == Split::kByBackground ? clip.background : clip.name];
+    group.sequences.push_back(clip.name);
+    group.frames += clip.frames;
+  }
+  std::vector<Group> result;
+  for (auto& [name, group] : groups) {
+    group.name = name;
+    group.order = sha256_of(std::to_string(seed) + "/" + fs::path(name).filename().string());
+    result.push_back(std::move(group));
+  }
+  std::sort(result.begin(), result.end(), [](const Group& a, const Group& b) {
+    return a.frames != b.frames ? a.frames > b.frames : a.order < b.order;
+  });
+  return result;
+}
+
+}  // namespace
+
+Split split_from_name(std::string_view name) {
+  if (name == "none") return Split::kNone;
+  if (name == "by-background") return Split::kByBackground;
+  if (name == "by-sequence") return Split::kBySequence;
+  throw Error("--split is '" + std::string(name) +
+              "'; expected none, by-background or by-sequence");
+}
+
+std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
+                                          Split split,
+                                          const std::array<double, 3>& shares,
+                                          std::uint64_t seed,
+                                          const Warn& warn) {
+  std::map<std::string, std::string> parts;
+  if (split == Split::kNone) {
+    for (const ClipFacts& clip : clips) parts[clip.name] = "all";
+    return parts;
+  }
+  const std::vector<Group> groups = groups_of(clips, split, seed);
+  double total = 0;
+  for (const Group& group : groups) total += static_cast<double>(group.frames);
+  std::array<double, 3> frames{};
+  std::array<std::size_t, 3> count{};
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::size_t left = groups.size() - g;
+    std::size_t empty = 0;
+    for (std::size_t p = 0; p < 3; ++p) empty += shares[p] > 0 && count[p] == 0 ? 1 : 0;
+    std::size_t best = 3;
+    for (std::size_t p = 0; p < 3; ++p) {
+      if (shares[p] <= 0 || (left <= empty && count[p] > 0)) continue;
+      const auto deficit = [&](std::size_t q) { return shares[q] * total - frames[q]; };
+      if (best == 3 || deficit(p) > deficit(best)) best = p;
+    }
+    check(best < 3, "some part has a share");
+    for (const std::string& name : groups[g].sequences) parts[name] = kParts[best];
+    frames[best] += static_cast<double>(groups[g].frames);
+    ++count[best];
+  }
+  for (std::size_t p = 0; p < 3; ++p)
+    if (shares[p] > 0 && count[p] == 0)
+      airtruth::warn(warn,
+                     fmt::format("{} stays empty: there are only {} {}",
+                                 kParts[p],
+                                 groups.size(),
+                                 split == Split::kByBackground ? "backgrounds" : "sequences"));
+  std::map<std::string, std::set<std::string>> parts_of_background;
+  for (const ClipFacts& clip : clips) parts_of_background[clip.background].insert(parts[clip.name]);
+  const auto shared = std::count_if(parts_of_background.begin(),
+                                    parts_of_background.end(),
+                                    [](const auto& entry) { return entry.second.size() > 1; });
+  if (shared > 0)
+    airtruth::warn(warn,
+                   fmt::format("{} of {} backgrounds are in more than one part: what is learned on "
+                               "one may be known by heart on the other",
+                               shared,
+                               parts_of_background.size()));
+  return parts;
+}
+
+}  // namespace airtruth::dataset

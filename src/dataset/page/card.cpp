@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/page/card.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "dataset/catalogue/folder.h"
+#include "foundation/base/version.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using scene::Scene;
+using Scenes = std::vector<Scene>;
+
+std::size_t count_of(const Scenes& scenes, const std::function<bool(const Scene&)>& has) {
+  return static_cast<std::size_t>(std::count_if(scenes.begin(), scenes.end(), has));
+}
+
+bool is_positive(const std::optional<double>& value) { return value && *value > 0; }
+
+struct Effect {
+  const char* name;
+  bool (*is_in)(const scene::CameraModel&);
+};
+
+const std::array<Effect, 9> kEffects = {{
+    {"motion blur of the exposure",
+     [](const scene::CameraModel& m) {
+       return is_positive(m.exposure_s) || is_positive(m.angle_deg);
+     }},
+    {"rolling shutter", [](const scene::CameraModel& m) { return is_positive(m.readout_s); }},
+    {"haze",
+     [](const scene::CameraModel& m) {
+       return m.extinction_per_km && std::any_of(m.extinction_per_km->begin(),
+                                                 m.extinction_per_km->end(),
+                                                 [](double e) { return e > 0; });
+     }},
+    {"point spread", [](const scene::CameraModel& m) { return is_positive(m.point_spread_px); }},
+    {"sharpening", [](const scene::CameraModel& m) { return is_positive(m.sharpening); }},
+    {"sensor noise",
+     [](const scene::CameraModel& m) {
+       return is_positive(m.noise_gain) || is_positive(m.noise_floor);
+     }},
+    {"soft chroma", [](const scene::CameraModel& m) { return is_positive(m.chroma_spread_px); }},
+    {"the codec's quantiser",
+     [](const scene::CameraModel& m) { return is_positive(m.codec_step); }},
+    {"a tone curve other than sRGB's",
+     [](const scene::CameraModel& m) { return m.gamma.has_value(); }},
+}};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string share_of(std::size_t count, std::size_t all) {
+  return count == all ? "" : fmt::format(" (in {} of {} sequences)", count, all);
+}
+
+std::string background_text(const Background& background) {
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  if (flight == nullptr)
+    return std::get<std::filesystem::path>(background.source).filename().string() +
+           ": a video; its licence is its owner's to state";
+  return fmt::format(
+      "virtual flight, seed {}, {} frames, {}x{}; drawn by airtruth, not filmed, and free of "
+      "others' rights",
+      flight->seed,
+      flight->frame_count,
+      flight->width,
+      flight->height);
+}
+
+void add_catalogue(const Folder& folder, Card& card) {
+  const Catalogue catalogue = read_catalogue(folder.catalogue());
+  card.emplace_back("name", catalogue.name);
+  card.emplace_back("seed", fmt::format("{}", catalogue.seed));
+  card.emplace_back("complete",
+                    std::filesystem::exists(folder.record()) ? "yes" : "no: sequences are missing");
+  for (const Background& background : catalogue.backgrounds)
+    card.emplace_back("background " + background.name, background_text(background));
+}
+
+std::string rendering_text(const Scenes& scenes) {
+  std::vector<std::string> kinds;
+  for (const Scene& s : scenes) {
+    const std::string kind =
+        fmt::format("quality {}, {}, {}", s.render.quality, s.composite.method, s.output.video);
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  }
+  std::string text;
+  for (const std::string& kind : kinds) text += (text.empty() ? "" : "; ") + kind;
+  return text;
+}
+
+std::string aircraft_text(const Scenes& scenes) {
+  bool any_of_flightgear = false, any_file = false;
+  for (const Scene& s : scenes)
+    for (const scene::Intruder& intruder : s.intruders)
+      (std::filesystem::path(intruder.aircraft).has_extension() ? any_file : any_of_flightgear) =
+          true;
+  std::vector<std::string> parts;
+  if (any_of_flightgear)
+    parts.emplace_back(
+        "models of FlightGear's AI traffic (Debian package flightgear-data-ai, GPL-2+): pictures "
+        "of "
+        "them in this set derive from those models");
+  if (any_file) parts.emplace_back("model files, whose licence is their owners' to state");
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string labels_text(const std::vector<Portrait>& portraits, const Scenes& scenes) {
+  std::int64_t frames = 0, without = 0, visible = 0, covered = 0;
+  for (const Portrait& portrait : portraits) {
+    if (!portrait.scene) continue;
+    frames += portrait.facts.frames;
+    without += portrait.without_box;
+    visible += portrait.frames_by_state[0];
+    covered += portrait.covered_boxes;
+  }
+  const std::size_t with_masks = count_of(scenes, [](const Scene& s) { return s.output.masks; });
+  return fmt::format(
+      "computed, not drawn by hand: exact boxes from the projected shape, covered boxes from the "
+      "pixels that the aircraft covers ({} for {} sightings), visible boxes from the pixels that "
+      "changed. In view by geometry and without a box: {} of {} frames. Masks of pixels: {}",
+      covered,
+      visible,
+      without,
+      frames,
+      with_masks == 0 ? "none" : fmt::format("in {} of {} sequences", with_masks, scenes.size()));
+}
+
+}  // namespace
+
+std::string camera_sentence(const std::vector<Scene>& scenes) {
+  std::vector<std::string> with, without;
+  for (const Effect& effect : kEffects) {
+    const std::size_t count =
+        count_of(scenes, [&](const Scene& s) { return effect.is_in(s.camera_model); });
+    if (count > 0)
+      with.push_back(effect.name + share_of(count, scenes.size()));
+    else
+      without.emplace_back(effect.name);
+  }
+  std::string text = with.empty() ? "none of what a camera and the air do" : joined(with);
+  if (!without.empty()) text += ". Not on the intruder: " + joined(without);
+  return text;
+}
+
+std::string motion_sentence(const std::vector<Scene>& scenes) {
+  const std::size_t all = scenes.size();
+  const auto by = [&](const char* model) {
+    return count_of(scenes, [&](const Scene& s) { return s.motion.model == model; });
+  };
+  std::vector<std::string> parts;
+  if (const std::size_t n = by("rotation"); n > 0)
+    parts.push_back("a rotation through the lens, measured in the video, exact for what is far" +
+                    share_of(n, all));
+  if (const std::size_t n = by("homography"); n > 0)
+    parts.push_back("a homography, measured in the video, exact for what is far through a pinhole" +
+                    share_of(n, all));
+  if (const std::size_t n = by("none"); n > 0)
+    parts.push_back("none is looked for: the camera moves along its stated path alone" +
+                    share_of(n, all));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+Card card_of(const std::filesystem::path& set, const std::vector<Portrait>& portraits) {
+  Card card = {{"made by", std::string("airtruth ") + kVersion}};
+  const Folder folder{set};
+  if (std::filesystem::exists(folder.catalogue())) add_catalogue(folder, card);
+  std::int64_t frames = 0;
+  Scenes scenes;
+  for (const Portrait& portrait : portraits) {
+    frames += portrait.facts.frames;
+    if (portrait.scene) scenes.push_back(*portrait.scene);
+  }
+  card.emplace_back("frames", fmt::format("{}", frames));
+  if (scenes.size() < portraits.size())
+    card.emplace_back(
+        "imported",
+        fmt::format("{} of {} sequences were labelled elsewhere; of how they were made "
+                    "nothing is known here",
+                    portraits.size() - scenes.size(),
+                    portraits.size()));
+  if (scenes.empty()) return card;
+  card.emplace_back("rendering", rendering_text(scenes));
+  card.emplace_back("aircraft", aircraft_text(scenes));
+  card.emplace_back("labels", labels_text(portraits, scenes));
+  card.emplace_back("on the intruder's light", camera_sentence(scenes));
+  card.emplace_back("the camera's motion", motion_sentence(scenes));
+  return card;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/page/portrait.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "picture/video/reader.h"
+#include "sequence/sequence/finished.h"
+#include "sequence/sequence/world.h"
+#include "truth/annotation/in_view.h"
+
+namespace airtruth::dataset {
+namespace {
+
+std::array<double, 3> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intruder& intruder) {
+  Portrait::Point point;
+  point.frame = frame.frame;
+  point.time_s = frame.time_s;
+  point.range_m = intruder.range_m;
+  point.azimuth_deg = intruder.azimuth_deg;
+  point.elevation_deg = intruder.elevation_deg;
+  if (intruder.position_ned_m) point.position_ned_m = numbers(*intruder.position_ned_m);
+  if (const auto box = annotation::box_to_show(intruder)) {
+    point.width_px = box->width;
+    point.height_px = box->height;
+  }
+  point.state = annotation::name(intruder.state);
+  return point;
+}
+
+Portrait::Camera camera_of(const annotation::Frame& frame, int width, int height) {
+  const Vector3 middle(width / 2.0, height / 2.0, 1);
+  const Vector3 moved = frame.shake.frame_from_reference * middle;
+  const Homography& h = frame.shake.frame_from_reference;
+  const double degrees = 180 / std::numbers::pi;
+  return {frame.frame,
+          numbers(frame.camera_position_ned_m),
+          frame.camera_attitude_yaw_pitch_roll_deg.yaw_deg,
+          (moved.head<2>() / moved.z() - middle.head<2>()).norm(),
+          std::atan2(h(1, 0), h(0, 0)) * degrees};
+}
+
+// The cell of the picture that a box's centre lies in.
+std::size_t cell_of(const PixelBox& box, int width, int height) {
+  const auto part = [](double at, double whole, int parts) {
+    return static_cast<std::size_t>(std::clamp(std::floor(at / whole * parts), 0.0, parts - 1.0));
+  };
+  return part(box.y + box.height / 2.0, height, Portrait::kCellRows) * Portrait::kCellColumns +
+         part(box.x + box.width / 2.0, width, Portrait::kCellColumns);
+}
+
+void count(const sequence::Finished& finished, Portrait& portrait) {
+  std::optional<lens::Lens> lens;
+  if (finished.scene) lens = annotation::lens_from(finished.truth.lens);
+  portrait.centres.assign(Portrait::kCellColumns * Portrait::kCellRows, 0);
+  for (const annotation::Frame& frame : finished.truth.frames) {
+    bool is_seen = false;
+    for (const annotation::Intruder& intruder : frame.intruders) {
+      ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
+      portrait.covered_boxes += intruder.covered_box_px ? 1 : 0;
+      portrait.without_box += lens && annotation::lacks_box(frame, intruder, *lens) ? 1 : 0;
+      const auto box = annotation::box_to_show(intruder);
+      if (!box) continue;
+      is_seen = true;
+      ++portrait.boxes_by_class[category_of(intruder.aircraft)];
+      ++portrait.centres[cell_of(*box, portrait.width, portrait.height)];
+    }
+    portrait.frames_with_intruder += is_seen ? 1 : 0;
+  }
+}
+
+void add_series(const sequence::Finished& finished, Portrait& portrait) {
+  const auto& frames = finished.truth.frames;
+  std::map<std::string, std::size_t> places;
+  for (const std::size_t i : thinned(frames.size(), Portrait::kMostPoints)) {
+    for (const annotation::Intruder& intruder : frames[i].intruders) {
+      const auto [place, is_new] = places.emplace(intruder.id, portrait.intruders.size());
+      if (is_new) portrait.intruders.push_back({intruder.id, intruder.aircraft, {}});
+      portrait.intruders[place->second].points.push_back(point_of(frames[i], intruder));
+    }
+    if (finished.scene)
+      portrait.camera.push_back(camera_of(frames[i], portrait.width, portrait.height));
+  }
+}
+
+}  // namespace
+
+Portrait portrait_of(const LabelledSet& set,
+                     const std::string& name,
+                     std::size_t stills,
+                     const std::stop_token& stop) {
+  const sequence::Finished finished = sequence::open_finished(set.folder(name));
+  Portrait portrait;
+  portrait.facts = set.facts(name);
+  portrait.folder = set.folder(name).string();
+  for (const auto& entry : fs::directory_iterator(set.folder(name)))
+    if (entry.is_regular_file() && !entry.path().filename().string().starts_with("."))
+      portrait.files.push_back(entry.path().filename().string());
+  std::sort(portrait.files.begin(), portrait.files.end());
+  const video::StreamInfo info = video::Reader(finished.video, {.threads = 1}).info();
+  portrait.width = info.width;
+  portrait.height = info.height;
+  portrait.duration_s =
+      static_cast<double>(finished.truth.frames.size()) / std::max(1e-9, info.frame_rate.value());
+  if (finished.scene) {
+    const scene::Scene& scene = *finished.scene;
+    portrait.horizontal_fov_deg =
+        sequence::lens_of(scene.lens, {info.width, info.height}).horizontal_fov_deg();
+    portrait.sun_azimuth_deg = scene.light.sun_azimuth_deg;
+    portrait.sun_elevation_deg = scene.light.sun_elevation_deg;
+    portrait.motion_model = scene.motion.model;
+    portrait.scene = scene;
+  }
+  count(finished, portrait);
+  add_series(finished, portrait);
+  portrait.ids = sequence::intruder_ids(finished.truth);
+  portrait.film = film_of(finished, stills, stop);
+  if (fs::is_regular_file(finished.video)) portrait.video = finished.video;
+  return portrait;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/page/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dataset/page/card.h"
+#include "dataset/page/portrait.h"
+#include "foundation/base/base64.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/base/output_check.h"
+#include "show/html/page.h"
+#include "show/html/page_assets.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A histogram over stated edges; what lies beyond them counts in the first and last bin.
+struct Histogram {
+  std::vector<double> edges;
+  std::vector<std::int64_t> counts;
+
+  explicit Histogram(std::vector<double> e) : edges(std::move(e)), counts(edges.size() - 1) {}
+  void add(double value) {
+    const auto above = std::upper_bound(edges.begin(), edges.end(), value) - edges.begin();
+    ++counts[static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(counts) - 1))];
+  }
+  Json json() const { return {{"edges", edges}, {"counts", counts}}; }
+};
+
+std::vector<double> steps(double from, double to, double step) {
+  std::vector<double> edges;
+  for (int i = 0; from + i * step <= to + 1e-9; ++i) edges.push_back(from + i * step);
+  return edges;
+}
+
+constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
+
+// Stills of all sequences together: about 13 kB each on the page.
+constexpr std::size_t kMostStills = 1500;
+constexpr std::size_t kMostStillsOfOne = 60;
+constexpr std::size_t kLeastStillsOfOne = 4;
+
+// What is counted over the whole set, from the thinned series.
+struct Totals {
+  std::int64_t frames = 0;
+  std::array<std::int64_t, 5> by_state{};
+  std::int64_t without_box = 0;
+  std::int64_t frames_with_intruder = 0;
+  std::int64_t negative_sequences = 0;  // that show no intruder in any frame
+  std::map<std::string, std::int64_t> boxes_by_class;
+  std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCells);
+  Histogram range_m{
+      {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
+  Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
+  Histogram azimuth_deg{steps(-90, 90, 10)};
+  Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
+
+  void add(const Portrait& portrait) {
+    frames += portrait.facts.frames;
+    for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
+    without_box += portrait.without_box;
+    frames_with_intruder += portrait.frames_with_intruder;
+    negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
+    for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
+    for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
+    for (const Portrait::Intruder& intruder : portrait.intruders)
+      for (const Portrait::Point& point : intruder.points) {
+        if (!point.width_px) continue;
+        size_px.add(std::max(*point.width_px, *point.height_px));
+        if (point.range_m) range_m.add(*point.range_m);
+        if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
+      }
+    for (const double value : portrait.film.contrasts) contrast.add(value);
+  }
+};
+
+template <typename T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+Json rounded(const std::optional<double>& value, double unit) {
+  return value ? Json(rounded(*value, unit)) : Json();
+}
+
+// Columns, since a page of a thousand sequences holds a hundred thousand points.
+Json series_of(const Portrait::Intruder& intruder) {
+  Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
+       east = frame, down = frame, state = frame;
+  for (const Portrait::Point& p : intruder.points) {
+    frame.push_back(p.frame);
+    range.push_back(rounded(p.range_m, 0.1));
+    width.push_back(json_of(p.width_px));
+    height.push_back(json_of(p.height_px));
+    const auto at = [&](std::size_t i) {
+      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[i], 0.1)) : Json();
+    };
+    north.push_back(at(0));
+    east.push_back(at(1));
+    down.push_back(at(2));
+    state.push_back(p.state);
+  }
+  return {{"id", intruder.id},
+          {"aircraft", intruder.aircraft},
+          {"frame", frame},
+          {"range_m", range},
+          {"width_px", width},
+          {"height_px", height},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"state", state}};
+}
+
+Json camera_of(const Portrait& portrait) {
+  Json frame = Json::array(), north = frame, east = frame, down = frame, yaw = frame, shift = frame,
+       roll = frame;
+  for (const Portrait::Camera& c : portrait.camera) {
+    frame.push_back(c.frame);
+    north.push_back(rounded(c.position_ned_m[0], 0.1));
+    east.push_back(rounded(c.position_ned_m[1], 0.1));
+    down.push_back(rounded(c.position_ned_m[2], 0.1));
+    yaw.push_back(rounded(c.yaw_deg, 0.01));
+    shift.push_back(rounded(c.shift_px, 0.01));
+    roll.push_back(rounded(c.roll_deg, 0.001));
+  }
+  return {{"frame", frame},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"yaw_deg", yaw},
+          {"shift_px", shift},
+          {"roll_deg", roll}};
+}
+
+// Of the containers that airtruth writes and imports, those that browsers play.
+bool plays_in_browsers(const fs::path& video) {
+  return video.extension() == ".mp4" || video.extension() == ".webm";
+}
+
+Json film_json(const Film& film) {
+  Json stills = Json::array();
+  for (const Film::Still& still : film.stills) {
+    Json boxes = Json::array();
+    for (const Film::Marked& one : still.boxes)
+      boxes.push_back({one.intruder, one.box.x, one.box.y, one.box.width, one.box.height});
+    stills.push_back({{"frame", still.frame}, {"boxes", boxes}});
+  }
+  return stills;
+}
+
+Json json_of(const Portrait& portrait, const fs::path& page) {
+  Json files = Json::array();
+  const auto beside_page = [&](const fs::path& path) {
+    return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
+  };
+  const fs::path folder = beside_page(portrait.folder);
+  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+  Json intruders = Json::array();
+  for (const Portrait::Intruder& intruder : portrait.intruders)
+    intruders.push_back(series_of(intruder));
+  double contrast = 0;
+  for (const double value : portrait.film.contrasts) contrast += value;
+  return {
+      {"name", portrait.facts.name},
+      {"background", fs::path(portrait.facts.background).filename().string()},
+      {"aircraft", portrait.facts.categories},
+      {"frames", portrait.facts.frames},
+      {"seconds", rounded(portrait.duration_s, 0.01)},
+      {"width", portrait.width},
+      {"height", portrait.height},
+      {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+      {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
+      {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
+      {"motion_model", portrait.motion_model},
+      {"visible", portrait.frames_by_state[0]},
+      {"hidden", portrait.frames_by_state[1]},
+      {"contrast",
+       portrait.film.contrasts.empty()
+           ? Json()
+           : Json(rounded(contrast / static_cast<double>(portrait.film.contrasts.size()), 0.1))},
+      {"loop_frames", portrait.film.loop_frames},
+      {"loop_side", portrait.film.loop_side},
+      {"stills", film_json(portrait.film)},
+      {"poster", portrait.film.poster},
+      {"ids", portrait.ids},
+      {"video",
+       plays_in_browsers(portrait.video) ? Json(beside_page(portrait.video).generic_string())
+                                         : Json()},
+      {"intruders", intruders},
+      {"camera", camera_of(portrait)},
+      {"files", files}};
+}
+
+}  // namespace
+
+void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
+  check_output_file(out, options.overwrite);
+  const LabelledSet labelled(set);
+  std::vector<Portrait> portraits(labelled.names().size());
+  const std::size_t stills = std::clamp(kMostStills / std::max<std::size_t>(1, portraits.size()),
+                                        kLeastStillsOfOne,
+                                        kMostStillsOfOne);
+  in_parallel(
+      portraits.size(),
+      options.jobs,
+      [&](std::size_t i) {
+        portraits[i] = portrait_of(labelled, labelled.names()[i], stills, options.stop);
+      },
+      options.progress,
+      options.stop);
+  Totals totals;
+  Json sequences = Json::array();
+  for (const Portrait& portrait : portraits) {
+    totals.add(portrait);
+    sequences.push_back(json_of(portrait, out));
+  }
+  Json card = Json::object();
+  for (const auto& [key, text] : card_of(set, portraits)) card[key] = text;
+  const fs::path named = fs::absolute(set).lexically_normal();
+  const std::string title = card.contains("name")  ? card.at("name").get<std::string>()
+                            : named.has_filename() ? named.filename().string()
+                                                   : named.parent_path().filename().string();
+  const Json data = {{"title", title},
+                     {"frames", totals.frames},
+                     {"states", totals.by_state},
+                     {"without_box", totals.without_box},
+                     {"missing", labelled.missing()},
+                     {"frames_with_intruder", totals.frames_with_intruder},
+                     {"negative_sequences", totals.negative_sequences},
+                     {"classes", totals.boxes_by_class},
+                     {"centres",
+                      {{"columns", Portrait::kCellColumns},
+                       {"rows", Portrait::kCellRows},
+                       {"counts", totals.centres}}},
+                     {"histograms",
+                      {{"range_m", totals.range_m.json()},
+                       {"size_px", totals.size_px.json()},
+                       {"azimuth_deg", totals.azimuth_deg.json()},
+                       {"contrast", totals.contrast.json()}}},
+                     {"card", card},
+                     {"sequences", sequences}};
+  std::vector<html::PageBlob> pictures;
+  for (std::size_t i = 0; i < portraits.size(); ++i) {
+    const Film& film = portraits[i].film;
+    for (std::size_t k = 0; k < film.stills.size(); ++k)
+      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(film.stills[k].jpeg)});
+    if (!film.loop_jpeg.empty())
+      pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
+  }
+  write_file(out,
+             html::page_of("airtruth data set",
+                           html::page_body(),
+                           data.dump(-1, ' ', false, Json::error_handler_t::replace),
+                           pictures,
+                           html::page_js()));
+}
+
+}  // namespace airtruth::dataset

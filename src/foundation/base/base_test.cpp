@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/median.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/seed.h"
+#include "foundation/base/suggest.h"
+
+namespace airtruth {
+namespace {
+
+class Files : public testing::Test {
+ protected:
+  Files() : folder_(fs::temp_directory_path() / ("airtruth_files_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Files() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST(Error, SaysThePlaceThenTheFact) {
+  const Error error("is -1; expected a positive number", {"scene.toml", 12, 3});
+  EXPECT_STREQ(error.what(), "scene.toml:12:3: is -1; expected a positive number");
+  EXPECT_EQ(error.message(), "is -1; expected a positive number");
+  EXPECT_STREQ(Error("no place").what(), "no place");
+}
+
+TEST(EditDistance, IsDamerausOnKnownPairs) {
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(edit_distance("ca", "ac"), 1);
+  EXPECT_EQ(edit_distance("", "abc"), 3);
+  EXPECT_EQ(edit_distance("same", "same"), 0);
+}
+
+TEST(NearestSpelling, FindsTheMeantWordOrNothing) {
+  const std::vector<std::string> keys = {"speed_mps", "waypoints_ned_m", "aircraft"};
+  EXPECT_EQ(nearest_spelling("speed_mp", keys), "speed_mps");
+  EXPECT_EQ(nearest_spelling("Aircraft", keys), "aircraft");
+  EXPECT_EQ(nearest_spelling("zzzzzz", keys), std::nullopt);
+}
+
+// The first values of SplitMix64 from state 0, as its authors' reference program prints them.
+TEST(Pattern, StarsAndQuestionMarks) {
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("1*B737", "1LRB737"));
+  EXPECT_FALSE(matches("1*B737", "1LRC172"));
+  EXPECT_TRUE(matches("?LR*", "1LRB737"));
+  EXPECT_FALSE(matches("?", ""));
+  EXPECT_TRUE(matches("*a*b*c", "xxaxxbxxabc"));
+  EXPECT_FALSE(matches(std::string(40, '*').append("b"), std::string(10000, 'a')));
+}
+
+TEST(Pattern, LetterCaseIsIgnoredWhereAsked) {
+  EXPECT_FALSE(matches("C172*", "c172/news"));
+  EXPECT_TRUE(matches("C172*", "c172/news", LetterCase::kIgnored));
+  EXPECT_TRUE(matches("738/*ryanair", "738/738-Ryanair", LetterCase::kIgnored));
+  EXPECT_FALSE(matches("C172", "c172/news", LetterCase::kIgnored));
+  EXPECT_TRUE(contains_ignoring_case("c172/news", "C172"));
+  EXPECT_TRUE(contains_ignoring_case("c172/news", ""));
+  EXPECT_FALSE(contains_ignoring_case("c17", "C172"));
+}
+
+TEST(Random, IsSplitMix64) {
+  Random random(0);
+  EXPECT_EQ(random(), 0xe220a8397b1dcdafULL);
+  EXPECT_EQ(random(), 0x6e789e6aa1b965f4ULL);
+  EXPECT_EQ(random(), 0x06c45d188009454fULL);
+}
+
+TEST(Random, NormalHasMeanZeroAndVarianceOne) {
+  Random random = Seed(7).stream("test");
+  double sum = 0;
+  double squares = 0;
+  const int count = 100000;
+  for (int i = 0; i < count; ++i) {
+    const double x = random.normal();
+    sum += x;
+    squares += x * x;
+  }
+  EXPECT_NEAR(sum / count, 0, 0.02);
+  EXPECT_NEAR(squares / count, 1, 0.03);
+}
+
+TEST(Seed, StreamsDiffer) {
+  EXPECT_NE(Seed(1).stream("a")(), Seed(1).stream("b")());
+  EXPECT_NE(Seed(1).stream("a")(), Seed(2).stream("a")());
+  EXPECT_NE(Seed(1).stream("a", 1)(), Seed(1).stream("a", 2)());
+  EXPECT_EQ(Seed(1).stream("a", 1)(), Seed(1).stream("a", 1)());
+}
+
+// FIPS 180-2, appendix B.1.
+TEST_F(Files, Sha256OfAbcIsTheStandardsOwn) {
+  const std::string expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+  EXPECT_EQ(sha256_of("abc"), expected);
+  write_file(folder_ / "abc", "abc");
+  EXPECT_EQ(sha256_of_file(folder_ / "abc"), expected);
+}
+
+TEST_F(Files, WriteReplacesWholeAndLeavesNoPart) {
+  write_file(folder_ / "a.txt", "one");
+  write_file(folder_ / "a.txt", "two");
+  EXPECT_EQ(read_file(folder_ / "a.txt"), "two");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
+}
+
+TEST_F(Files, WriteIntoMissingFolderIsAnErrorThatNamesTheFile) {
+  EXPECT_THROW(write_file(folder_ / "no" / "a.txt", "x"), Error);
+}
+
+TEST_F(Files, ReadRefusesWhatIsMissingAFolderOrTooLarge) {
+  EXPECT_THROW(read_file(folder_ / "none"), Error);
+  EXPECT_THROW(read_file(folder_), Error);
+  write_file(folder_ / "ten", "0123456789");
+  EXPECT_THROW(read_file(folder_ / "ten", 9), Error);
+  EXPECT_EQ(read_file(folder_ / "ten", 10).size(), 10u);
+}
+
+TEST(Utf8, FindsTheFirstFault) {
+  EXPECT_EQ(utf8_fault("plain, \xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80"), std::string_view::npos);
+  EXPECT_EQ(utf8_fault("ab\xff"), 2u);
+  EXPECT_EQ(utf8_fault("\xc0\xaf"), 0u);       // overlong
+  EXPECT_EQ(utf8_fault("a\xed\xa0\x80"), 1u);  // surrogate
+  EXPECT_EQ(utf8_fault("a\xe2\x82"), 1u);      // cut short
+}
+
+TEST(Median, IsTheUpperOfTwoMiddleValues) {
+  EXPECT_EQ(median(std::vector<double>{3}), 3);
+  EXPECT_EQ(median(std::vector<double>{5, 1, 3}), 3);
+  EXPECT_EQ(median(std::vector<double>{7, 1, 5, 3}), 5);
+  EXPECT_EQ(median(std::vector<std::uint8_t>{255, 0, 254}), 254);
+  const std::vector<float> kept{2, 1};
+  EXPECT_EQ(median(kept), 2.0F);
+  EXPECT_EQ(kept, (std::vector<float>{2, 1}));
+  EXPECT_EQ(median_or_0(std::vector<float>{}), 0.0F);
+  EXPECT_EQ(median_or_0(kept), 2.0F);
+}
+
+TEST(PartPath, HidesAndKeepsTheExtension) {
+  EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
+}
+
+}  // namespace
+}  // namespace airtruth

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/csv.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace airtruth {
+
+std::vector<std::string> cells_of(std::string_view line) {
+  std::vector<std::string> cells;
+  while (!line.empty()) {
+    const std::size_t comma = line.find(',');
+    const std::string_view cell = line.substr(0, comma);
+    const std::size_t first = cell.find_first_not_of(" \t\r");
+    const std::size_t last = cell.find_last_not_of(" \t\r");
+    cells.emplace_back(first == cell.npos ? "" : cell.substr(first, last - first + 1));
+    line = comma == line.npos ? std::string_view() : line.substr(comma + 1);
+  }
+  return cells;
+}
+
+double finite_number(const std::string& cell, const Where& where) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
+  if (failed != std::errc() || rest != end || !std::isfinite(value))
+    throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
+  return value;
+}
+
+}  // namespace airtruth

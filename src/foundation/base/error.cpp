@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/error.h"
+
+namespace airtruth {
+namespace {
+
+std::string with_place(std::string_view message, const Where& where) {
+  const std::string place = to_string(where);
+  return place.empty() ? std::string(message) : place + ": " + std::string(message);
+}
+
+}  // namespace
+
+std::string to_string(const Where& where) {
+  std::string text = where.file;
+  if (where.line > 0) {
+    text += ":" + std::to_string(where.line);
+    if (where.column > 0) text += ":" + std::to_string(where.column);
+  }
+  return text;
+}
+
+Error::Error(std::string_view message, Where where)
+    : std::runtime_error(with_place(message, where)), message_(message), where_(std::move(where)) {}
+
+void check(bool condition, std::string_view what) {
+  if (!condition) throw std::logic_error("internal error: " + std::string(what));
+}
+
+}  // namespace airtruth

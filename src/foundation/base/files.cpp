@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/files.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/unfinished.h"
+
+namespace airtruth {
+namespace {
+
+std::string reason() { return std::strerror(errno); }
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  bool close() {
+    const int fd = fd_;
+    fd_ = -1;
+    return ::close(fd) == 0;
+  }
+
+ private:
+  int fd_;
+};
+
+// Calls take(bytes) for each block of the file.
+template <typename Take>
+void read_blocks(const fs::path& path, Take take) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) throw Error("cannot open: " + reason(), {path.string()});
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0 && S_ISDIR(status.st_mode))
+    throw Error("is a folder; expected a file", {path.string()});
+  std::string block(1 << 18, '\0');
+  for (;;) {
+    const ssize_t got = ::read(file.get(), block.data(), block.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw Error("cannot read: " + reason(), {path.string()});
+    if (got == 0) return;
+    if (!take(std::string_view(block.data(), static_cast<std::size_t>(got)))) return;
+  }
+}
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    check(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1,
+          "SHA-256 is there");
+  }
+  void add(std::string_view bytes) { EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()); }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
+    std::string text;
+    for (unsigned int i = 0; i < size; ++i) {
+      text += "0123456789abcdef"[digest[i] >> 4];
+      text += "0123456789abcdef"[digest[i] & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+void write_all(const Descriptor& file, std::string_view bytes, const fs::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(file.get(), bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) throw Error("cannot write: " + reason(), {path.string()});
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+  }
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::size_t max_bytes) {
+  std::string bytes;
+  read_blocks(path, [&](std::string_view block) {
+    bytes += block;
+    return bytes.size() <= max_bytes;
+  });
+  if (bytes.size() > max_bytes)
+    throw Error("is larger than " + std::to_string(max_bytes) + " bytes; expected a smaller file",
+                {path.string()});
+  return bytes;
+}
+
+void refuse_existing(const fs::path& path, bool overwrite) {
+  if (!overwrite && fs::exists(path))
+    throw Error("exists already; give --overwrite to replace it", {path.string()});
+}
+
+void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
+  const fs::path part = part_path(path);
+  Unfinished unfinished = Unfinished::path(part);
+  try {
+    Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    if (file.get() < 0) throw Error("cannot create: " + reason(), {path.string()});
+    write_all(file, bytes, path);
+    if (flush == Flush::kNow && ::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
+      throw Error("cannot write: " + reason(), {path.string()});
+    if (!file.close()) throw Error("cannot write: " + reason(), {path.string()});
+    unfinished.finish([&] {
+      if (::rename(part.c_str(), path.c_str()) != 0)
+        throw Error("cannot create: " + reason(), {path.string()});
+    });
+  } catch (...) {
+    ::unlink(part.c_str());
+    throw;
+  }
+}
+
+void flush_files(const fs::path& folder) {
+  const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (file.get() < 0 || ::syncfs(file.get()) != 0)
+    throw Error("cannot write: " + reason(), {folder.string()});
+}
+
+fs::path part_path(const fs::path& path) {
+  fs::path part = path;
+  part.replace_filename("." + path.stem().string() + ".part" + path.extension().string());
+  return part;
+}
+
+std::string sha256_of_file(const fs::path& path) {
+  Sha256 sha;
+  read_blocks(path, [&](std::string_view block) {
+    sha.add(block);
+    return true;
+  });
+  return sha.hex();
+}
+
+std::string sha256_of(std::string_view bytes) {
+  Sha256 sha;
+  sha.add(bytes);
+  return sha.hex();
+}
+
+std::size_t utf8_fault(std::string_view text) {
+  std::size_t i = 0;
+  while (i < text.size()) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t length = lead < 0x80                   ? 1
+                               : lead >= 0xc2 && lead < 0xe0 ? 2
+                               : (lead & 0xf0) == 0xe0       ? 3
+                               : lead >= 0xf0 && lead < 0xf5 ? 4
+                                                             : 0;
+    if (length == 0 || i + length > text.size()) return i;
+    std::uint32_t code = length == 1 ? lead : lead & (0x7fu >> length);
+    for (std::size_t k = 1; k < length; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      if ((next & 0xc0) != 0x80) return i;
+      code = (code << 6) | (next & 0x3fu);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    if (overlong || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return i;
+    i += length;
+  }
+  return std::string_view::npos;
+}
+
+void require_utf8(const fs::path& path) {
+  if (utf8_fault(path.string()) != std::string_view::npos)
+    throw Error(
+        "is no UTF-8 name, which records and the files of other formats cannot hold; rename it",
+        {path.string()});
+}
+
+fs::path cache_folder() {
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')
+    return fs::path(xdg) / "airtruth";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return fs::path(home) / ".cache" / "airtruth";
+  return fs::temp_directory_path() / ("airtruth-cache-" + std::to_string(::getuid()));
+}
+
+}  // namespace airtruth

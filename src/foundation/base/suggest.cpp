@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/suggest.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace airtruth {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  return result;
+}
+
+int exact_distance(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<int> before(width), previous(width), current(width);
+  std::iota(previous.begin(), previous.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    current[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int substitution = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      current[j] = std::min({previous[j] + 1, current[j - 1] + 1, substitution});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) current[j] = std::min(current[j], before[j - 2] + 1);
+    }
+    std::swap(before, previous);
+    std::swap(previous, current);
+  }
+  return previous[b.size()];
+}
+
+}  // namespace
+
+int edit_distance(std::string_view a, std::string_view b) {
+  const int with_case = exact_distance(a, b);
+  const int without_case = exact_distance(lower(a), lower(b));
+  return without_case + (with_case - without_case) / 3;
+}
+
+std::vector<std::string> nearest_spellings(std::string_view word,
+                                           std::span<const std::string> candidates,
+                                           std::size_t count) {
+  std::vector<std::pair<int, std::string>> ranked;
+  ranked.reserve(candidates.size());
+  for (const auto& candidate : candidates)
+    ranked.emplace_back(edit_distance(word, candidate), candidate);
+  std::stable_sort(
+      ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < std::min(count, ranked.size()); ++i)
+    result.push_back(ranked[i].second);
+  return result;
+}
+
+std::optional<std::string> nearest_spelling(std::string_view word,
+                                            std::span<const std::string> candidates) {
+  const auto best = nearest_spellings(word, candidates, 1);
+  if (best.empty()) return std::nullopt;
+  const int limit = std::max<int>(2, static_cast<int>(word.size()) / 3);
+  if (edit_distance(word, best[0]) > limit) return std::nullopt;
+  return best[0];
+}
+
+}  // namespace airtruth

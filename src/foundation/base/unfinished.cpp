@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/unfinished.h"
+
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+namespace airtruth {
+namespace {
+
+struct Registry {
+  std::timed_mutex mutex;
+  std::map<std::uint64_t, std::function<void()>> undo;
+  std::uint64_t last = 0;
+};
+
+// Never destroyed: threads may still be at work when static objects go.
+Registry& registry() {
+  static auto* const all = new Registry;
+  return *all;
+}
+
+}  // namespace
+
+Unfinished::Unfinished(std::function<void()> undo) {
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  number_ = ++all.last;
+  all.undo.emplace(number_, std::move(undo));
+}
+
+Unfinished Unfinished::path(const std::filesystem::path& path) {
+  return Unfinished([path] {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  });
+}
+
+Unfinished::Unfinished(Unfinished&& other) noexcept : number_(std::exchange(other.number_, 0)) {}
+
+Unfinished::~Unfinished() {
+  if (number_ == 0) return;
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  all.undo.erase(number_);
+}
+
+void Unfinished::finish(const std::function<void()>& step) {
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  step();
+  all.undo.erase(number_);
+  number_ = 0;
+}
+
+void undo_unfinished() {
+  // A step that hangs (a disk that does not answer) must not keep the process alive.
+  constexpr std::chrono::milliseconds kLongestStep{300};
+  Registry& all = registry();
+  if (!all.mutex.try_lock_for(kLongestStep)) return;
+  for (auto at = all.undo.rbegin(); at != all.undo.rend(); ++at) {
+    try {
+      at->second();
+    } catch (const std::exception&) {  // the others are undone all the same
+    }
+  }
+}
+
+}  // namespace airtruth

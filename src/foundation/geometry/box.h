@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "foundation/geometry/transform.h"
+
+namespace airtruth {
+
+// An axis-parallel box in floating pixel coordinates (docs/conventions.md): it covers [x, x +
+// width).
+struct Box {
+  double x = 0;
+  double y = 0;
+  double width = 0;
+  double height = 0;
+
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+  double area() const { return width * height; }
+  bool operator==(const Box&) const = default;
+};
+
+// A box of whole pixels: the pixels x .. x + width - 1, and never empty.
+struct PixelBox {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  int right() const { return x + width; }
+  int bottom() const { return y + height; }
+  bool contains(int px, int py) const {
+    return px >= x && py >= y && px < right() && py < bottom();
+  }
+  bool operator==(const PixelBox&) const = default;
+};
+
+// The whole pixels that a box touches; far outside any picture it is cut at a million pixels.
+inline PixelBox pixels_of(const Box& box) {
+  const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
+  const int x = bounded(std::floor(box.x));
+  const int y = bounded(std::floor(box.y));
+  return {x, y, bounded(std::ceil(box.right())) - x, bounded(std::ceil(box.bottom())) - y};
+}
+
+inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b) {
+  const int x = std::max(a.x, b.x);
+  const int y = std::max(a.y, b.y);
+  const int width = std::min(a.right(), b.right()) - x;
+  const int height = std::min(a.bottom(), b.bottom()) - y;
+  if (width <= 0 || height <= 0) return std::nullopt;
+  return PixelBox{x, y, width, height};
+}
+
+inline PixelBox bounds(const PixelBox& a, const PixelBox& b) {
+  const int x = std::min(a.x, b.x);
+  const int y = std::min(a.y, b.y);
+  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
+}
+
+// Grows point by point; empty until the first.
+class BoxBounds {
+ public:
+  void add(const Pixel& p) {
+    low_ = low_.cwiseMin(p);
+    high_ = high_.cwiseMax(p);
+    any_ = true;
+  }
+  std::optional<Box> box() const {
+    if (!any_) return std::nullopt;
+    return Box{low_.x(), low_.y(), high_.x() - low_.x(), high_.y() - low_.y()};
+  }
+
+ private:
+  Pixel low_ = Pixel::Constant(1e300);
+  Pixel high_ = Pixel::Constant(-1e300);
+  bool any_ = false;
+};
+
+}  // namespace airtruth

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "foundation/image/picture.h"
+#include "foundation/image/tone_curve.h"
+
+// Between a picture's samples and linear light.
+//
+// Linear RGB has the sRGB primaries and 1 = the brightest code value. The transfer curve of video
+// is taken as sRGB's (IEC 61966-2-1), which is how such video is shown on a screen.
+namespace airtruth::image {
+
+using Rgb = std::array<float, 3>;
+
+// sRGB, 0..1 to 0..1, by the exact piecewise curve; values outside are clamped.
+float linear_from_srgb(float coded);
+float srgb_from_linear(float linear);
+
+// Y', Cb, Cr as code values (0..255, may be fractional) to coded R'G'B' (0..1 nominal; may exceed)
+// and back. For Matrix::kRgb the three are G, B, R. The pair is an exact inverse up to float
+// rounding.
+struct Ycc {
+  float y = 0;
+  float cb = 128;
+  float cr = 128;
+};
+class ColourCode {
+ public:
+  explicit ColourCode(const Colour& colour);
+  Rgb rgb_from_ycc(const Ycc& ycc) const;  // coded R'G'B'
+  Ycc ycc_from_rgb(const Rgb& rgb) const;
+
+ private:
+  bool rgb_planes_ = false;
+  float kr_ = 0, kg_ = 0, kb_ = 0;
+  float y_scale_ = 0, y_offset_ = 0, c_scale_ = 0;
+};
+
+inline Rgb ColourCode::rgb_from_ycc(const Ycc& ycc) const {
+  if (rgb_planes_) {
+    return {(ycc.cr - y_offset_) / y_scale_,
+            (ycc.y - y_offset_) / y_scale_,
+            (ycc.cb - y_offset_) / y_scale_};
+  }
+  const float y = (ycc.y - y_offset_) / y_scale_;
+  const float r = y + 2 * (1 - kr_) * (ycc.cr - 128) / c_scale_;
+  const float b = y + 2 * (1 - kb_) * (ycc.cb - 128) / c_scale_;
+  return {r, (y - kr_ * r - kb_ * b) / kg_, b};
+}
+
+inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
+  if (rgb_planes_)
+    return {rgb[1] * y_scale_ + y_offset_,
+            rgb[2] * y_scale_ + y_offset_,
+            rgb[0] * y_scale_ + y_offset_};
+  const float y = kr_ * rgb[0] + kg_ * rgb[1] + kb_ * rgb[2];
+  return {y * y_scale_ + y_offset_,
+          (rgb[2] - y) / (2 * (1 - kb_)) * c_scale_ + 128,
+          (rgb[0] - y) / (2 * (1 - kr_)) * c_scale_ + 128};
+}
+
+// Linear light of one pixel, chroma held over its block.
+Rgb linear_at(
+    const Picture& picture, const ColourCode& code, int x, int y, const ToneCurve& tone = {});
+
+// The whole picture as packed sRGB, chroma held over its block, for previews and stills.
+Rgb8 rgb8_from_picture(const Picture& picture);
+
+// A part of it, [x, x + width) x [y, y + height), which may stick out of the picture: outside is
+// black.
+Rgb8 rgb8_from_picture(const Picture& picture, int x, int y, int width, int height);
+
+// Back, with chroma averaged over its block.
+Picture picture_from_rgb8(const Rgb8& rgb, const Colour& colour);
+
+}  // namespace airtruth::image

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/image/cuts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace airtruth::image {
+namespace {
+
+// The frames that begin a shot, from 1 on. differences[k]: of frame k to frame k + 1.
+std::vector<std::int64_t> cuts_of(const std::vector<double>& differences) {
+  const std::span<const double> all(differences);
+  constexpr auto kReach = static_cast<std::size_t>(kCutNeighbours);
+  std::vector<std::int64_t> cuts;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t first = i - std::min(i, kReach);
+    const std::size_t after = std::min(kReach, all.size() - i - 1);
+    if (is_cut(all.subspan(first, i - first), all[i], all.subspan(i + 1, after)))
+      cuts.push_back(static_cast<std::int64_t>(i) + 1);
+  }
+  return cuts;
+}
+
+TEST(Cuts, OneFrameThatDiffersIsACutAndAPanIsNone) {
+  EXPECT_EQ(cuts_of({0.1, 0.2, 40, 0.1, 0.2}), std::vector<std::int64_t>{3});
+  EXPECT_TRUE(cuts_of({0.1, 8, 9, 8, 0.2}).empty());      // a fast pan
+  EXPECT_TRUE(cuts_of({0.1, 0.2, 4, 0.1, 0.2}).empty());  // the camera is knocked
+  EXPECT_TRUE(cuts_of({0.1, 20, 20, 0.1, 0.2}).empty());  // a flash: there and back
+  EXPECT_TRUE(cuts_of(std::vector<double>{}).empty());
+}
+
+TEST(Cuts, TheDifferenceIsOfMeansByCell) {
+  // 64 x 48: cells of 2 x 2 pixels. A checkerboard of single pixels is even in them.
+  const auto picture = [](int even, int odd) {
+    Picture p = make_picture(64, 48, {});
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x)
+        p.planes[0].row(y)[x] = static_cast<std::uint8_t>((x + y) % 2 == 0 ? even : odd);
+    return p;
+  };
+  Differences differences;
+  EXPECT_FALSE(differences.add(picture(100, 120)));
+  EXPECT_NEAR(*differences.add(picture(120, 100)), 0, 1e-12);
+  EXPECT_NEAR(*differences.add(picture(120, 107)), 3.5, 1e-12);
+}
+
+// Cells of unequal widths (100 = 32 x 3.125) hold every pixel once.
+TEST(Cuts, EveryPixelIsInOneCell) {
+  for (const int width : {5, 31, 32, 33, 100, 641}) {
+    Picture one = make_picture(width, 30, {}), other = make_picture(width, 30, {});
+    for (int y = 0; y < 30; ++y) {
+      std::fill_n(one.planes[0].row(y), width, std::uint8_t{10});
+      std::fill_n(other.planes[0].row(y), width, std::uint8_t{30});
+    }
+    Differences differences;
+    differences.add(one);
+    const double cells = std::min(width, 32) / 32.0;  // of a narrow picture some are empty
+    EXPECT_NEAR(*differences.add(other), 20 * cells, 1e-9) << width;
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::image

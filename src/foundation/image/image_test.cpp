@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "foundation/image/colour.h"
+#include "foundation/image/picture.h"
+
+namespace airtruth::image {
+namespace {
+
+TEST(Srgb, MatchesTheStandardAtKnownPoints) {
+  EXPECT_NEAR(linear_from_srgb(0.5f), 0.21404114f, 1e-6f);
+  EXPECT_NEAR(srgb_from_linear(0.18f), 0.46135613f, 1e-6f);
+  for (int i = 0; i <= 255; ++i) {
+    const float coded = static_cast<float>(i) / 255.0f;
+    EXPECT_NEAR(srgb_from_linear(linear_from_srgb(coded)), coded, 1e-5f);
+  }
+}
+
+TEST(ToneCurve, IsSrgbsUnlessItHasAnExponent) {
+  const ToneCurve srgb;
+  EXPECT_NEAR(srgb.linear_from_coded(0.5), 0.21404114, 1e-8);
+  EXPECT_NEAR(srgb.coded_from_linear(0.18), 0.46135613, 1e-8);
+  // Its exponent is 2.4; the standard rounds where the line ends.
+  for (double coded = 0; coded <= 1; coded += 0.01)
+    EXPECT_NEAR(ToneCurve{2.4}.linear_from_coded(coded), srgb.linear_from_coded(coded), 2e-6);
+}
+
+TEST(ToneCurve, OfAnyExponentIsSmoothAndTurnsBack) {
+  for (const double gamma : {1.2, 1.8, 2.2, 3.0}) {
+    const ToneCurve tone{gamma};
+    EXPECT_DOUBLE_EQ(tone.coded_from_linear(1), 1);
+    EXPECT_NEAR(tone.coded_from_linear(0.5), 1.055 * std::pow(0.5, 1 / gamma) - 0.055, 1e-12);
+    for (double coded = 0; coded <= 1.5; coded += 0.01)
+      EXPECT_NEAR(tone.coded_from_linear(tone.linear_from_coded(coded)), coded, 1e-12) << gamma;
+    const double end = 0.055 / (gamma - 1), step = 1e-6;
+    const double below = tone.linear_from_coded(end) - tone.linear_from_coded(end - step);
+    const double above = tone.linear_from_coded(end + step) - tone.linear_from_coded(end);
+    EXPECT_NEAR(above / below, 1, 1e-4) << gamma;
+  }
+}
+
+// Rec. BT.709-6, item 3.4: red at 100 % in 8-bit limited range is Y 63, Cb 102, Cr 240.
+TEST(ColourCode, RedIsWhereTheStandardPutsIt) {
+  const Ycc red =
+      ColourCode({Chroma::k444, Matrix::kBt709, Range::kLimited}).ycc_from_rgb({1, 0, 0});
+  EXPECT_EQ(std::lround(red.y), 63);
+  EXPECT_EQ(std::lround(red.cb), 102);
+  EXPECT_EQ(std::lround(red.cr), 240);
+  const Ycc red601 =
+      ColourCode({Chroma::k444, Matrix::kBt601, Range::kFull}).ycc_from_rgb({1, 0, 0});
+  EXPECT_EQ(std::lround(red601.y), 76);  // JFIF
+  EXPECT_EQ(std::lround(red601.cb), 85);
+  EXPECT_NEAR(red601.cr, 255.5f, 1e-3f);
+}
+
+TEST(ColourCode, RoundTripsForEveryMatrixAndRange) {
+  for (Matrix matrix : {Matrix::kRgb, Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020}) {
+    for (Range range : {Range::kLimited, Range::kFull}) {
+      const ColourCode colour_code({Chroma::k444, matrix, range});
+      for (float y = 0; y < 256; y += 51) {
+        for (float cb = 3; cb < 256; cb += 50) {
+          const Ycc back = colour_code.ycc_from_rgb(colour_code.rgb_from_ycc({y, cb, 255 - cb}));
+          EXPECT_NEAR(back.y, y, 1e-3f);
+          EXPECT_NEAR(back.cb, cb, 1e-3f);
+          EXPECT_NEAR(back.cr, 255 - cb, 1e-3f);
+        }
+      }
+    }
+  }
+}
+
+TEST(Picture, OddSizesRoundChromaUp) {
+  const Picture picture = make_picture(5, 3, {Chroma::k420});
+  EXPECT_EQ(picture.planes[1].width, 3);
+  EXPECT_EQ(picture.planes[1].height, 2);
+  EXPECT_EQ(make_picture(5, 3, {Chroma::k422}).planes[2].height, 3);
+  EXPECT_EQ(make_picture(5, 3, {Chroma::kNone}).plane_count, 1);
+}
+
+TEST(Picture, CloneIsIdenticalUntilASampleChanges) {
+  Picture picture = picture_from_rgb8(make_rgb8(7, 5), {Chroma::k420});
+  Picture copy = picture.clone();
+  EXPECT_TRUE(identical(picture, copy));
+  copy.planes[2].row(2)[3] ^= 1;
+  EXPECT_FALSE(identical(picture, copy));
+}
+
+TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
+  Rgb8 rgb = make_rgb8(16, 16);
+  for (int i = 0; i < 16 * 16; ++i) {
+    rgb.samples[static_cast<std::size_t>(3 * i)] = static_cast<std::uint8_t>(i);
+    rgb.samples[static_cast<std::size_t>(3 * i + 1)] = static_cast<std::uint8_t>(255 - i);
+    rgb.samples[static_cast<std::size_t>(3 * i + 2)] = static_cast<std::uint8_t>((7 * i) % 256);
+  }
+  const Rgb8 back =
+      rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kBt601, Range::kFull}));
+  for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_NEAR(back.samples[i], rgb.samples[i], 1);
+  const Rgb8 exact =
+      rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kRgb, Range::kFull}));
+  for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
+}
+
+Picture with_numbered_samples(int width, int height, Chroma chroma) {
+  Picture picture = make_picture(width, height, {chroma});
+  int next = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
+    for (int y = 0; y < picture.planes[i].height; ++y)
+      for (int x = 0; x < picture.planes[i].width; ++x)
+        picture.planes[i].row(y)[x] = static_cast<std::uint8_t>(7 * next++ % 251);
+  return picture;
+}
+
+TEST(Crop, TakesEverySampleOfTheBoxAndPasteBringsItBack) {
+  for (const Chroma chroma :
+       {Chroma::kNone, Chroma::k420, Chroma::k422, Chroma::k440, Chroma::k444}) {
+    const Picture whole = with_numbered_samples(37, 29, chroma);
+    const PixelBox box{12, 8, 25, 21};  // reaches the odd-sized picture's far corner
+    const Picture part = crop(whole, box);
+    for (int y = 0; y < box.height; ++y)
+      for (int x = 0; x < box.width; ++x)
+        ASSERT_EQ(part.luma().row(y)[x], whole.luma().row(box.y + y)[box.x + x]);
+    if (whole.plane_count == 3) {
+      const int cx = 12 >> log2_chroma_width(chroma), cy = 8 >> log2_chroma_height(chroma);
+      EXPECT_EQ(part.planes[2].row(3)[2], whole.planes[2].row(cy + 3)[cx + 2]);
+    }
+    Picture other = make_picture(37, 29, {chroma});
+    for (const PixelBox& tile : {PixelBox{0, 0, 12, 29}, PixelBox{12, 0, 25, 8}, box})
+      paste(other, crop(whole, tile), tile.x, tile.y);
+    EXPECT_TRUE(identical(other, whole));
+  }
+}
+
+TEST(Paste, LeavesOutWhatLiesBeyondThePicture) {
+  const Picture part = with_numbered_samples(8, 8, Chroma::k420);
+  Picture picture = with_numbered_samples(16, 16, Chroma::k420);
+  const Picture before = picture.clone();
+  paste(picture, part, 20, -8);
+  EXPECT_TRUE(identical(picture, before));
+  paste(picture, part, -4, 12);
+  EXPECT_EQ(picture.luma().row(13)[3], part.luma().row(1)[7]);
+  EXPECT_EQ(picture.planes[1].row(7)[1], part.planes[1].row(1)[3]);
+  EXPECT_EQ(picture.luma().row(13)[4], before.luma().row(13)[4]);
+}
+
+}  // namespace
+}  // namespace airtruth::image

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/calibration/cache.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/file_lock.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::calibration {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kCalibrationVersion = 6;  // raise it whenever the numbers of a calibration change
+
+Json json_of(const Calibration& c) {
+  Json values = Json::object();
+  for (const auto& [key, estimates] : c.values) {
+    Json list = Json::array();
+    for (const Estimate& e : estimates) list.push_back({e.value, e.sigma});
+    values[key] = list;
+  }
+  return {{"width", c.width},
+          {"height", c.height},
+          {"frames", c.frames},
+          {"frame_rate_hz", c.frame_rate_hz},
+          {"lens", c.lens},
+          {"values", values},
+          {"missing", c.missing},
+          {"notes", c.notes},
+          {"yaw_from_first_deg", c.yaw_from_first_deg}};
+}
+
+Calibration calibration_from(const Json& json) {
+  Calibration c;
+  c.width = json.at("width");
+  c.height = json.at("height");
+  c.frames = json.at("frames");
+  c.frame_rate_hz = json.at("frame_rate_hz");
+  c.lens = json.at("lens").get<std::string>();
+  for (const auto& [key, list] : json.at("values").items())
+    for (const Json& estimate : list)
+      c.values[key].push_back({estimate.at(0).get<double>(), estimate.at(1).get<double>()});
+  c.missing = json.at("missing").get<std::map<std::string, std::string>>();
+  c.notes = json.at("notes").get<std::map<std::string, std::string>>();
+  c.yaw_from_first_deg = json.at("yaw_from_first_deg").get<std::vector<double>>();
+  return c;
+}
+
+// Held while a clip is measured; none where the folder takes no file.
+std::unique_ptr<WaitingLock> lock_in(const fs::path& folder,
+                                     const CacheKey& key,
+                                     const std::stop_token& stop) {
+  try {
+    return std::make_unique<WaitingLock>(folder / ("." + key.file_name() + ".lock"), stop);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+std::string CacheKey::file_name() const {
+  return sha256_of(fmt::format("{} {} {} {} {} {}",
+                               kCalibrationVersion,
+                               video_sha256,
+                               mask_sha256,
+                               lens,
+                               altitude_m ? fmt::format("{}", *altitude_m) : "none",
+                               tone.gamma)) +
+         ".json";
+}
+
+std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key) {
+  const fs::path file = folder / key.file_name();
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::nullopt;
+  try {
+    // The SHA-256 of the rest, then the rest.
+    const std::string text = read_file(file);
+    const auto line = text.find('\n');
+    if (line == std::string::npos) return std::nullopt;
+    const std::string body = text.substr(line + 1);
+    if (text.compare(0, line, sha256_of(body)) != 0) return std::nullopt;
+    return calibration_from(Json::parse(body));
+  } catch (const Error&) {
+    return std::nullopt;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+void store(const fs::path& folder, const CacheKey& key, const Calibration& calibration) {
+  fs::create_directories(folder);
+  const std::string body = json_of(calibration).dump() + "\n";
+  write_file(folder / key.file_name(), sha256_of(body) + "\n" + body);
+}
+
+Calibration calibrate_once(const fs::path& video,
+                           const Options& options,
+                           const fs::path& folder,
+                           const CacheKey& key) {
+  check(options.first_frame == 0 && !options.frame_count && options.heading_deg == 0,
+        "the whole clip is calibrated, from its first frame's heading");
+  if (folder.empty() || key.video_sha256.empty()) return calibrate(video, options);
+  if (auto found = cached(folder, key)) return std::move(*found);
+  const auto lock = lock_in(folder, key, options.stop);
+  if (auto found = cached(folder, key)) return std::move(*found);
+  Calibration measured = calibrate(video, options);
+  try {
+    store(folder, key, measured);
+  } catch (const std::exception&) {  // read-only home, full disk: the next run measures again
+  }
+  return measured;
+}
+
+}  // namespace airtruth::calibration

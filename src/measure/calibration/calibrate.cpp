@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/ranges.h>
+
+#include "camera/horizon/horizon.h"
+#include "camera/motion/motion.h"
+#include "foundation/base/error.h"
+#include "foundation/base/median.h"
+#include "measure/calibration/air.h"
+#include "measure/calibration/blur.h"
+#include "measure/calibration/calibration.h"
+#include "measure/calibration/edges.h"
+#include "measure/calibration/noise.h"
+#include "measure/calibration/readout.h"
+#include "picture/video/reader.h"
+
+namespace airtruth::calibration {
+namespace {
+
+GroundRange ground_range(const Options& options) {
+  if (options.lens && options.altitude_m) return {options.altitude_m, ""};
+  const std::string lens = "the lens (--lens)";
+  const std::string altitude =
+      "the camera's height above the ground (--altitude; in a scene, position_ned_m)";
+  const std::string missing = options.lens         ? altitude
+                              : options.altitude_m ? lens
+                                                   : lens + " and " + altitude;
+  return {std::nullopt, "the ground has no range without " + missing};
+}
+
+constexpr std::int64_t kSampledFrames = 40;
+constexpr std::int64_t kFewestFrames = 8;
+constexpr double kAssumedFovDeg = 60;  // where no lens is given, to look for the horizon
+
+// A frame that is looked at closely.
+struct Sampled {
+  image::Picture picture;
+  std::int64_t frame = 0;
+  Quaternion cam_from_first = Quaternion::Identity();
+  bool turn_known = false;
+};
+
+bool is_measured(const motion::FrameMotion& motion) {
+  return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
+}
+
+class Session {
+ public:
+  Session(const fs::path& video, const Options& options)
+      : options_(options),
+        reader_(video, {options.first_frame, options.frame_count, 0, true, true}, options.warn),
+        noise_(options.own_aircraft, options.tone),
+        edges_(options.own_aircraft, options.tone),
+        blur_(options.own_aircraft),
+        planar_(reader_.info().width, reader_.info().height, {}, options.own_aircraft) {
+    const video::StreamInfo& info = reader_.info();
+    result_.video = video;
+    result_.width = info.width;
+    result_.height = info.height;
+    result_.frame_rate_hz = info.frame_rate.value();
+    result_.tone = options.tone;
+    if (options.lens) {
+      result_.lens = lens_words(*options.lens);
+      turning_.emplace(*options.lens, motion::Options{}, options.own_aircraft);
+    }
+    total_ = options.frame_count.value_or(
+        std::max<std::int64_t>(0, info.frame_count_estimate - options.first_frame));
+    every_ = std::max<std::int64_t>(2, total_ / kSampledFrames);
+  }
+
+  Calibration run() {
+    read_all();
+    if (result_.frames < kFewestFrames)
+      options_.warn ? options_.warn(fmt::format("{}: holds {} frames; most values take {}",
+                                                result_.video.string(),
+                                                result_.frames,
+                                                kFewestFrames))
+                    : void();
+    if (!result_.cuts.empty())
+      warn(options_.warn,
+           fmt::format("{}: the clip is cut at frame {}; nothing is measured across",
+                       result_.video.string(),
+                       fmt::join(result_.cuts, ", ")));
+    take_noise();
+    take_codec();
+    take_edges();
+    take_shutter();
+    take_sky();
+    return std::move(result_);
+  }
+
+ private:
+  void read_all() {
+    std::optional<image::Picture> before;
+    std::optional<Homography> last;
+    while (auto frame = reader_.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const motion::FrameMotion moved =
+          planar_.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
+      // What most corners are followed into is no cut.
+      if (frame->begins_shot && !is_measured(moved)) cut(frame->index, before);
+      std::optional<Homography> step;
+      if (moved.state == motion::State::kMeasured && last)
+        step = moved.frame_from_reference * last->inverse();
+      last = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
+      steps_.back().push_back(step);
+      const Pixel centre(result_.width / 2.0, result_.height / 2.0);
+      blur_.add(frame->picture,
+                step ? std::optional<Pixel>(apply(*step, centre) - centre) : std::nullopt);
+      std::optional<motion::FrameMotion> turned;
+      if (turning_) {
+        turned = turning_->next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
+        cam_from_first_.push_back(*turned->rotation);
+      }
+      if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
+      if (frame->index % every_ == 1 && before) {
+        noise_.add(*before, frame->picture);
+        edges_.add(frame->picture, step);
+        if (static_cast<std::int64_t>(sampled_.size()) < 2 * kSampledFrames)
+          sampled_.push_back({frame->picture.clone(),
+                              frame->index,
+                              turned ? *turned->rotation : Quaternion::Identity(),
+                              turned && is_measured(*turned) && result_.cuts.empty()});
+      }
+      // The next sampled frame needs the one before it.
+      before = std::move(frame->picture);
+      ++result_.frames;
+      if (options_.progress) options_.progress(result_.frames, total_);
+    }
+  }
+
+  // Nothing is linked across: no pair of frames, no motion. How the camera is turned after a cut
+  // against how it was before is not known either.
+  void cut(std::int64_t frame, std::optional<image::Picture>& before) {
+    result_.cuts.push_back(frame);
+    before.reset();
+    blur_.cut();
+    steps_.emplace_back();
+  }
+
+  void put(const std::string& key, const std::vector<Estimate>& values) {
+    result_.values[key] = values;
+  }
+  void lack(const std::string& key, const std::string& why) { result_.missing[key] = why; }
+
+  void take_noise() {
+    std::string why;
+    result_.noise = noise_.points();
+    if (const auto found = noise_.result(why)) {
+      put("sensor.noise_gain", {found->gain});
+      put("sensor.noise_floor", {found->floor});
+      put("sensor.noise_correlation_px", {found->correlation_px});
+    } else {
+      for (const char* key :
+           {"sensor.noise_gain", "sensor.noise_floor", "sensor.noise_correlation_px"})
+        lack(key, why);
+    }
+  }
+
+  // H.264's quantiser: the step doubles with every 6 (ITU-T H.264, 8.5.9).
+  void take_codec() {
+    if (quantisers_.empty()) {
+      lack("sensor.codec_step",
+           "the decoder of '" + reader_.info().codec + "' does not tell its quantiser");
+      return;
+    }
+    std::vector<double> steps;
+    for (const double q : quantisers_) steps.push_back(0.625 * std::pow(2.0, q / 6));
+    std::sort(steps.begin(), steps.end());
+    const std::size_t n = steps.size();
+    put("sensor.codec_step", {{steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}});
+  }
+
+  // In code values; 0: none is known.
+  double codec_step() const {
+    const auto found = result_.values.find("sensor.codec_step");
+    return found == result_.values.end() ? 0 : found->second[0].value;
+  }
+
+  void take_edges() {
+    std::string why;
+    if (const auto found = edges_.result(why, codec_step())) {
+      put("optics.point_spread_px", {found->point_spread_px});
+      put("optics.sharpening", {found->sharpening});
+      put("optics.sharpening_px", {found->sharpening_px});
+      result_.edge = edges_.profile();
+      result_.notes["optics.point_spread_px"] =
+          fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
+                      result_.edge.spread_px,
+                      result_.edge.edges);
+      take_chroma(*found);
+    } else {
+      for (const char* key : {"optics.point_spread_px",
+                              "optics.sharpening",
+                              "optics.sharpening_px",
+                              "sensor.chroma_spread_px"})
+        lack(key, why);
+    }
+  }
+
+  void take_chroma(const StepResponse& response) {
+    std::string why;
+    if (const auto found = edges_.chroma(response, why, codec_step()))
+      put("sensor.chroma_spread_px", {*found});
+    else
+      lack("sensor.chroma_spread_px", why);
+  }
+
+  void take_shutter() {
+    std::string why;
+    const double interval_s = result_.frame_rate_hz > 0 ? 1 / result_.frame_rate_hz : 0;
+    if (const auto share = blur_.share(why); share && interval_s > 0)
+      put("shutter.exposure_s", {{share->value * interval_s, share->sigma * interval_s}});
+    else
+      lack("shutter.exposure_s", why.empty() ? "the video has no frame rate" : why);
+    why.clear();
+    const auto share = readout_share(steps_, result_.width, result_.height, why);
+    if (!share || !(interval_s > 0)) {
+      lack("shutter.readout_s", why.empty() ? "the video has no frame rate" : why);
+      return;
+    }
+    const Estimate downwards_s{share->value * interval_s, share->sigma * interval_s};
+    result_.downwards_s = downwards_s;
+    put("shutter.readout_s",
+        {{rolls(downwards_s) ? std::abs(downwards_s.value) : 0, downwards_s.sigma}});
+    result_.notes["shutter.readout"] = rolls(downwards_s) && share->value < 0 ? "up" : "down";
+  }
+
+  void take_sky() {
+    const lens::ImageSize size{result_.width, result_.height};
+    const lens::Lens lens =
+        options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
+    const motion::HorizonFinder finder(lens, options_.own_aircraft);
+    const auto found = horizons_of(finder);
+    std::vector<Vector3> ups;  // in the first frame's camera
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!found[i]) continue;
+      const YawPitchRoll attitude = motion::attitude_from_up(found[i]->up_in_cam);
+      result_.horizons.push_back(
+          {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found[i]->separation});
+      if (sampled_[i].turn_known)
+        ups.push_back(sampled_[i].cam_from_first.conjugate() * found[i]->up_in_cam);
+    }
+    tint_sky(lens, found);
+    AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
+    const auto first_from_level = levelled(ups);
+    for (std::size_t i = 0; i < sampled_.size(); ++i) {
+      // With a lens all frames share one attitude; without, each has its own horizon.
+      if (first_from_level && sampled_[i].turn_known)
+        air.add(sampled_[i].picture, sampled_[i].cam_from_first * *first_from_level);
+      else if (!options_.lens && found[i])
+        air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
+    }
+    const AirMeter::Air measured = air.air(options_.stop);
+    if (measured.airlight)
+      put("air.airlight", {measured.airlight->begin(), measured.airlight->end()});
+    else
+      lack("air.airlight", measured.why);
+    take_extinction(measured);
+    take_sun(air, first_from_level.has_value());
+    if (first_from_level) take_yaw(*first_from_level);
+  }
+
+  void take_yaw(const Quaternion& first_from_world) {
+    const auto heading_deg = [&](const Quaternion& cam_from_first) {
+      const Quaternion world_from_cam = (cam_from_first * first_from_world).conjugate();
+      return yaw_pitch_roll(world_from_cam * cam_from_body()).yaw_deg;
+    };
+    for (const Quaternion& cam_from_first : cam_from_first_) {
+      // After a cut the heading is not known.
+      if (!result_.cuts.empty() &&
+          static_cast<std::int64_t>(result_.yaw_from_first_deg.size()) >= result_.cuts.front())
+        break;
+      result_.yaw_from_first_deg.push_back(
+          std::remainder(heading_deg(cam_from_first) - heading_deg(cam_from_first_.front()), 360));
+    }
+  }
+
+  // cam_from_world of the first frame, by the median of what its horizons say.
+  std::optional<Quaternion> levelled(const std::vector<Vector3>& ups) const {
+    if (ups.empty()) return std::nullopt;
+    Vector3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (const Vector3& up : ups) values.push_back(up[axis]);
+      middle[axis] = median(std::move(values));
+    }
+    const Quaternion cam_from_heading = motion::cam_from_level(middle.normalized());
+    const Quaternion heading(Eigen::AngleAxisd(-radians(options_.heading_deg), Vector3::UnitZ()));
+    return cam_from_heading * heading;
+  }
+
+  void take_extinction(const AirMeter::Air& air) {
+    if (air.extinction_per_km) {
+      put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
+      return;
+    }
+    // Nothing unmeasured is applied as if it were known: air that may be clear is drawn clear. The
+    // error is that of a visibility of 50 km, beyond which the international visibility code calls
+    // it exceptionally clear (Koschmieder's 3.912 over it). A horizon that looks hazy makes a
+    // prior.
+    constexpr double kKoschmieder = 3.912, kClearKm = 50;
+    if (air.visibility_km && *air.visibility_km < kClearKm) {
+      const double per_km = kKoschmieder / *air.visibility_km;
+      const Estimate hazy{per_km, per_km};
+      put("air.extinction_per_km", {hazy, hazy, hazy});
+      result_.notes["air.extinction_per_km"] = fmt::format(
+          "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
+          "less{}: {}",
+          *air.visibility_km,
+          options_.altitude_m && options_.lens
+              ? ""
+              : fmt::format(" from {} m above the ground", AirMeter::kAssumedHeightM),
+          air.why_no_extinction);
+      return;
+    }
+    const Estimate clear{0, kKoschmieder / kClearKm};
+    put("air.extinction_per_km", {clear, clear, clear});
+    result_.notes["air.extinction_per_km"] =
+        fmt::format("not measured, and drawn as clear air{}: {}",
+                    air.visibility_km ? ", as the horizon looks" : "",
+                    air.why_no_extinction);
+  }
+
+  void take_sun(const AirMeter& air, bool level_known) {
+    std::string why = !options_.lens ? "the lens is not known (--lens)"
+                      : !level_known ? "no horizon is seen that says where level is"
+                                     : "";
+    std::optional<AirMeter::Sun> sun;
+    if (options_.lens && level_known) sun = air.sun(why);
+    if (sun) {
+      put("light.sun_azimuth_deg", {sun->azimuth_deg});
+      put("light.sun_elevation_deg", {sun->elevation_deg});
+    } else {
+      lack("light.sun_azimuth_deg", why);
+      lack("light.sun_elevation_deg", why);
+    }
+  }
+
+  // The horizons that are trusted. Where most frames have a sky that parts from something without a
+  // sharp line, the line of the others is a chance one too, and none is taken.
+  std::vector<std::optional<motion::HorizonFinder::Found>> horizons_of(
+      const motion::HorizonFinder& finder) {
+    std::vector<std::optional<motion::HorizonFinder::Found>> found;
+    std::size_t parted = 0, sharp = 0;
+    for (const Sampled& sampled : sampled_) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      found.push_back(finder.find(sampled.picture));
+      if (!found.back()) continue;
+      ++(found.back()->is_sharp() ? sharp : parted);
+      if (!found.back()->is_sharp()) found.back().reset();
+    }
+    if (sharp == 0 && parted == 0) {
+      lack("horizon",
+           fmt::format("in none of {} frames do a sky and a ground part", sampled_.size()));
+    } else if (sharp < parted) {
+      lack("horizon",
+           fmt::format("a line that is sharp from side to side parts sky and ground in {} of {} "
+                       "frames; in {} they part without one, as at a coast, hills, haze or "
+                       "clouds: no pitch, roll or sky is taken from it",
+                       sharp,
+                       sampled_.size(),
+                       parted));
+      for (auto& horizon : found) horizon.reset();
+    } else if (parted > 0) {
+      result_.notes["horizon"] = fmt::format(
+          "measured in {} of {} frames; in {} sky and ground part without a line that "
+          "is sharp from side to side, and these are left out",
+          sharp,
+          sampled_.size(),
+          parted);
+    }
+    return found;
+  }
+
+  // The sampled frame in the middle of those with a horizon, sky tinted.
+  void tint_sky(const lens::Lens& lens,
+                const std::vector<std::optional<motion::HorizonFinder::Found>>& found) {
+    std::vector<std::size_t> with;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (found[i]) with.push_back(i);
+    if (with.empty()) return;
+    const std::size_t i = with[with.size() / 2];
+    image::Rgb8 picture = image::rgb8_from_picture(sampled_[i].picture);
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
+        if (!ray || ray->dot(found[i]->up_in_cam) <= 0) continue;
+        std::uint8_t* p = picture.at(x, y);
+        p[0] = static_cast<std::uint8_t>(p[0] * 3 / 4 + 60);
+      }
+    result_.sky_picture = std::move(picture);
+  }
+
+  Options options_;
+  video::Reader reader_;
+  Calibration result_;
+  NoiseMeter noise_;
+  EdgeMeter edges_;
+  BlurMeter blur_;
+  motion::Estimator planar_;
+  std::optional<motion::Estimator> turning_;
+  std::vector<Steps> steps_ = std::vector<Steps>(1);  // by shot
+  std::vector<double> quantisers_;
+  std::vector<Quaternion> cam_from_first_;  // of every frame; empty without a lens
+  std::vector<Sampled> sampled_;
+  std::int64_t total_ = 0;
+  std::int64_t every_ = 2;
+};
+
+}  // namespace
+
+Calibration calibrate(const fs::path& video, const Options& options) {
+  return Session(video, options).run();
+}
+
+std::string lens_words(const lens::Lens& lens) {
+  return fmt::format("{} {:.1f} px", lens.name(), lens.focal_px());
+}
+
+}  // namespace airtruth::calibration

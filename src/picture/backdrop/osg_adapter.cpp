@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/backdrop/osg_adapter.h"
+
+namespace airtruth::backdrop {
+namespace {
+
+Eigen::Affine3d affine(const Rigid& b_from_a) {
+  return Eigen::Translation3d(b_from_a.translation) * Eigen::Affine3d(b_from_a.rotation);
+}
+
+const Vector3 kEyeFromCam{1, -1, -1};
+
+}  // namespace
+
+osg::Matrixd osg_from_affine(const Eigen::Affine3d& b_from_a) {
+  osg::Matrixd result;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) result(column, row) = b_from_a(row, column);
+  }
+  return result;
+}
+
+osg::Matrixd eye_from_world(const Rigid& cam_from_world) {
+  return osg_from_affine(Eigen::Affine3d(Eigen::Scaling(kEyeFromCam)) * affine(cam_from_world));
+}
+
+osg::Vec3f eye_direction_from_world(const Rigid& cam_from_world,
+                                    const Vector3& direction_in_world) {
+  const Vector3 direction_in_cam = cam_from_world.rotation * direction_in_world;
+  return osg_from_vector(kEyeFromCam.cwiseProduct(direction_in_cam).normalized().cast<float>());
+}
+
+osg::Matrixd projection(const Pixel& focal_px,
+                        const Pixel& principal_point_px,
+                        const Window& window) {
+  const double x_per_px = window.near_m / focal_px.x();
+  const double y_per_px = window.near_m / focal_px.y();
+  const double left = (window.in_frame.x - principal_point_px.x()) * x_per_px;
+  const double right = (window.in_frame.right() - principal_point_px.x()) * x_per_px;
+  const double top = (principal_point_px.y() - window.in_frame.y) * y_per_px;
+  const double bottom = (principal_point_px.y() - window.in_frame.bottom()) * y_per_px;
+  return osg::Matrixd::frustum(left, right, bottom, top, window.near_m, window.far_m);
+}
+
+}  // namespace airtruth::backdrop

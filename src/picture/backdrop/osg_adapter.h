@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <osg/Matrixd>
+#include <osg/Vec3f>
+
+#include "foundation/geometry/box.h"
+#include "foundation/geometry/transform.h"
+
+// The one place that knows OpenSceneGraph's row vectors and OpenGL's upward y and backward z
+// ("eye").
+namespace airtruth::backdrop {
+
+osg::Matrixd osg_from_affine(const Eigen::Affine3d& b_from_a);
+osg::Matrixd eye_from_world(const Rigid& cam_from_world);
+osg::Vec3f eye_direction_from_world(const Rigid& cam_from_world, const Vector3& direction_in_world);
+
+// What part of the frame is drawn, and between which distances along the camera's axis.
+struct Window {
+  Box in_frame;  // pixels
+  double near_m = 1;
+  double far_m = 2;
+};
+osg::Matrixd projection(const Pixel& focal_px,
+                        const Pixel& principal_point_px,
+                        const Window& window);
+
+inline osg::Vec3f osg_from_vector(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace airtruth::backdrop

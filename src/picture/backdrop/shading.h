@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <osg/StateSet>
+
+#include "aircraft/model/mesh.h"
+#include "picture/backdrop/backdrop.h"
+
+namespace airtruth::backdrop {
+
+enum class Encoding { kLinear, kSrgb };
+// A textured triangle can be opaque here and translucent there, so it is drawn twice: first what is
+// opaque, with depth, then what is not, blended.
+enum class Pass { kOpaque, kTranslucent };
+
+// The program, the light and how colour leaves it; for the root of a scene.
+class Shading {
+ public:
+  Shading();
+  osg::StateSet* state() const { return state_.get(); }
+  void set_light(const Light& light, const Rigid& cam_from_world);
+  void set_encoding(Encoding encoding);
+
+ private:
+  void set(const char* name, const osg::Vec3f& value);
+  osg::ref_ptr<osg::StateSet> state_;
+};
+
+bool is_drawn_in(Pass pass, const aircraft::Material& material, const aircraft::Mesh& mesh);
+
+osg::ref_ptr<osg::StateSet> material_state(Pass pass,
+                                           const aircraft::Material& material,
+                                           osg::Texture* texture);
+
+}  // namespace airtruth::backdrop

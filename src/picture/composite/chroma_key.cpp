@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/composite/chroma_key.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+
+namespace airtruth::composite {
+namespace {
+
+// OpenCV sees the samples in place, as red, green, blue: none of what it does here asks for the
+// order.
+cv::Mat3b cv_view(const image::Rgb8& rgb) {
+  return {rgb.height, rgb.width, reinterpret_cast<cv::Vec3b*>(rgb.samples.get())};
+}
+
+image::Rgb8 rgb8_from_cv(const cv::Mat3b& mat) {
+  image::Rgb8 rgb = image::make_rgb8(mat.cols, mat.rows);
+  mat.copyTo(cv_view(rgb));
+  return rgb;
+}
+
+// OpenCV's pixels are centred at whole numbers, ours at halves.
+cv::Matx33d cv_from_homography(const Homography& h) {
+  Homography to_corner = Homography::Identity();
+  to_corner.topRightCorner<2, 1>().setConstant(0.5);
+  Homography to_centre = Homography::Identity();
+  to_centre.topRightCorner<2, 1>().setConstant(-0.5);
+  const Homography centred = to_centre * h * to_corner;
+  cv::Matx33d result;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) result(row, column) = centred(row, column);
+  }
+  return result;
+}
+
+const cv::Vec3b kGreen(0, 255, 0);
+
+bool is_green(const cv::Vec3b& rgb, int tolerance) {
+  return rgb[0] <= tolerance && rgb[1] >= 255 - tolerance && rgb[2] <= tolerance;
+}
+
+void paste(const cv::Mat3b& virtual_image, cv::Mat3b& background) {
+  for (int y = 0; y < background.rows; ++y) {
+    const cv::Vec3b* from = virtual_image[y];
+    cv::Vec3b* to = background[y];
+    for (int x = 0; x < background.cols; ++x)
+      if (from[x] != kGreen) to[x] = from[x];
+  }
+}
+
+// 255 where the picture takes its pixel from C.
+std::vector<unsigned char> replaced_pixels(const cv::Mat3b& d, const ChromaKeyOptions& options) {
+  std::vector<unsigned char> replaced(static_cast<std::size_t>(d.rows) *
+                                      static_cast<std::size_t>(d.cols));
+  std::size_t i = 0;
+  for (int y = 0; y < d.rows; ++y) {
+    for (int x = 0; x < d.cols; ++x, ++i) {
+      const bool free = options.own_aircraft == nullptr || options.own_aircraft->is_free(x, y);
+      replaced[i] = free && !is_green(d(y, x), options.green_tolerance) ? 255 : 0;
+    }
+  }
+  return replaced;
+}
+
+std::uint8_t sample_of(float value) {
+  return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+}
+
+// Writes C's pixels into the planes. A chroma sample becomes the mean over its block, in which
+// pixels that keep their background keep its chroma.
+class PlaneWriter {
+ public:
+  PlaneWriter(image::Picture& frame, const cv::Mat3b& c, const std::vector<unsigned char>& replaced)
+      : frame_(frame), c_(c), replaced_(replaced), colour_code_(frame.colour) {}
+
+  void write() {
+    for (int y = 0; y < frame_.height; ++y) {
+      for (int x = 0; x < frame_.width; ++x)
+        if (is_replaced(x, y)) frame_.planes[0].row(y)[x] = sample_of(ycc(x, y).y);
+    }
+    if (frame_.plane_count == 1) return;
+    for (int cy = 0; cy < frame_.planes[1].height; ++cy) {
+      for (int cx = 0; cx < frame_.planes[1].width; ++cx) write_chroma(cx, cy);
+    }
+  }
+
+ private:
+  bool is_replaced(int x, int y) const {
+    return replaced_[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) +
+                     static_cast<std::size_t>(x)] != 0;
+  }
+
+  image::Ycc ycc(int x, int y) const {
+    const cv::Vec3b& rgb = c_(y, x);
+    return colour_code_.ycc_from_rgb({static_cast<float>(rgb[0]) / 255.0f,
+                                      static_cast<float>(rgb[1]) / 255.0f,
+                                      static_cast<float>(rgb[2]) / 255.0f});
+  }
+
+  void write_chroma(int cx, int cy) {
+    const int sx = image::log2_chroma_width(frame_.colour.chroma);
+    const int sy = image::log2_chroma_height(frame_.colour.chroma);
+    std::uint8_t& cb_sample = frame_.planes[1].row(cy)[cx];
+    std::uint8_t& cr_sample = frame_.planes[2].row(cy)[cx];
+    float cb = 0;
+    float cr = 0;
+    int pixels = 0;
+    bool any = false;
+    for (int y = cy << sy; y < std::min((cy + 1) << sy, frame_.height); ++y) {
+      for (int x = cx << sx; x < std::min((cx + 1) << sx, frame_.width); ++x, ++pixels) {
+        image::Ycc here{0, static_cast<float>(cb_sample), static_cast<float>(cr_sample)};
+        if (is_replaced(x, y)) {
+          here = ycc(x, y);
+          any = true;
+        }
+        cb += here.cb;
+        cr += here.cr;
+      }
+    }
+    if (!any) return;
+    cb_sample = sample_of(cb / static_cast<float>(pixels));
+    cr_sample = sample_of(cr / static_cast<float>(pixels));
+  }
+
+  image::Picture& frame_;
+  const cv::Mat3b& c_;
+  const std::vector<unsigned char>& replaced_;
+  image::ColourCode colour_code_;
+};
+
+}  // namespace
+
+std::vector<unsigned char> composite_chroma_key(image::Picture& frame,
+                                                const image::Rgb8& virtual_image,
+                                                const Homography& frame_from_reference,
+                                                const ChromaKeyOptions& options,
+                                                ChromaKeyImages* images) {
+  check(virtual_image.width == frame.width && virtual_image.height == frame.height,
+        "the virtual image is of the frame's size");
+  check(options.own_aircraft == nullptr || (options.own_aircraft->width == frame.width &&
+                                            options.own_aircraft->height == frame.height),
+        "the own aircraft's mask is of the frame's size");
+  const cv::Matx33d h = cv_from_homography(frame_from_reference);
+  const image::Rgb8 background = image::rgb8_from_picture(frame);
+  const cv::Mat3b virtual_view = cv_view(virtual_image);
+  const cv::Size size(frame.width, frame.height);
+  cv::Mat3b a, c, d;
+  cv::warpPerspective(cv_view(background),
+                      a,
+                      h,
+                      size,
+                      cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP,
+                      cv::BORDER_REPLICATE);
+  cv::Mat3b b = a.clone();
+  paste(virtual_view, b);
+  cv::warpPerspective(b, c, h, size, cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
+  cv::warpPerspective(virtual_view,
+                      d,
+                      h,
+                      size,
+                      cv::INTER_LANCZOS4,
+                      cv::BORDER_CONSTANT,
+                      cv::Scalar(kGreen[0], kGreen[1], kGreen[2]));
+  std::vector<unsigned char> replaced = replaced_pixels(d, options);
+  PlaneWriter(frame, c, replaced).write();
+  if (images != nullptr)
+    *images = {rgb8_from_cv(a), rgb8_from_cv(b), rgb8_from_cv(c), rgb8_from_cv(d)};
+  return replaced;
+}
+
+}  // namespace airtruth::composite

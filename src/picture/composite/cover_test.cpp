@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/composite/cover.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "picture/composite/matte.h"
+#include "picture/composite/spread.h"
+
+namespace airtruth::composite {
+namespace {
+
+constexpr int kCoverWidth = 90;
+constexpr int kCoverHeight = 70;
+
+// An opaque grey rectangle, by the share of each pixel that it covers.
+image::Layer rectangle(const Box& box) {
+  image::Layer layer;
+  layer.patch = pixels_of(box);
+  const auto size =
+      static_cast<std::size_t>(layer.patch.width) * static_cast<std::size_t>(layer.patch.height);
+  layer.pixels.resize(size);
+  layer.depth_m.assign(size, 500);
+  layer.coverage.assign(1, std::vector<float>(size, 0.0F));
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+      const double across = std::min(box.right(), x + 1.0) - std::max(box.x, double(x));
+      const double down = std::min(box.bottom(), y + 1.0) - std::max(box.y, double(y));
+      const auto share = static_cast<float>(across * down);
+      layer.pixels[layer.index(x, y)] = {0.2F * share, 0.2F * share, 0.2F * share, share};
+      layer.coverage[0][layer.index(x, y)] = share;
+    }
+  layer.area_alone_in_frame_px = layer.area_alone_px = {box.area()};
+  layer.area_seen_px = layer.area_free_px = {box.area()};
+  return layer;
+}
+
+// The share of [x, x + 1) under [from, to) seen through a Gaussian: the Gaussian's second integral
+// at four places.
+double seen_share(double x, double from, double to, double sigma) {
+  const auto ramp = [sigma](double u) {
+    if (sigma == 0) return std::max(0.0, u);
+    const double z = u / (sigma * std::sqrt(2.0));
+    return 0.5 * u * (1 + std::erf(z)) + sigma / std::sqrt(2 * kPi) * std::exp(-z * z);
+  };
+  return ramp(x + 1 - from) - ramp(x - from) - ramp(x + 1 - to) + ramp(x - to);
+}
+
+// Bounds of the pixels of at least this alpha, all in closed form.
+std::optional<PixelBox> bounds_in_closed_form(const Box& box, double sigma, double alpha) {
+  std::optional<PixelBox> found;
+  for (int y = 0; y < kCoverHeight; ++y)
+    for (int x = 0; x < kCoverWidth; ++x) {
+      const double here =
+          seen_share(x, box.x, box.right(), sigma) * seen_share(y, box.y, box.bottom(), sigma);
+      if (here < alpha) continue;
+      found = found ? bounds(*found, {x, y, 1, 1}) : PixelBox{x, y, 1, 1};
+    }
+  return found;
+}
+
+// Coverage is by pixel, and the kernel is the Gaussian's integral over each pixel: a variance of
+// 1/12 px^2 more than the ideal edge has. What is left differs by less than 0.03 of alpha, so the
+// box lies between those of the two thresholds.
+TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
+  constexpr double kAlpha = (kCoveredAlpha - 0.5) / 255;
+  constexpr double kOff = 0.03;
+  int compared = 0;
+  for (const double sigma : {0.0, 0.5, 0.8, 1.5, 3.0})
+    for (const double width : {0.6, 1.0, 3.3, 20.0})
+      for (const double shift : {0.0, 0.25, 0.5, 0.9}) {
+        const Box box{30 + shift, 25 + 0.7 * shift, width, 0.4 * width + 0.5};
+        const image::Layer layer = spread(rectangle(box), sigma, 0, kCoverWidth, kCoverHeight);
+        const auto covered = covered_box(layer, 0, nullptr);
+        const double effective = sigma > 0 ? std::sqrt(sigma * sigma + 1.0 / 12) : 0;
+        const auto most = bounds_in_closed_form(box, effective, kAlpha - kOff);
+        const auto least = bounds_in_closed_form(box, effective, kAlpha + kOff);
+        SCOPED_TRACE(testing::Message() << sigma << ' ' << width << ' ' << shift);
+        if (!most) {
+          EXPECT_FALSE(covered);
+          continue;
+        }
+        if (least) {
+          ASSERT_TRUE(covered);
+          EXPECT_EQ(bounds(*covered, *least), *covered);
+          ++compared;
+        }
+        if (covered) {
+          EXPECT_EQ(bounds(*most, *covered), *most);
+        }
+      }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
+  const image::Layer layer =
+      spread(rectangle({20.3, 30.2, 17, 5}), 0.9, 0, kCoverWidth, kCoverHeight);
+  const AlphaMask mask = alpha_mask(layer, 0, nullptr);
+  double sum = 0;
+  int pixels = 0;
+  for (const std::uint8_t a : mask.alpha) sum += a / 255.0, pixels += a > 0 ? 1 : 0;
+  EXPECT_NEAR(sum, 17 * 5, pixels * 0.5 / 255);
+  EXPECT_EQ(covered_box(mask), covered_box(layer, 0, nullptr));
+  EXPECT_TRUE(alpha_mask(layer, 1, nullptr).empty());
+  EXPECT_FALSE(covered_box(AlphaMask{}));
+}
+
+TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
+  image::Mask own{
+      kCoverWidth, kCoverHeight, std::vector<unsigned char>(kCoverWidth * kCoverHeight, 255)};
+  for (int y = 0; y < kCoverHeight; ++y)
+    for (int x = 0; x < 30; ++x) own.free[static_cast<std::size_t>(y * kCoverWidth + x)] = 0;
+  image::Layer sharp = rectangle({25, 30, 20, 10});
+  find_free_area(sharp, own);
+  EXPECT_NEAR(sharp.area_free_px[0], 15 * 10, 1e-3);
+  EXPECT_NEAR(sharp.area_seen_px[0], 20 * 10, 1e-9);
+  const image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
+  EXPECT_NEAR(layer.area_free_px[0], 15 * 10, 1e-3);
+  const auto covered = covered_box(layer, 0, &own);
+  ASSERT_TRUE(covered);
+  EXPECT_EQ(covered->x, 30);
+  EXPECT_EQ(covered->right(), 46);  // the first pixel beyond the edge at 45 has 0.31, the next 0.07
+  EXPECT_TRUE(covered_box(layer, 0, nullptr)->x < 25);
+}
+
+// The alpha that is stated: 20 of 255.
+TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
+  EXPECT_EQ(kCoveredAlpha, 20);
+  EXPECT_EQ(alpha_code(0.08F), 20);
+  EXPECT_EQ(alpha_code(0.076F), 19);
+  EXPECT_EQ(alpha_code(1.5F), 255);
+  EXPECT_EQ(alpha_code(-1), 0);
+  EXPECT_FALSE(covered_box(rectangle({10, 10, 0.3, 0.25}), 0, nullptr));
+  EXPECT_EQ(covered_box(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (PixelBox{10, 10, 1, 1}));
+}
+
+// A codec that leaves ripple in every sample that it is given.
+class Rippling : public PatchCoder {
+ public:
+  Coded code(const PixelBox&,
+             const image::Picture& with_layer,
+             const image::Picture& background) override {
+    image::Picture coded = with_layer.clone();
+    for (int y = 0; y < coded.height; ++y)
+      for (int x = 0; x < coded.width; ++x) {
+        std::uint8_t& sample = coded.planes[0].row(y)[x];
+        sample = static_cast<std::uint8_t>(sample + ((x + y) % 2 == 0 ? 2 : 1));
+      }
+    return {std::move(coded), background.clone()};
+  }
+};
+
+// A codec's ripple moves samples all around and no box of what is covered.
+TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
+  const image::Layer layer =
+      spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kCoverWidth, kCoverHeight);
+  const auto composed = [&](PatchCoder* coder) {
+    image::Picture picture =
+        image::make_picture(kCoverWidth,
+                            kCoverHeight,
+                            {image::Chroma::kNone, image::Matrix::kBt601, image::Range::kFull});
+    for (int y = 0; y < kCoverHeight; ++y)
+      for (int x = 0; x < kCoverWidth; ++x) picture.planes[0].row(y)[x] = 180;
+    MatteOptions options;
+    options.coder = coder;
+    return composite_matte(picture, layer, options).at(0);
+  };
+  Rippling codec;
+  const Visible plain = composed(nullptr);
+  const Visible coded = composed(&codec);
+  EXPECT_EQ(plain.covered, coded.covered);
+  EXPECT_EQ(plain.covered, covered_box(layer, 0, nullptr));
+  EXPECT_NE(plain.box, coded.box);
+}
+
+}  // namespace
+}  // namespace airtruth::composite

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/composite/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/image/colour.h"
+#include "picture/composite/spread.h"
+
+namespace airtruth::composite {
+namespace {
+
+std::uint64_t mixed(std::uint64_t x) {
+  x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ULL;
+  x ^= x >> 27, x *= 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+// A normal number that belongs to a pixel of a frame: the sum of 8 uniform bytes, twice (Irwin 1927
+// and Hall 1927), which never strays more than 6.9 standard deviations.
+float normal_at(std::uint64_t key, int x, int y) {
+  const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
+                              static_cast<std::uint32_t>(y);
+  const std::uint64_t a = mixed(key ^ mixed(place + 0x9e3779b97f4a7c15ULL));
+  const std::uint64_t b = mixed(a + 0x9e3779b97f4a7c15ULL);
+  int sum = 0;
+  for (int i = 0; i < 8; ++i)
+    sum += static_cast<int>(a >> (8 * i) & 255) + static_cast<int>(b >> (8 * i) & 255);
+  constexpr float kMean = 16 * 127.5F;
+  static const float kScale = static_cast<float>(1 / std::sqrt(16 * (256.0 * 256.0 - 1) / 12));
+  return (static_cast<float>(sum) - kMean) * kScale;
+}
+
+}  // namespace
+
+int Sensor::halo_px() const {
+  return sharpening > 0 ? static_cast<int>(gaussian(sharpening_px).size() / 2) : 0;
+}
+
+// A Gaussian in chroma samples, each up to two pixels wide and at an odd or an even one.
+int Sensor::chroma_px() const {
+  if (!(chroma_spread_px > 0)) return 0;
+  constexpr int kSample = 2;
+  return kSample * static_cast<int>(gaussian(chroma_spread_px / kSample).size() / 2) + 1;
+}
+
+void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor) {
+  if (!(sensor.sharpening > 0)) return;
+  std::vector<float> soft = change;
+  blur(soft, width, height, gaussian(sensor.sharpening_px));
+  const auto amount = static_cast<float>(sensor.sharpening);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] += amount * (change[i] - soft[i]);
+}
+
+float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {
+  const float bounded = std::clamp(luma, 0.0F, 1.0F);
+  const float light = sensor.tone.linear_from_coded_clamped(bounded);
+  // Slope of the coded value over light, by a small difference.
+  constexpr float kStep = 0.004F;
+  const float low = sensor.tone.linear_from_coded_clamped(bounded - kStep);
+  const float high = sensor.tone.linear_from_coded_clamped(bounded + kStep);
+  const float width = std::min(1.0F, bounded + kStep) - std::max(0.0F, bounded - kStep);
+  const float slope = width / std::max(high - low, 1e-6F);
+  const double variance = sensor.noise_gain * static_cast<double>(light) + sensor.noise_floor;
+  return codes_per_unit * slope * static_cast<float>(std::sqrt(std::max(0.0, variance)));
+}
+
+std::vector<float> noise_field(const PixelBox& patch,
+                               std::uint64_t seed,
+                               std::int64_t frame,
+                               double correlation_px) {
+  const std::vector<float> kernel = gaussian(correlation_px);
+  const int reach = static_cast<int>(kernel.size()) / 2;
+  const int width = patch.width + 2 * reach;
+  const int height = patch.height + 2 * reach;
+  const std::uint64_t key = mixed(seed ^ mixed(static_cast<std::uint64_t>(frame) + 1));
+  std::vector<float> white(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      white[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(x)] = normal_at(key, patch.x - reach + x, patch.y - reach + y);
+  if (reach == 0) return white;
+  blur(white, width, height, kernel);
+  double power = 0;
+  for (const float weight : kernel)
+    power += static_cast<double>(weight) * static_cast<double>(weight);
+  const auto scale = static_cast<float>(1 / power);  // along both axes: sqrt(power)^2
+  std::vector<float> field;
+  field.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
+  for (int y = 0; y < patch.height; ++y)
+    for (int x = 0; x < patch.width; ++x)
+      field.push_back(scale *
+                      white[static_cast<std::size_t>(y + reach) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(x + reach)]);
+  return field;
+}
+
+}  // namespace airtruth::composite

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/composite/sensor.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "picture/composite/matte.h"
+#include "picture/composite/spread.h"
+
+namespace airtruth::composite {
+namespace {
+
+image::Layer square(int side, float alpha, float light, int at = 20) {
+  image::Layer layer;
+  layer.patch = {at, at, side, side};
+  const auto size = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  layer.pixels.assign(size, {light * alpha, light * alpha, light * alpha, alpha});
+  layer.depth_m.assign(size, 2000.0F);
+  layer.coverage = {std::vector<float>(size, alpha)};
+  layer.area_alone_px = layer.area_alone_in_frame_px = {double(size)};
+  return layer;
+}
+
+image::Picture grey_picture(int side, std::uint8_t luma) {
+  image::Picture picture = image::make_picture(side, side, {image::Chroma::kNone});
+  for (int y = 0; y < side; ++y) std::fill_n(picture.planes[0].row(y), side, luma);
+  return picture;
+}
+
+TEST(Haze, FollowsKoschmieder) {
+  image::Layer layer = square(2, 0.5F, 0.8F);
+  add_haze(layer, {0.1, 0.2, 0.0}, {0.5, 0.6, 0.7});
+  const double t = std::exp(-0.1 * 2);
+  EXPECT_NEAR(layer.pixels[0].red, 0.5 * (0.8 * t + 0.5 * (1 - t)), 1e-6);
+  const double u = std::exp(-0.2 * 2);
+  EXPECT_NEAR(layer.pixels[0].green, 0.5 * (0.8 * u + 0.6 * (1 - u)), 1e-6);
+  EXPECT_NEAR(layer.pixels[0].blue, 0.5 * 0.8, 1e-6);
+  EXPECT_FLOAT_EQ(layer.pixels[0].alpha, 0.5F);
+}
+
+TEST(Spread, KeepsLightAndCoverageAndCentre) {
+  const image::Layer layer = square(5, 1, 0.4F);
+  const image::Layer soft = spread(layer, 0.8, 0, 60, 60);
+  double light = 0, coverage = 0, alpha = 0, x_sum = 0;
+  for (int y = soft.patch.y; y < soft.patch.bottom(); ++y)
+    for (int x = soft.patch.x; x < soft.patch.right(); ++x) {
+      const std::size_t i = soft.index(x, y);
+      light += double(soft.pixels[i].red);
+      alpha += double(soft.pixels[i].alpha);
+      coverage += double(soft.coverage[0][i]);
+      x_sum += double(soft.coverage[0][i]) * (x + 0.5);
+    }
+  EXPECT_NEAR(alpha, 25, 0.02);
+  EXPECT_NEAR(light, 10, 0.01);
+  EXPECT_NEAR(coverage, 25, 0.02);
+  EXPECT_NEAR(x_sum / coverage, 22.5, 1e-4);
+}
+
+// Whole pixels from 10 on, under weights that are a Gaussian's integrals over pixels: its
+// distribution function at the pixels' centres.
+TEST(Spread, AStepBecomesTheErrorFunction) {
+  const double sigma = 1.1;
+  const image::Layer soft = spread(square(40, 1, 1, 10), sigma, 0, 60, 60);
+  for (int x = 8; x < 13; ++x)
+    EXPECT_NEAR(soft.pixels[soft.index(x, 30)].alpha,
+                0.5 * (1 + std::erf((x + 0.5 - 10) / (sigma * std::sqrt(2.0)))),
+                0.003)
+        << x;
+}
+
+TEST(Spread, IsCutByTheFrameAlone) {
+  const image::Layer soft = spread(square(4, 1, 1, 0), 1.0, 2, 60, 60);
+  EXPECT_EQ(soft.patch, (PixelBox{0, 0, 9, 9}));
+}
+
+TEST(Sharpen, LeavesEvenChangesAloneAndOvershootsAtSteps) {
+  Sensor sensor;
+  sensor.sharpening = 0.8;
+  sensor.sharpening_px = 1.0;
+  std::vector<float> change(40 * 40, 0.0F);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 20; x < 40; ++x) change[static_cast<std::size_t>(y * 40 + x)] = 50;
+  sharpen(change, 40, 40, sensor);
+  EXPECT_NEAR(change[20 * 40 + 28], 50, 1e-3);
+  EXPECT_GT(change[20 * 40 + 20], 55);
+  EXPECT_LT(change[20 * 40 + 19], -5);
+}
+
+TEST(Noise, HasItsCurveItsCorrelationAndAnotherFaceEachFrame) {
+  const PixelBox patch{3, 5, 300, 300};
+  for (const double correlation_px : {0.0, 0.6}) {
+    const auto field = noise_field(patch, 9, 4, correlation_px);
+    double sum = 0, squares = 0, beside = 0;
+    for (std::size_t i = 0; i + 1 < field.size(); ++i) {
+      sum += double(field[i]), squares += double(field[i]) * double(field[i]);
+      beside += double(field[i]) * double(field[i + 1]);
+    }
+    const double n = double(field.size());
+    EXPECT_NEAR(sum / n, 0, 0.02);
+    EXPECT_NEAR(squares / n, 1, 0.03);
+    // Pixel weights of a Gaussian of 0.6 px: 0.595, 0.196 to each side, 0.006 (from its integral).
+    const double expected = correlation_px > 0 ? 2 * (0.595 * 0.196 + 0.196 * 0.006) /
+                                                     (0.595 * 0.595 + 2 * 0.196 * 0.196)
+                                               : 0;
+    EXPECT_NEAR(beside / squares, expected, 0.02);
+  }
+  EXPECT_NE(noise_field(patch, 9, 4, 0), noise_field(patch, 9, 5, 0));
+  // The same pixel whatever the patch.
+  const auto part = noise_field({100, 50, 20, 10}, 9, 4, 0.6);
+  const auto whole = noise_field(patch, 9, 4, 0.6);
+  EXPECT_FLOAT_EQ(part[0], whole[(50 - 5) * 300 + (100 - 3)]);
+  // Linear light 0.2140 is coded as 0.5; the curve's slope there is 1.107 (IEC 61966-2-1).
+  Sensor sensor;
+  sensor.noise_gain = 4e-4;
+  sensor.noise_floor = 2e-5;
+  const double slope = 1 / 2.4 * 1.055 * std::pow(0.2140, 1 / 2.4 - 1);
+  EXPECT_NEAR(noise_sigma(0.5F, 219, sensor), 219 * slope * std::sqrt(4e-4 * 0.2140 + 2e-5), 0.02);
+}
+
+TEST(Matte, WithASensorTouchesNothingBeyondItsReach) {
+  const image::Layer layer = spread(square(6, 1, 0.9F), 0.7, 3, 60, 60);
+  image::Picture picture = grey_picture(60, 90);
+  MatteOptions options;
+  options.sensor.sharpening = 1;
+  options.sensor.noise_gain = 1e-3;
+  const auto visible = composite_matte(picture, layer, options);
+  ASSERT_TRUE(visible[0].box);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x)
+      ASSERT_TRUE(visible[0].box->contains(x, y) || picture.planes[0].row(y)[x] == 90);
+  ASSERT_TRUE(visible[0].centroid);
+  EXPECT_NEAR(visible[0].centroid->x(), 23, 1e-3);
+  // The halo of sharpening is part of what is seen.
+  EXPECT_LT(visible[0].box->x, 19);
+}
+
+}  // namespace
+}  // namespace airtruth::composite

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/composite/spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::composite {
+namespace {
+
+constexpr double kReach = 3;             // standard deviations
+constexpr float kNothing = 1.0F / 4096;  // of coverage: below it no sample can tell
+
+int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma_px)); }
+
+// A plane of the layer, copied into the middle of a larger patch.
+template <typename Get>
+std::vector<float> placed(const image::Layer& layer, const image::Layer& target, const Get& get) {
+  std::vector<float> plane(target.pixels.size(), 0.0F);
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x)
+      plane[target.index(x, y)] = get(layer.index(x, y));
+  return plane;
+}
+
+}  // namespace
+
+void add_haze(image::Layer& layer,
+              const std::array<double, 3>& extinction_per_km,
+              const std::array<double, 3>& airlight) {
+  for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
+    image::LayerPixel& pixel = layer.pixels[i];
+    if (!(pixel.alpha > 0)) continue;
+    const double range_km = static_cast<double>(layer.depth_m[i]) / 1000;
+    float* const rgb[3] = {&pixel.red, &pixel.green, &pixel.blue};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto through = static_cast<float>(std::exp(-extinction_per_km[c] * range_km));
+      *rgb[c] = *rgb[c] * through + pixel.alpha * static_cast<float>(airlight[c]) * (1 - through);
+    }
+  }
+}
+
+std::vector<float> gaussian(double sigma_px) {
+  if (!(sigma_px > 0)) return {1};
+  const int reach = std::max(1, reach_of(sigma_px));
+  std::vector<float> kernel;
+  double total = 0;
+  const auto below = [&](double x) { return 0.5 * std::erf(x / (sigma_px * std::sqrt(2.0))); };
+  for (int i = -reach; i <= reach; ++i) {
+    kernel.push_back(static_cast<float>(below(i + 0.5) - below(i - 0.5)));
+    total += static_cast<double>(kernel.back());
+  }
+  for (float& weight : kernel) weight = static_cast<float>(weight / total);
+  return kernel;
+}
+
+void blur(std::vector<float>& values,
+          int width,
+          int height,
+          const std::vector<float>& across,
+          const std::vector<float>& down) {
+  check(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+        "a plane of the size that it says");
+  std::vector<float> line;
+  const auto along =
+      [&](std::size_t start, std::size_t step, int count, const std::vector<float>& kernel) {
+        const int reach = static_cast<int>(kernel.size()) / 2;
+        if (reach == 0) return;
+        line.assign(static_cast<std::size_t>(count + 2 * reach), 0.0F);
+        for (int i = 0; i < count; ++i)
+          line[static_cast<std::size_t>(i + reach)] =
+              values[start + static_cast<std::size_t>(i) * step];
+        for (int i = 0; i < count; ++i) {
+          float sum = 0;
+          const float* from = line.data() + i;
+          for (std::size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * from[k];
+          values[start + static_cast<std::size_t>(i) * step] = sum;
+        }
+      };
+  for (int y = 0; y < height; ++y)
+    along(static_cast<std::size_t>(y) * static_cast<std::size_t>(width), 1, width, across);
+  for (int x = 0; x < width; ++x)
+    along(static_cast<std::size_t>(x), static_cast<std::size_t>(width), height, down);
+}
+
+void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel) {
+  blur(values, width, height, kernel, kernel);
+}
+
+image::Layer spread(
+    const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height) {
+  if (layer.empty()) return layer;
+  const int reach = sigma_px > 0 ? std::max(1, reach_of(sigma_px)) : 0;
+  const int more = reach + margin_px;
+  if (more == 0) return layer;
+  image::Layer result;
+  const PixelBox& p = layer.patch;
+  result.patch = *intersection({p.x - more, p.y - more, p.width + 2 * more, p.height + 2 * more},
+                               {0, 0, frame_width, frame_height});
+  const int width = result.patch.width;
+  const int height = result.patch.height;
+  result.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
+  result.area_alone_px = layer.area_alone_px;
+  result.area_seen_px = layer.area_seen_px;
+  result.area_free_px = layer.area_free_px;
+  const std::vector<float> kernel = gaussian(sigma_px);
+  const auto through = [&](const auto& get) {
+    std::vector<float> plane = placed(layer, result, get);
+    blur(plane, width, height, kernel);
+    return plane;
+  };
+  const auto alpha = through([&](std::size_t i) { return layer.pixels[i].alpha; });
+  const auto red = through([&](std::size_t i) { return layer.pixels[i].red; });
+  const auto green = through([&](std::size_t i) { return layer.pixels[i].green; });
+  const auto blue = through([&](std::size_t i) { return layer.pixels[i].blue; });
+  const auto depth = through([&](std::size_t i) {
+    return layer.pixels[i].alpha > 0 ? layer.pixels[i].alpha * layer.depth_m[i] : 0.0F;
+  });
+  result.depth_m.assign(result.pixels.size(), std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    if (alpha[i] < kNothing) continue;
+    result.pixels[i] = {red[i], green[i], blue[i], std::min(1.0F, alpha[i])};
+    result.depth_m[i] = depth[i] / alpha[i];
+  }
+  for (const std::vector<float>& coverage : layer.coverage) {
+    result.coverage.emplace_back();
+    if (coverage.empty()) continue;
+    result.coverage.back() = through([&](std::size_t i) { return coverage[i]; });
+    for (std::size_t i = 0; i < result.pixels.size(); ++i)
+      if (!(result.pixels[i].alpha > 0)) result.coverage.back()[i] = 0;
+  }
+  return result;
+}
+
+}  // namespace airtruth::composite

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/model.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "foundation/base/error.h"
+#include "picture/render/openness.h"
+
+namespace airtruth::render {
+namespace {
+
+// No "threads=1" here: Embree would hold all of oneTBB, and so the whole pipeline, to one thread.
+// One instruction set for all machines, so that a frame has the same bytes on each: AVX2 (2013 and
+// later), or SSE4.2 where there is no AVX2.
+RTCDevice new_device() {
+  for (const char* settings : {"isa=avx2", "isa=sse4.2"}) {
+    if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
+    if (RTCDevice device = rtcNewDevice(settings)) return device;
+  }
+  RTCDevice device = rtcNewDevice(nullptr);
+  check(device != nullptr, "Embree has a device");
+  return device;
+}
+
+RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::Part& part) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  if (!part.triangles.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
+                                                                 RTC_BUFFER_TYPE_VERTEX,
+                                                                 0,
+                                                                 RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float),
+                                                                 mesh.positions.size()));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        vertices[3 * i + static_cast<std::size_t>(c)] = mesh.positions[i][c];
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
+                                                                   RTC_BUFFER_TYPE_INDEX,
+                                                                   0,
+                                                                   RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned),
+                                                                   part.triangles.size()));
+    for (std::size_t i = 0; i < part.triangles.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) indices[3 * i + c] = part.triangles[i].vertex[c];
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(scene);
+  return scene;
+}
+
+// Texels per metre over a triangle: the square root of the ratio of its areas.
+float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
+  const int texture = mesh.materials[triangle.material].texture;
+  if (texture < 0) return 0;
+  const auto& level = mesh.textures[static_cast<std::size_t>(texture)].levels.front();
+  const auto& [a, b, c] = triangle.vertex;
+  const Eigen::Vector2f p = mesh.uvs[b] - mesh.uvs[a];
+  const Eigen::Vector2f q = mesh.uvs[c] - mesh.uvs[a];
+  const float in_texels = std::abs(p.x() * q.y() - p.y() * q.x()) *
+                          static_cast<float>(level.width) * static_cast<float>(level.height);
+  const float in_m2 =
+      (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm();
+  return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
+}
+
+// How many of a texture's texels are translucent, over any rectangle (a summed-area table: Crow
+// 1984).
+class TranslucentTexels {
+ public:
+  explicit TranslucentTexels(const aircraft::Texture& texture)
+      : texture_(texture),
+        width_(texture.levels.front().width),
+        height_(texture.levels.front().height) {
+    sums_.assign(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1), 0);
+    for (int y = 0; y < height_; ++y) {
+      std::uint32_t row = 0;
+      for (int x = 0; x < width_; ++x) {
+        row += texture.levels.front()
+                   .texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(x)][3] < aircraft::kOpaque;
+        sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + row;
+      }
+    }
+  }
+
+  // Any among those that a bilinear look-up within the triangle reads? Yes, to be sure, where it
+  // wraps round.
+  bool any(const std::array<Eigen::Vector2f, 3>& uvs) const {
+    Eigen::Vector2f low = uvs[0].cwiseMin(uvs[1]).cwiseMin(uvs[2]);
+    Eigen::Vector2f high = uvs[0].cwiseMax(uvs[1]).cwiseMax(uvs[2]);
+    if (!low.allFinite() || !high.allFinite()) return true;
+    if (texture_.repeat_u) high.x() -= std::floor(low.x()), low.x() -= std::floor(low.x());
+    if (texture_.repeat_v) high.y() -= std::floor(low.y()), low.y() -= std::floor(low.y());
+    const float x0 = std::floor(low.x() * static_cast<float>(width_) - 0.5f);
+    const float y0 = std::floor(low.y() * static_cast<float>(height_) - 0.5f);
+    const float x1 = std::floor(high.x() * static_cast<float>(width_) - 0.5f) + 2;
+    const float y1 = std::floor(high.y() * static_cast<float>(height_) - 0.5f) + 2;
+    if (!(x0 >= 0 && y0 >= 0 && x1 <= static_cast<float>(width_) &&
+          y1 <= static_cast<float>(height_)))
+      return sums_.back() > 0;
+    const auto [l, b, r, t] = std::array{
+        static_cast<int>(x0), static_cast<int>(y0), static_cast<int>(x1), static_cast<int>(y1)};
+    return sums_[at(r, t)] - sums_[at(l, t)] - sums_[at(r, b)] + sums_[at(l, b)] > 0;
+  }
+
+ private:
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) +
+           static_cast<std::size_t>(x);
+  }
+  const aircraft::Texture& texture_;
+  int width_;
+  int height_;
+  std::vector<std::uint32_t> sums_;
+};
+
+// Which triangles nothing shines through. A livery's texture has holes for what is cut out
+// elsewhere in it.
+std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& mesh) {
+  std::vector<std::unique_ptr<TranslucentTexels>> tables;
+  for (const aircraft::Texture& texture : mesh.textures)
+    tables.push_back(texture.has_translucency ? std::make_unique<TranslucentTexels>(texture)
+                                              : nullptr);
+  std::vector<std::vector<std::uint8_t>> result;
+  for (const aircraft::Part& part : mesh.parts) {
+    std::vector<std::uint8_t>& flags = result.emplace_back();
+    for (const aircraft::Triangle& triangle : part.triangles) {
+      const aircraft::Material& material = mesh.materials[triangle.material];
+      const auto& [a, b, c] = triangle.vertex;
+      const TranslucentTexels* table =
+          material.texture < 0 ? nullptr : tables[static_cast<std::size_t>(material.texture)].get();
+      const bool holes = table != nullptr && table->any({mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
+      flags.push_back(material.opacity >= aircraft::kOpaque && !holes ? 1 : 0);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+bool is_blocked(const Model::Impl& model,
+                const Eigen::Vector3f& origin,
+                const Eigen::Vector3f& direction,
+                float reach_m) {
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].spins) continue;
+    RTCRay ray{};
+    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+    ray.tnear = 0;
+    ray.tfar = reach_m;
+    ray.mask = 0xffffffffu;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(model.scenes[i].get(), &context, &ray);
+    if (ray.tfar < 0) return true;
+  }
+  return false;
+}
+
+std::optional<Hit> nearest_blocker(const Model::Impl& model,
+                                   const Eigen::Vector3f& origin,
+                                   const Eigen::Vector3f& direction,
+                                   float reach_m) {
+  RTCRayHit query{};
+  query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
+  query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
+  query.ray.dir_z = direction.z();
+  query.ray.tnear = 0;
+  query.ray.tfar = reach_m;  // becomes that of the nearest hit so far
+  query.ray.mask = 0xffffffffu;
+  std::optional<Hit> best;
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].spins) continue;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(model.scenes[i].get(), &context, &query);
+    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
+  }
+  return best;
+}
+
+Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+  impl_->mesh = mesh;
+  impl_->device.reset(new_device());
+  impl_->opaque = opaque_triangles(mesh);
+  Eigen::AlignedBox3f bounds;
+  for (const aircraft::Part& part : mesh.parts) {
+    impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
+    std::vector<float> densities;
+    for (const aircraft::Triangle& triangle : part.triangles) {
+      densities.push_back(density(mesh, triangle));
+      for (std::uint32_t v : triangle.vertex) bounds.extend(mesh.positions[v]);
+    }
+    impl_->texels_per_m.push_back(std::move(densities));
+  }
+  if (bounds.isEmpty()) bounds.extend(Eigen::Vector3f::Zero());
+  impl_->centre_in_body = bounds.center().cast<double>();
+  for (const aircraft::Part& part : mesh.parts) {
+    for (const aircraft::Triangle& triangle : part.triangles) {
+      for (std::uint32_t v : triangle.vertex) {
+        const Eigen::Vector3d p = mesh.positions[v].cast<double>();
+        double reach = (p - impl_->centre_in_body).norm();
+        if (part.spins) {
+          const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
+          reach = (hub - impl_->centre_in_body).norm() + (p - hub).norm();
+        }
+        impl_->radius_m = std::max(impl_->radius_m, reach);
+      }
+    }
+  }
+  impl_->radius_m = impl_->radius_m * 1.01 + 0.01;
+  impl_->openness = model_openness(*impl_);
+}
+Model::~Model() = default;
+Model::Model(Model&&) noexcept = default;
+
+}  // namespace airtruth::render

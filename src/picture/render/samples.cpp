@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/samples.h"
+
+#include <string>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::render {
+namespace {
+
+std::uint32_t hashed(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t h = x * 0x9e3779b1u ^ (y + 0x7f4a7c15u) * 0x85ebca77u;
+  h ^= h >> 16, h *= 0x7feb352du, h ^= h >> 15, h *= 0x846ca68bu, h ^= h >> 16;
+  return h;
+}
+
+struct SobolPoints {
+  std::array<std::uint32_t, PixelSamples::kMost> x;
+  std::array<std::uint32_t, PixelSamples::kMost> y;
+  std::array<std::uint32_t, PixelSamples::kMost> t;
+};
+
+// Direction numbers of the primitive polynomial x^2 + x + 1 (Sobol 1967; m = 1, 3).
+constexpr std::array<std::uint32_t, 12> third_directions() {
+  std::array<std::uint32_t, 12> v{1u << 31, 3u << 30};
+  for (std::size_t i = 2; i < v.size(); ++i) v[i] = v[i - 1] ^ v[i - 2] ^ (v[i - 2] >> 2);
+  return v;
+}
+
+constexpr SobolPoints sobol_points() {
+  SobolPoints points{};
+  constexpr auto third = third_directions();
+  for (std::uint32_t n = 0; n < PixelSamples::kMost; ++n) {
+    std::uint32_t vx = 1u << 31;
+    std::uint32_t vy = 1u << 31;
+    for (std::uint32_t i = n; i != 0; i >>= 1, vx >>= 1, vy ^= vy >> 1) {
+      if ((i & 1u) != 0) {
+        points.x[n] ^= vx;
+        points.y[n] ^= vy;
+      }
+    }
+    for (std::uint32_t bit = 0; bit < third.size(); ++bit)
+      if ((n >> bit & 1u) != 0) points.t[n] ^= third[bit];
+  }
+  return points;
+}
+
+constexpr SobolPoints kPoints = sobol_points();
+
+float unit(std::uint32_t bits) {
+  return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
+}
+
+}  // namespace
+
+PixelSamples::PixelSamples(int x, int y)
+    : scramble_x_(hashed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))),
+      scramble_y_(hashed(scramble_x_, 0x68bc21ebu)),
+      scramble_t_(hashed(scramble_y_, 0x02e5be93u)) {}
+
+std::array<double, 2> PixelSamples::at(int i) const {
+  const auto n = static_cast<std::size_t>(i);
+  return {((kPoints.x[n] ^ scramble_x_) + 0.5) * 0x1.0p-32,
+          ((kPoints.y[n] ^ scramble_y_) + 0.5) * 0x1.0p-32};
+}
+
+double PixelSamples::time(int i) const {
+  return ((kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_) + 0.5) * 0x1.0p-32;
+}
+
+void PixelSamples::fill_times(int n, float* t) const {
+  for (int i = 0; i < n; ++i) t[i] = unit(kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_);
+}
+
+void PixelSamples::fill(int n, float* x, float* y) const {
+  for (int i = 0; i < n; ++i) {
+    x[i] = unit(kPoints.x[static_cast<std::size_t>(i)] ^ scramble_x_);
+    y[i] = unit(kPoints.y[static_cast<std::size_t>(i)] ^ scramble_y_);
+  }
+}
+
+SampleCounts counts_for(int quality, double size_px) {
+  switch (quality) {
+    case 1:
+      return {4, 32, 64, 4, 4};
+    case 2:
+      return {16, 128, 256, 8, 4};
+    case 3:
+      // The smaller, the more of a livery is in one pixel, and the fewer pixels there are to pay
+      // for.
+      if (size_px <= 24) return {64, 1024, 1024, 64, 64};
+      if (size_px <= 64) return {16, 512, 512, 32, 16};
+      // The larger, the more pixels of outline there are for one to be unlucky.
+      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8};
+    case 4:
+      return {64, 1024, 4096, 16, 16};
+    case 5:
+      return {4096, 4096, 0, 16, 16};
+    default:
+      break;
+  }
+  throw Error("render quality is " + std::to_string(quality) +
+              "; expected 1 (draft) to 5 (oracle)");
+}
+
+}  // namespace airtruth::render

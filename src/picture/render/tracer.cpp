@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::render {
+namespace {
+
+constexpr float kStep = 1e-4f;         // past a translucent surface, metres
+constexpr double kSampleShare = 0.25;  // of a pixel's side, for one of the many samples of opacity
+constexpr int kMaxLayers = 24;         // translucent surfaces along one ray
+
+Vector3 interpolated(const std::array<Vector3, 4>& corners, const std::array<double, 2>& at) {
+  const auto [x, y] = at;
+  return ((1 - y) * ((1 - x) * corners[0] + x * corners[1]) +
+          y * ((1 - x) * corners[2] + x * corners[3]))
+      .normalized();
+}
+
+BodyRay body_ray(const Actor& actor, const Shot& shot) {
+  const Vector3 eye = actor.moves ? between(actor.eye_in_body_at, shot.u) : actor.eye_in_body;
+  const Vector3 d =
+      actor.moves
+          ? Vector3((between(actor.body_from_world_at, shot.u) * shot.direction).normalized())
+          : Vector3(actor.body_from_world * shot.direction);
+  return {(eye + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
+}
+
+// A spinning part stands elsewhere at every moment of the exposure.
+Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt_s) {
+  if (dt_s == 0) return placed.part_from_body[part];
+  return aircraft::body_from_part(placed.model->mesh.parts[part], placed.time_s + dt_s)
+      .inverse(Eigen::Isometry);
+}
+
+std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from, double dt_s) {
+  std::optional<Hit> best;
+  for (std::size_t i = 0; i < placed.model->scenes.size(); ++i) {
+    const bool moves = placed.model->mesh.parts[i].spins;
+    Eigen::Vector3f o = ray.origin;
+    Eigen::Vector3f d = ray.direction;
+    if (moves) {
+      const Eigen::Affine3f here = part_from_body(placed, i, dt_s);
+      o = here * ray.origin;
+      d = here.linear() * ray.direction;
+    }
+    RTCRayHit query{};
+    query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
+    query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
+    query.ray.tnear = from;
+    query.ray.tfar = best ? best->t : INFINITY;
+    query.ray.mask = 0xffffffffu;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect1(placed.model->scenes[i].get(), &context, &query);
+    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
+  }
+  return best;
+}
+
+// Within a few code values of one another, as a video would hold them?
+bool alike(const std::array<float, 3>& low, const std::array<float, 3>& high) {
+  constexpr float kSpread = 0.12f;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (high[c] - low[c] > kSpread * high[c] + 0.004f) return false;
+  return true;
+}
+
+}  // namespace
+
+Actor place(const Instance& instance,
+            const View& view,
+            const Light& light,
+            const std::optional<Box>& search,
+            const Span& span) {
+  Actor actor;
+  const Model::Impl& model = instance.model->impl();
+  actor.placed.model = &model;
+  actor.moves = !span.is_instant();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double dt_s = span.at(static_cast<int>(k));
+    const Rigid body_from_world = carried(instance.world_from_body, instance.twist, dt_s).inverse();
+    actor.body_from_world_at[k] = body_from_world.rotation.toRotationMatrix();
+    actor.eye_in_body_at[k] = body_from_world * view.at(dt_s).world_from_cam.translation;
+  }
+  actor.body_from_world = actor.body_from_world_at[1];
+  actor.eye_in_body = actor.eye_in_body_at[1];
+  double nearest_m = INFINITY;
+  for (const Vector3& eye : actor.eye_in_body_at)
+    nearest_m = std::min(nearest_m, (eye - model.centre_in_body).norm());
+  actor.start_m = std::max(0.0, nearest_m - model.radius_m);
+  actor.placed.to_sun_in_body =
+      (actor.body_from_world * light.to_sun_in_world).normalized().cast<float>();
+  actor.placed.up_in_body = (actor.body_from_world * Vector3(0, 0, -1)).cast<float>();
+  actor.placed.world_from_body = actor.body_from_world.transpose().cast<float>();
+  actor.placed.time_s = instance.time_s;
+  const double turned_at_s = instance.time_s + (actor.moves ? 0 : span.begin_s);
+  for (const aircraft::Part& part : model.mesh.parts) {
+    actor.placed.body_from_part.push_back(aircraft::body_from_part(part, turned_at_s));
+    actor.placed.part_from_body.push_back(actor.placed.body_from_part.back().inverse());
+  }
+  actor.pixels = pixels_to_search(search, view);
+  return actor;
+}
+
+std::optional<PixelBox> pixels_to_search(const std::optional<Box>& search, const View& view) {
+  if (!search) return std::nullopt;
+  return intersection(pixels_of(*search), {0, 0, view.width, view.height});
+}
+
+PixelShots::PixelShots(const RayGrid& grid, int x, int y)
+    : samples_(x, y), is_instant_(grid.span().is_instant()), span_(grid.span()) {
+  if (!is_instant_) {
+    middle_s_ = grid.middle_s(x, y);
+    exposure_s_ = grid.exposure_s();
+  }
+  for (int k = is_instant_ ? 1 : 0; k < (is_instant_ ? 2 : 3); ++k) {
+    corners_[static_cast<std::size_t>(k)] = grid.corners(x, y, k);
+    known_ = known_ && finite(corners_[static_cast<std::size_t>(k)]);
+  }
+  pixel_rad_ = (corners_[1][1] - corners_[1][0]).norm();
+}
+
+Shot PixelShots::operator()(int sample) const {
+  const auto at = samples_.at(sample);
+  if (is_instant_) return {interpolated(corners_[1], at), 0, 0};
+  const double dt_s = middle_s_ + exposure_s_ * (samples_.time(sample) - 0.5);
+  const double u = span_.u(dt_s);
+  const Thrice<Vector3> directions = {
+      interpolated(corners_[0], at), interpolated(corners_[1], at), interpolated(corners_[2], at)};
+  return {between(directions, u).normalized(), u, dt_s};
+}
+
+bool finite(const std::array<Vector3, 4>& corners) {
+  return std::all_of(
+      corners.begin(), corners.end(), [](const Vector3& corner) { return corner.allFinite(); });
+}
+
+void Tracer::sample(
+    int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const {
+  const PixelShots shots(grid_, x, y);
+  sum.count += to - from;
+  if (!shots.known()) return;
+  const double pixel_rad = shots.pixel_rad();
+  std::vector<Fragment> fragments;
+  for (int i = from; i < to; ++i) {
+    const Shot shot = shots(i);
+    fragments.clear();
+    for (std::size_t a = 0; a < actors_.size(); ++a) {
+      if (!actors_[a].pixels || !actors_[a].pixels->contains(x, y)) continue;
+      alone[a] += collect(static_cast<int>(a), shot, pixel_rad, fragments);
+    }
+    if (!fragments.empty()) add(shot, pixel_rad, fragments, sum, coverage);
+  }
+}
+
+double Tracer::collect(int actor_index,
+                       const Shot& shot,
+                       double pixel_rad,
+                       std::vector<Fragment>& fragments) const {
+  const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
+  const BodyRay ray = body_ray(actor, shot);
+  double through = 1;
+  float from = 0;
+  for (int layer = 0; layer < kMaxLayers; ++layer) {
+    const auto hit = nearest_hit(actor.placed, ray, from, shot.dt_s);
+    if (!hit) break;
+    const double distance = actor.start_m + hit->t;
+    const auto sample_m = static_cast<float>(kSampleShare * distance * pixel_rad);
+    const float alpha = opacity_at(actor.placed, *hit, sample_m);
+    if (alpha > 0) fragments.push_back({distance, actor_index, alpha, *hit});
+    through *= 1.0 - alpha;
+    if (alpha >= 1) break;
+    from = hit->t + kStep;
+  }
+  return 1 - through;
+}
+
+bool Tracer::shade_covered(
+    int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
+  const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
+  const PixelShots shots(grid_, x, y);
+  const double pixel_rad = shots.pixel_rad();
+  double distance_sum = 0;
+  std::array<float, 3> low;
+  low.fill(INFINITY);
+  std::array<float, 3> high{};
+  for (std::size_t i = 0; i < is_covered.size() && sum.opaque_shaded < counts_.shaded; ++i) {
+    if (is_covered[i] == 0) continue;
+    if (sum.opaque_shaded > 0 && sum.opaque_shaded % counts_.shaded_alike == 0 && alike(low, high))
+      break;
+    const Shot shot = shots(static_cast<int>(i));
+    const auto hit = nearest_hit(actor.placed, body_ray(actor, shot), 0, shot.dt_s);
+    if (!hit) continue;  // a hair's breadth from an edge, where floats and doubles part
+    const Fragment fragment{actor.start_m + hit->t, actor_index, 1, *hit};
+    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum.opaque_rgb[c] += rgb[c];
+      low[c] = std::min(low[c], rgb[c]);
+      high[c] = std::max(high[c], rgb[c]);
+    }
+    distance_sum += fragment.distance_m;
+    ++sum.opaque_shaded;
+  }
+  if (sum.opaque_shaded == 0) return false;
+  sum.depth = distance_sum / sum.opaque_shaded * sum.alpha;
+  return true;
+}
+
+void Tracer::add(const Shot& shot,
+                 double pixel_rad,
+                 std::vector<Fragment>& fragments,
+                 Sum& sum,
+                 double* coverage) const {
+  if (fragments.size() > 1)
+    std::stable_sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
+      return a.distance_m < b.distance_m;
+    });
+  const double before = sum.alpha;
+  blend(shot, pixel_rad, fragments, sum, coverage);
+  ++sum.hits;
+  sum.least = std::min(sum.least, sum.alpha - before);
+  sum.most = std::max(sum.most, sum.alpha - before);
+}
+
+// One sample's surfaces, nearest first, over one another.
+void Tracer::blend(const Shot& shot,
+                   double pixel_rad,
+                   const std::vector<Fragment>& fragments,
+                   Sum& sum,
+                   double* coverage) const {
+  double through = 1;
+  const bool simple = fragments.front().alpha >= 1;
+  for (const Fragment& fragment : fragments) {
+    const double share = through * fragment.alpha;
+    coverage[static_cast<std::size_t>(fragment.actor)] += share;
+    sum.alpha += share;
+    sum.depth += share * fragment.distance_m;
+    if (simple) {
+      sum.opaque += share;
+      if (sum.opaque_shaded < counts_.shaded) {
+        const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
+        for (std::size_t c = 0; c < 3; ++c) sum.opaque_rgb[c] += rgb[c];
+        ++sum.opaque_shaded;
+      }
+      return;
+    }
+    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
+    for (std::size_t c = 0; c < 3; ++c) sum.translucent_rgb[c] += through * rgb[c];
+    through *= 1.0 - fragment.alpha;
+    if (through <= 0) return;
+  }
+}
+
+std::array<float, 3> Tracer::colour(const Shot& shot,
+                                    double pixel_rad,
+                                    const Fragment& fragment) const {
+  const Actor& actor = actors_[static_cast<std::size_t>(fragment.actor)];
+  return shade(actor.placed,
+               body_ray(actor, shot),
+               fragment.hit,
+               light_,
+               footprint(fragment.distance_m, pixel_rad));
+}
+
+// Of one shaded sample on the surface: a pixel's width shared out among the samples of a side.
+float Tracer::footprint(double distance_m, double pixel_rad) const {
+  return static_cast<float>(distance_m * pixel_rad /
+                            std::sqrt(static_cast<double>(counts_.shaded)));
+}
+
+}  // namespace airtruth::render

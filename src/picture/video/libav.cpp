@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/libav.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
+
+namespace airtruth::video {
+namespace {
+
+using image::Chroma;
+using image::Picture;
+using image::Plane;
+
+std::optional<Chroma> chroma_of(const AVPixFmtDescriptor& format) {
+  if (format.nb_components < 3) return Chroma::kNone;
+  const int w = format.log2_chroma_w;
+  const int h = format.log2_chroma_h;
+  if (w == 1 && h == 1) return Chroma::k420;
+  if (w == 1 && h == 0) return Chroma::k422;
+  if (w == 0 && h == 1) return Chroma::k440;
+  if (w == 0 && h == 0) return Chroma::k444;
+  return std::nullopt;
+}
+
+// One component (0..2) at its own resolution into a plane, by libav's description of the format.
+void copy_component(const AVFrame& frame,
+                    const AVPixFmtDescriptor& format,
+                    int component,
+                    int shift,
+                    Plane& plane) {
+  const AVComponentDescriptor& c = format.comp[component];
+  const bool wide = c.depth > 8;
+  const int half = shift > 0 ? 1 << (shift - 1) : 0;
+  for (int y = 0; y < plane.height; ++y) {
+    const std::uint8_t* source =
+        frame.data[c.plane] + static_cast<std::ptrdiff_t>(y) * frame.linesize[c.plane] + c.offset;
+    std::uint8_t* target = plane.row(y);
+    if (!wide && c.step == 1) {
+      std::memcpy(target, source, static_cast<std::size_t>(plane.width));
+    } else if (!wide) {
+      for (int x = 0; x < plane.width; ++x) target[x] = source[x * c.step];
+    } else {
+      for (int x = 0; x < plane.width; ++x) {
+        std::uint16_t value = 0;
+        std::memcpy(&value, source + x * c.step, 2);
+        target[x] = static_cast<std::uint8_t>(std::min(255, ((value >> c.shift) + half) >> shift));
+      }
+    }
+  }
+}
+
+Plane transposed(const Plane& plane, int clockwise_deg) {
+  image::Colour grey;
+  grey.chroma = Chroma::kNone;
+  const bool quarter = clockwise_deg != 180;
+  Picture turned = image::make_picture(
+      quarter ? plane.height : plane.width, quarter ? plane.width : plane.height, grey);
+  Plane& target = turned.planes[0];
+  for (int y = 0; y < target.height; ++y) {
+    std::uint8_t* row = target.row(y);
+    for (int x = 0; x < target.width; ++x) {
+      switch (clockwise_deg) {
+        case 90:
+          row[x] = plane.row(plane.height - 1 - x)[y];
+          break;
+        case 180:
+          row[x] = plane.row(plane.height - 1 - y)[plane.width - 1 - x];
+          break;
+        default:
+          row[x] = plane.row(x)[plane.width - 1 - y];
+          break;
+      }
+    }
+  }
+  return std::move(target);
+}
+
+}  // namespace
+
+std::string reason(int error) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(error, text, sizeof text);
+  return text;
+}
+
+void keep_libav_quiet() { av_log_set_level(AV_LOG_QUIET); }
+
+std::optional<Layout> layout_of(AVPixelFormat format) {
+  const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(format);
+  if (d == nullptr) return std::nullopt;
+  constexpr auto kOdd = AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_PAL |
+                        AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_BE;
+  if ((d->flags & kOdd) != 0 || d->comp[0].depth < 8) return std::nullopt;
+  const auto chroma = chroma_of(*d);
+  if (!chroma) return std::nullopt;
+  Layout layout;
+  layout.chroma = *chroma;
+  layout.rgb = (d->flags & AV_PIX_FMT_FLAG_RGB) != 0;
+  layout.shift = d->comp[0].depth - 8;
+  const std::string name = d->name;
+  layout.full_range = layout.rgb || name.rfind("yuvj", 0) == 0;
+  return layout;
+}
+
+AVPixelFormat plain_kin(AVPixelFormat format) {
+  const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(format);
+  if (d == nullptr || layout_of(format)) return AV_PIX_FMT_NONE;
+  if ((d->flags & (AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT)) != 0 ||
+      sws_isSupportedInput(format) == 0)
+    return AV_PIX_FMT_NONE;
+  const bool one_bit = format == AV_PIX_FMT_MONOBLACK || format == AV_PIX_FMT_MONOWHITE;
+  if (format == AV_PIX_FMT_PAL8 || (d->flags & AV_PIX_FMT_FLAG_RGB) != 0) return AV_PIX_FMT_RGB24;
+  return one_bit || d->nb_components <= 2 ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_NONE;
+}
+
+FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
+  struct FreeScaler {
+    void operator()(SwsContext* p) const { sws_freeContext(p); }
+  };
+  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_alloc_context());
+  FramePtr result(av_frame_alloc());
+  check(scaler != nullptr && result != nullptr, "memory is at hand");
+  av_opt_set_int(scaler.get(), "srcw", frame.width, 0);
+  av_opt_set_int(scaler.get(), "srch", frame.height, 0);
+  av_opt_set_int(scaler.get(), "src_format", frame.format, 0);
+  av_opt_set_int(scaler.get(), "dstw", frame.width, 0);
+  av_opt_set_int(scaler.get(), "dsth", frame.height, 0);
+  av_opt_set_int(scaler.get(), "dst_format", format, 0);
+  av_opt_set_int(scaler.get(), "src_range", 1, 0);
+  av_opt_set_int(scaler.get(), "dst_range", 1, 0);
+  av_opt_set_int(scaler.get(), "sws_flags", SWS_POINT | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, 0);
+  av_opt_set(scaler.get(), "sws_dither", "none", 0);
+  check(sws_init_context(scaler.get(), nullptr, nullptr) >= 0,
+        "libswscale knows what it said it knows");
+  av_frame_copy_props(result.get(), &frame);
+  result->format = format;
+  result->width = frame.width;
+  result->height = frame.height;
+  check(av_frame_get_buffer(result.get(), 0) >= 0, "memory is at hand");
+  sws_scale(
+      scaler.get(), frame.data, frame.linesize, 0, frame.height, result->data, result->linesize);
+  return result;
+}
+
+image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed) {
+  *guessed = false;
+  switch (space) {
+    case AVCOL_SPC_RGB:
+      return image::Matrix::kRgb;
+    case AVCOL_SPC_BT709:
+      return image::Matrix::kBt709;
+    case AVCOL_SPC_BT470BG:
+    case AVCOL_SPC_SMPTE170M:
+    case AVCOL_SPC_FCC:
+      return image::Matrix::kBt601;
+    case AVCOL_SPC_BT2020_NCL:
+    case AVCOL_SPC_BT2020_CL:
+      return image::Matrix::kBt2020;
+    default:
+      break;
+  }
+  *guessed = true;
+  return height < 720 ? image::Matrix::kBt601 : image::Matrix::kBt709;
+}
+
+AVColorSpace space_of(image::Matrix matrix) {
+  switch (matrix) {
+    case image::Matrix::kRgb:
+      return AVCOL_SPC_RGB;
+    case image::Matrix::kBt601:
+      return AVCOL_SPC_SMPTE170M;
+    case image::Matrix::kBt709:
+      return AVCOL_SPC_BT709;
+    case image::Matrix::kBt2020:
+      return AVCOL_SPC_BT2020_NCL;
+  }
+  return AVCOL_SPC_UNSPECIFIED;
+}
+
+Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour) {
+  const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+  Picture picture = image::make_picture(frame.width, frame.height, colour);
+  // libav lists R, G, B; a Picture holds G, B, R.
+  constexpr int kFromRgb[] = {1, 2, 0};
+  for (int i = 0; i < picture.plane_count; ++i)
+    copy_component(frame,
+                   *format,
+                   layout.rgb ? kFromRgb[i] : i,
+                   layout.shift,
+                   picture.planes[static_cast<std::size_t>(i)]);
+  return picture;
+}
+
+Orientation orientation_of(const std::int32_t* m) {
+  // x' = a x + c y, y' = b x + d y, with y down.
+  double a = m[0];
+  double b = m[1];
+  const double c = m[3];
+  const double d = m[4];
+  Orientation result;
+  const double area = a * d - b * c;
+  if (area == 0) return result;
+  result.mirrored = area < 0;
+  if (result.mirrored) a = -a, b = -b;
+  const int quarter = static_cast<int>(std::lround(std::atan2(b, a) / (kPi / 2)));
+  result.clockwise_deg = ((quarter % 4) + 4) % 4 * 90;
+  return result;
+}
+
+namespace {
+
+Picture mirrored(Picture picture) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
+    image::Plane& plane = picture.planes[i];
+    for (int y = 0; y < plane.height; ++y) std::reverse(plane.row(y), plane.row(y) + plane.width);
+  }
+  return picture;
+}
+
+Picture rotated(Picture picture, int clockwise_deg) {
+  if (clockwise_deg == 0) return picture;
+  Picture turned;
+  turned.colour = picture.colour;
+  turned.plane_count = picture.plane_count;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
+    turned.planes[i] = transposed(picture.planes[i], clockwise_deg);
+  turned.width = turned.planes[0].width;
+  turned.height = turned.planes[0].height;
+  if (clockwise_deg != 180) {
+    if (picture.colour.chroma == Chroma::k422) turned.colour.chroma = Chroma::k440;
+    if (picture.colour.chroma == Chroma::k440) turned.colour.chroma = Chroma::k422;
+  }
+  return turned;
+}
+
+}  // namespace
+
+Picture oriented(Picture picture, const Orientation& orientation) {
+  if (orientation.mirrored) picture = mirrored(std::move(picture));
+  return rotated(std::move(picture), orientation.clockwise_deg);
+}
+
+}  // namespace airtruth::video

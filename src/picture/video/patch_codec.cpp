@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/patch_codec.h"
+
+#include <algorithm>
+#include <cstring>
+#include <list>
+#include <vector>
+
+#include "foundation/base/error.h"
+#include "picture/video/libav.h"
+
+namespace airtruth::video {
+namespace {
+
+using image::Chroma;
+using image::Picture;
+
+AVPixelFormat format_for(Chroma chroma) {
+  switch (chroma) {
+    case Chroma::kNone:
+      return AV_PIX_FMT_GRAY8;
+    case Chroma::k420:
+      return AV_PIX_FMT_YUV420P;
+    case Chroma::k422:
+      return AV_PIX_FMT_YUV422P;
+    case Chroma::k444:
+      return AV_PIX_FMT_YUV444P;
+    case Chroma::k440:
+      break;
+  }
+  return AV_PIX_FMT_NONE;
+}
+
+void check_av(int result, const char* what) {
+  if (result < 0) throw Error(std::string(what) + ": " + reason(result));
+}
+
+const AVCodec* encoder_by_name() {
+  const AVCodec* found = avcodec_find_encoder_by_name("libx264");
+  if (found == nullptr) throw Error("the encoder libx264 is missing from this FFmpeg");
+  return found;
+}
+
+const AVCodec* decoder_by_id() {
+  const AVCodec* found = avcodec_find_decoder(AV_CODEC_ID_H264);
+  if (found == nullptr) throw Error("the decoder of H.264 is missing from this FFmpeg");
+  return found;
+}
+
+// An encoder and its decoder for pictures of one size and layout.
+class Loop {
+ public:
+  Loop(int width, int height, Chroma chroma, int quantiser);
+  bool fits(const Picture& picture) const {
+    return encoder_->width == picture.width && encoder_->height == picture.height &&
+           encoder_->pix_fmt == format_for(picture.colour.chroma);
+  }
+  // The second of two pictures, decoded: the first is a key picture, the second is predicted from
+  // it.
+  void run(const Picture& reference, const Picture& patch, Picture& decoded);
+
+ private:
+  void encode(const Picture& picture, AVPictureType type);
+  void send(const AVPacket* packet);
+  void take();
+
+  CodecPtr encoder_;
+  CodecPtr decoder_;
+  PacketPtr packet_{av_packet_alloc()};
+  FramePtr last_{av_frame_alloc()};
+  std::int64_t pts_ = 0;
+};
+
+Loop::Loop(int width, int height, Chroma chroma, int quantiser) {
+  const AVCodec* encoder = encoder_by_name();
+  encoder_.reset(avcodec_alloc_context3(encoder));
+  encoder_->width = width;
+  encoder_->height = height;
+  encoder_->pix_fmt = format_for(chroma);
+  encoder_->time_base = {1, 25};
+  encoder_->thread_count = 1;
+  encoder_->max_b_frames = 0;
+  encoder_->refs = 1;
+  // libx264's largest ratio of the quantisers of P and I pictures: 20 less for the reference.
+  constexpr float kFinestKeyPicture = 0.1F;
+  encoder_->i_quant_factor = kFinestKeyPicture;
+  AVDictionary* settings = nullptr;
+  av_dict_set(&settings, "preset", "medium", 0);
+  av_dict_set(&settings, "tune", "zerolatency", 0);
+  av_dict_set(&settings, "forced-idr", "1", 0);
+  av_dict_set_int(&settings, "qp", quantiser, 0);
+  av_dict_set(&settings, "x264-params", "cpu-independent=1:scenecut=0:weightp=0", 0);
+  const int opened = avcodec_open2(encoder_.get(), encoder, &settings);
+  av_dict_free(&settings);
+  check_av(opened, "cannot encode with libx264");
+  const AVCodec* decoder = decoder_by_id();
+  decoder_.reset(avcodec_alloc_context3(decoder));
+  decoder_->thread_count = 1;
+  decoder_->flags |= AV_CODEC_FLAG_LOW_DELAY;
+  check_av(avcodec_open2(decoder_.get(), decoder, nullptr), "cannot decode H.264");
+}
+
+void Loop::encode(const Picture& picture, AVPictureType type) {
+  const FramePtr frame(av_frame_alloc());
+  frame->format = encoder_->pix_fmt;
+  frame->width = picture.width;
+  frame->height = picture.height;
+  check_av(av_frame_get_buffer(frame.get(), 0), "out of memory");
+  for (int i = 0; i < picture.plane_count; ++i) {
+    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
+    for (int y = 0; y < plane.height; ++y)
+      std::memcpy(frame->data[i] + static_cast<std::ptrdiff_t>(y) * frame->linesize[i],
+                  plane.row(y),
+                  static_cast<std::size_t>(plane.width));
+  }
+  frame->pict_type = type;
+  frame->pts = pts_++;
+  check_av(avcodec_send_frame(encoder_.get(), frame.get()), "cannot encode with libx264");
+  check_av(avcodec_receive_packet(encoder_.get(), packet_.get()), "libx264 held a picture back");
+  send(packet_.get());
+  av_packet_unref(packet_.get());
+}
+
+void Loop::send(const AVPacket* packet) {
+  check_av(avcodec_send_packet(decoder_.get(), packet), "cannot decode H.264");
+  take();
+}
+
+void Loop::take() {
+  const FramePtr frame(av_frame_alloc());
+  while (avcodec_receive_frame(decoder_.get(), frame.get()) >= 0) {
+    av_frame_unref(last_.get());
+    av_frame_move_ref(last_.get(), frame.get());
+  }
+}
+
+void Loop::run(const Picture& reference, const Picture& patch, Picture& decoded) {
+  encode(reference, AV_PICTURE_TYPE_I);
+  encode(patch, AV_PICTURE_TYPE_P);
+  send(nullptr);
+  check(last_->width == patch.width && last_->height == patch.height && last_->data[0] != nullptr,
+        "a decoder gives back the picture's size");
+  for (int i = 0; i < decoded.plane_count; ++i) {
+    image::Plane& plane = decoded.planes[static_cast<std::size_t>(i)];
+    for (int y = 0; y < plane.height; ++y)
+      std::memcpy(plane.row(y),
+                  last_->data[i] + static_cast<std::ptrdiff_t>(y) * last_->linesize[i],
+                  static_cast<std::size_t>(plane.width));
+  }
+  avcodec_flush_buffers(decoder_.get());
+}
+
+}  // namespace
+
+struct PatchCodec::State {
+  int quantiser = 0;
+  std::list<Loop> loops;  // most recently used first
+};
+
+PatchCodec::PatchCodec(int quantiser) : state_(std::make_unique<State>()) {
+  check(quantiser >= 1 && quantiser <= 51, "a quantiser of H.264 is 1 to 51");
+  keep_libav_quiet();
+  encoder_by_name();
+  decoder_by_id();
+  state_->quantiser = quantiser;
+}
+PatchCodec::~PatchCodec() = default;
+PatchCodec::PatchCodec(PatchCodec&&) noexcept = default;
+PatchCodec& PatchCodec::operator=(PatchCodec&&) noexcept = default;
+
+bool PatchCodec::can_code(const image::Colour& colour) {
+  return format_for(colour.chroma) != AV_PIX_FMT_NONE;
+}
+
+Picture PatchCodec::coded(const Picture& patch, const Picture& reference) {
+  check(can_code(patch.colour), "H.264 has the picture's layout");
+  check(patch.width == reference.width && patch.height == reference.height &&
+            patch.colour == reference.colour,
+        "a patch and its reference are alike");
+  std::list<Loop>& loops = state_->loops;
+  auto loop =
+      std::find_if(loops.begin(), loops.end(), [&](const Loop& l) { return l.fits(patch); });
+  if (loop == loops.end()) {
+    constexpr std::size_t kMostLoops = 4;  // of one size each; an intruder's size changes slowly
+    if (loops.size() == kMostLoops) loops.pop_back();
+    loops.emplace_front(patch.width, patch.height, patch.colour.chroma, state_->quantiser);
+    loop = loops.begin();
+  }
+  loops.splice(loops.begin(), loops, loop);
+  Picture decoded = image::make_picture(patch.width, patch.height, patch.colour);
+  loops.front().run(reference, patch, decoded);
+  return decoded;
+}
+
+}  // namespace airtruth::video

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/image/cuts.h"
+#include "picture/video/libav.h"
+#include "picture/video/numbered_images.h"
+
+namespace airtruth::video {
+namespace {
+
+Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
+
+Orientation orientation_of_stream(const AVStream& stream) {
+  const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+  return matrix == nullptr ? Orientation{}
+                           : orientation_of(reinterpret_cast<const std::int32_t*>(matrix));
+}
+
+image::Siting siting_of(AVChromaLocation location) {
+  switch (location) {
+    case AVCHROMA_LOC_CENTER:
+      return image::Siting::kCenter;
+    case AVCHROMA_LOC_TOPLEFT:
+      return image::Siting::kTopLeft;
+    default:
+      return image::Siting::kLeft;
+  }
+}
+
+}  // namespace
+
+struct Reader::State {
+  std::filesystem::path path;
+  ReaderOptions options;
+  Warn warn;
+  InputPtr input;
+  std::vector<std::filesystem::path> pictures;  // one a frame; empty for a video
+  std::size_t next_picture = 0;
+  CodecPtr codec;
+  PacketPtr packet;
+  FramePtr frame;
+  int stream_index = -1;
+  StreamInfo info;
+  Layout layout;
+  Orientation orientation;
+  image::Colour coded_colour;
+  bool draining = false;
+  bool finished = false;
+  bool read_failed = false;
+  bool broken = false;  // a packet failed: frames are suspect until the next key frame
+  std::int64_t corrupt = 0;
+  std::int64_t decoded = 0;  // frames out of the decoder
+  std::int64_t handed = 0;
+  std::int64_t last_pts = AV_NOPTS_VALUE;
+  std::int64_t pts_step = 1;
+  std::optional<std::int64_t> first_pts;
+  // Decoded by the constructor and, with cuts, what comes after the frame that is next.
+  std::deque<Frame> ahead;
+  image::Differences difference;
+  // Of the frames from `first_difference` on, each to the one before it.
+  std::deque<double> differences;
+  std::int64_t first_difference = 1;
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(message, {path.string()});
+  }
+
+  void open_input();
+  void open_codec();
+  void describe(const AVFrame& first);
+  int read_packet();  // fills `packet`; below 0 at the end, as libav has it
+  bool decode_one();  // fills `frame`; false at the end
+  std::optional<Frame> next();
+  bool look_ahead();  // decodes one more frame; false at the end
+  bool begins_shot(std::int64_t index);
+  Frame to_frame();
+  void make_plain();
+};
+
+void Reader::State::open_input() {
+  keep_libav_quiet();
+  std::error_code ignored;
+  AVDictionary* settings = nullptr;
+  const AVInputFormat* format = nullptr;
+  std::string url = path.string();
+  if (auto images = numbered_images(path)) {
+    if (images->has_gaps)
+      airtruth::warn(warn,
+                     path.string() + ": has gaps between the numbers of its " +
+                         std::to_string(images->files.size()) +
+                         " pictures; they are taken as consecutive frames");
+    pictures = std::move(images->files);
+    format = av_find_input_format("image2");
+    url = pictures.front().string();
+  } else if (!std::filesystem::exists(path, ignored)) {
+    fail("does not exist; expected a video");
+  } else if (std::filesystem::is_directory(path, ignored)) {
+    fail("is a folder without numbered images; expected a video or images such as 000000.png");
+  } else if (std::filesystem::file_size(path, ignored) == 0 && !ignored) {
+    fail("is empty; expected a video");
+  }
+  AVFormatContext* raw = nullptr;
+  // A % in the name of a picture or a folder is a character; videos pass over the setting.
+  av_dict_set(&settings, "pattern_type", "none", 0);
+  const int opened = avformat_open_input(&raw, url.c_str(), format, &settings);
+  av_dict_free(&settings);
+  if (opened < 0) fail("cannot be read as a video: " + reason(opened));
+  input.reset(raw);
+  if (const int found = avformat_find_stream_info(input.get(), nullptr); found < 0)
+    fail("cannot be read as a video: " + reason(found));
+  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (stream_index < 0) fail("holds no video stream; expected a video");
+  const AVStream& stream = *input->streams[stream_index];
+  if ((stream.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0)
+    fail("holds sound and a cover picture; expected a video");
+}
+
+void Reader::State::open_codec() {
+  const AVStream& stream = *input->streams[stream_index];
+  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (decoder == nullptr)
+    fail(std::string("is ") + avcodec_get_name(stream.codecpar->codec_id) +
+         ", which cannot be decoded");
+  codec.reset(avcodec_alloc_context3(decoder));
+  avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = stream.time_base;
+  codec->thread_count = options.threads > 0
+                            ? options.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+  codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+  if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
+  codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
+  if (const int opened = avcodec_open2(codec.get(), decoder, nullptr); opened < 0)
+    fail(std::string("cannot be decoded (") + decoder->name + "): " + reason(opened));
+  packet.reset(av_packet_alloc());
+  frame.reset(av_frame_alloc());
+  info.codec = decoder->name;
+  info.time_base = rational(stream.time_base);
+  const AVRational average =
+      stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
+  if (average.num > 0 && average.den > 0) info.frame_rate = rational(average);
+  info.variable_frame_rate =
+      stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
+      std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
+  orientation = orientation_of_stream(stream);
+  info.rotation_deg = orientation.clockwise_deg;
+  info.frame_count_estimate = stream.nb_frames;
+  if (info.frame_count_estimate <= 0 && input->duration > 0)
+    info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
+        static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
+  if (!pictures.empty()) info.frame_count_estimate = std::ssize(pictures);
+  pts_step = std::max<std::int64_t>(
+      1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
+  if (stream.sample_aspect_ratio.num > 0) info.sample_aspect = rational(stream.sample_aspect_ratio);
+}
+
+void Reader::State::describe(const AVFrame& first) {
+  const auto format = static_cast<AVPixelFormat>(first.format);
+  const char* name = av_get_pix_fmt_name(format);
+  const auto known = layout_of(format);
+  if (!known)
+    fail(std::string("has the pixel format ") + (name != nullptr ? name : "?") +
+         "; expected 4:2:0, 4:2:2, 4:4:4, grey or RGB (convert it: ffmpeg -i IN -pix_fmt yuv420p "
+         "OUT)");
+  layout = *known;
+  info.pixel_format = name;
+  if (layout.shift > 0)
+    airtruth::warn(warn,
+                   path.string() + ": has " + std::to_string(8 + layout.shift) +
+                       " bits a sample; they are rounded to 8");
+  coded_colour.chroma = layout.chroma;
+  coded_colour.matrix = layout.rgb
+                            ? image::Matrix::kRgb
+                            : matrix_of(first.colorspace, first.height, &info.matrix_guessed);
+  if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
+    coded_colour.matrix = image::Matrix::kBt601;
+  info.range_guessed = first.color_range == AVCOL_RANGE_UNSPECIFIED && !layout.rgb;
+  const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
+  coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
+  coded_colour.siting = siting_of(first.chroma_location);
+  info.primaries_tag = first.color_primaries;
+  info.transfer_tag = first.color_trc;
+  info.width = first.width;
+  info.height = first.height;
+  info.colour = coded_colour;
+  if (info.rotation_deg == 90 || info.rotation_deg == 270) {
+    std::swap(info.width, info.height);
+    std::swap(info.sample_aspect.num, info.sample_aspect.den);
+    if (coded_colour.chroma == image::Chroma::k422) info.colour.chroma = image::Chroma::k440;
+    if (coded_colour.chroma == image::Chroma::k440) info.colour.chroma = image::Chroma::k422;
+  }
+}
+
+// libav's own reader of numbered images ends at the first gap in the numbers.
+int Reader::State::read_packet() {
+  if (pictures.empty()) return av_read_frame(input.get(), packet.get());
+  if (next_picture == pictures.size()) return AVERROR_EOF;
+  const std::string bytes = read_file(pictures[next_picture]);
+  if (const int made = av_new_packet(packet.get(), static_cast<int>(bytes.size())); made < 0)
+    return made;
+  std::copy(bytes.begin(), bytes.end(), packet->data);
+  packet->stream_index = stream_index;
+  packet->flags |= AV_PKT_FLAG_KEY;
+  packet->pts = packet->dts = static_cast<std::int64_t>(next_picture++);
+  packet->duration = 1;
+  return 0;
+}
+
+bool Reader::State::decode_one() {
+  for (;;) {
+    av_frame_unref(frame.get());
+    const int got = avcodec_receive_frame(codec.get(), frame.get());
+    if (got == 0) return true;
+    if (got == AVERROR_EOF) return false;
+    if (got != AVERROR(EAGAIN)) {
+      ++corrupt;
+      broken = true;
+      if (draining && got != AVERROR_INVALIDDATA) return false;
+      if (draining) continue;
+    }
+    if (draining) continue;
+    const int read = read_packet();
+    if (read < 0) {
+      read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
+      draining = true;
+      avcodec_send_packet(codec.get(), nullptr);
+      continue;
+    }
+    if (packet->stream_index == stream_index) {
+      if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) ++corrupt;
+      const int sent = avcodec_send_packet(codec.get(), packet.get());
+      if (sent < 0 && sent != AVERROR(EAGAIN)) {
+        ++corrupt;
+        broken = true;
+      }
+    }
+    av_packet_unref(packet.get());
+  }
+}
+
+namespace {
+
+std::optional<double> quantiser_of(const AVFrame& frame) {
+  const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
+  if (data == nullptr) return std::nullopt;
+  auto* parameters = reinterpret_cast<AVVideoEncParams*>(data->data);
+  if (parameters->type != AV_VIDEO_ENC_PARAMS_H264) return std::nullopt;
+  double sum = 0;
+  for (unsigned i = 0; i < parameters->nb_blocks; ++i)
+    sum += parameters->qp + av_video_enc_params_block(parameters, i)->delta_qp;
+  return parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp;
+}
+
+}  // namespace
+
+Frame Reader::State::to_frame() {
+  Frame result;
+  const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  if (bad) {
+    broken = true;
+  } else if (frame->key_frame == 1) {
+    broken = false;
+  }
+  result.damaged = broken;  // what leans on a bad frame is bad, up to the next key frame
+  std::int64_t pts = frame->best_effort_timestamp;
+  if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
+  if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
+  last_pts = pts;
+  result.pts = pts;
+  result.quantiser = quantiser_of(*frame);
+  return result;
+}
+
+// Stills come in formats that no plane of ours holds.
+void Reader::State::make_plain() {
+  const auto format = static_cast<AVPixelFormat>(frame->format);
+  const AVPixelFormat plain = plain_kin(format);
+  if (plain == AV_PIX_FMT_NONE) return;
+  if (decoded == 0 && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
+    airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
+  frame = in_format(*frame, plain);
+}
+
+std::optional<Frame> Reader::State::next() {
+  if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
+  for (;;) {
+    if (!decode_one()) {
+      finished = true;
+      return std::nullopt;
+    }
+    Frame result = to_frame();
+    make_plain();
+    if (decoded++ == 0) describe(*frame);
+    if (decoded <= options.first_frame) continue;
+    const bool same =
+        frame->width == (info.rotation_deg % 180 == 0 ? info.width : info.height) &&
+        frame->height == (info.rotation_deg % 180 == 0 ? info.height : info.width) &&
+        av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame->format)) == info.pixel_format;
+    if (!same)
+      fail("changes its size or pixel format at frame " + std::to_string(decoded - 1) +
+           "; expected one for all");
+    if (!first_pts) first_pts = result.pts;
+    result.index = handed++;
+    result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
+    result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
+    return result;
+  }
+}
+
+bool Reader::State::look_ahead() {
+  auto one = next();
+  if (!one) return false;
+  if (options.with_cuts)
+    if (const auto d = difference.add(one->picture)) differences.push_back(*d);
+  ahead.push_back(std::move(*one));
+  return true;
+}
+
+bool Reader::State::begins_shot(std::int64_t index) {
+  // Those of the neighbours, as far as there are any.
+  while (first_difference < index - image::kCutNeighbours) {
+    differences.pop_front();
+    ++first_difference;
+  }
+  if (index < first_difference) return false;
+  const std::vector<double> around(differences.begin(), differences.end());
+  const std::span<const double> all(around);
+  const auto here = static_cast<std::size_t>(index - first_difference);
+  const std::size_t after = std::min(all.size() - here - 1, std::size_t{image::kCutNeighbours});
+  return image::is_cut(all.first(here), all[here], all.subspan(here + 1, after));
+}
+
+Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
+    : state_(std::make_unique<State>()) {
+  state_->path = path;
+  state_->options = options;
+  state_->warn = std::move(warn);
+  state_->open_input();
+  state_->open_codec();
+  if (state_->look_ahead()) return;
+  if (state_->decoded == 0) state_->fail("holds no frame that can be decoded; expected a video");
+  if (!options.frame_count || *options.frame_count > 0)
+    state_->fail("holds " + std::to_string(state_->decoded) + " frames; first_frame = " +
+                 std::to_string(options.first_frame) + " is past its end");
+}
+
+Reader::~Reader() = default;
+Reader::Reader(Reader&&) noexcept = default;
+Reader& Reader::operator=(Reader&&) noexcept = default;
+
+const StreamInfo& Reader::info() const { return state_->info; }
+
+std::optional<Frame> Reader::next() {
+  State& state = *state_;
+  const std::size_t wanted = state.options.with_cuts ? 1 + std::size_t{image::kCutNeighbours} : 1;
+  while (state.ahead.size() < wanted && state.look_ahead()) {
+  }
+  if (state.ahead.empty()) return std::nullopt;
+  Frame frame = std::move(state.ahead.front());
+  state.ahead.pop_front();
+  if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
+  return frame;
+}
+
+std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }
+
+bool Reader::ends_early() const {
+  if (!state_->finished) return false;
+  const State& s = *state_;
+  const AVStream& stream = *s.input->streams[s.stream_index];
+  if (s.read_failed) return true;
+  if (stream.nb_frames > 0) return s.decoded + s.corrupt < stream.nb_frames;
+  // Matroska counts no frames; its duration tells. A second's slack: sound may outlast the picture.
+  if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;
+  const double seen_s = static_cast<double>(s.last_pts - *s.first_pts) * s.info.time_base.value();
+  return seen_s + 1.0 < static_cast<double>(s.input->duration) / AV_TIME_BASE;
+}
+
+}  // namespace airtruth::video

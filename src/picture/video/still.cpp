@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/still.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "foundation/image/colour.h"
+#include "picture/video/libav.h"
+#include "picture/video/reader.h"
+
+namespace airtruth::video {
+namespace {
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  return extension;
+}
+
+FramePtr frame_of(const image::Rgb8& rgb, AVPixelFormat format) {
+  FramePtr frame(av_frame_alloc());
+  frame->format = format;
+  frame->width = rgb.width;
+  frame->height = rgb.height;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  if (format == AV_PIX_FMT_RGB24) {
+    for (int y = 0; y < rgb.height; ++y)
+      std::memcpy(frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
+                  rgb.at(0, y),
+                  static_cast<std::size_t>(rgb.width) * 3);
+    return frame;
+  }
+  const image::Picture picture = image::picture_from_rgb8(
+      rgb,
+      {image::Chroma::k444, image::Matrix::kBt601, image::Range::kFull, image::Siting::kCenter});
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (int y = 0; y < rgb.height; ++y)
+      std::memcpy(frame->data[i] + static_cast<std::ptrdiff_t>(y) * frame->linesize[i],
+                  picture.planes[i].row(y),
+                  static_cast<std::size_t>(rgb.width));
+  }
+  frame->color_range = AVCOL_RANGE_JPEG;
+  return frame;
+}
+
+struct FreeScaler {
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+};
+
+AVPixelFormat planar_format(const image::Colour& colour) {
+  if (colour.matrix == image::Matrix::kRgb) return AV_PIX_FMT_GBRP;
+  switch (colour.chroma) {
+    case image::Chroma::kNone:
+      return AV_PIX_FMT_GRAY8;
+    case image::Chroma::k422:
+      return AV_PIX_FMT_YUV422P;
+    case image::Chroma::k440:
+      return AV_PIX_FMT_YUV440P;
+    case image::Chroma::k444:
+      return AV_PIX_FMT_YUV444P;
+    default:
+      return AV_PIX_FMT_YUV420P;
+  }
+}
+
+int sws_matrix(image::Matrix matrix) {
+  if (matrix == image::Matrix::kBt709) return SWS_CS_ITU709;
+  return matrix == image::Matrix::kBt2020 ? SWS_CS_BT2020 : SWS_CS_ITU601;
+}
+
+// As JPEG has it: BT.601, full range. Halved chroma stays halved, with no way through RGB.
+FramePtr jpeg_frame(const image::Picture& picture) {
+  keep_libav_quiet();
+  const AVPixelFormat from = planar_format(picture.colour);
+  const AVPixelFormat to = from == AV_PIX_FMT_YUV420P ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUVJ444P;
+  const int w = picture.width;
+  const int h = picture.height;
+  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_getContext(
+      w, h, from, w, h, to, SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
+  if (!scaler) throw std::bad_alloc();
+  const bool is_full = picture.colour.range == image::Range::kFull || from == AV_PIX_FMT_GBRP;
+  sws_setColorspaceDetails(scaler.get(),
+                           sws_getCoefficients(sws_matrix(picture.colour.matrix)),
+                           is_full ? 1 : 0,
+                           sws_getCoefficients(SWS_CS_ITU601),
+                           1,
+                           0,
+                           1 << 16,
+                           1 << 16);
+  FramePtr frame(av_frame_alloc());
+  frame->format = to;
+  frame->width = w;
+  frame->height = h;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  const std::uint8_t* data[4] = {};
+  int strides[4] = {};
+  for (int i = 0; i < picture.plane_count; ++i) {
+    data[i] = picture.planes[static_cast<std::size_t>(i)].row(0);
+    strides[i] = picture.planes[static_cast<std::size_t>(i)].stride;
+  }
+  sws_scale(scaler.get(), data, strides, 0, h, frame->data, frame->linesize);
+  frame->color_range = AVCOL_RANGE_JPEG;
+  return frame;
+}
+
+std::string encoded(const FramePtr& frame, int quality, const fs::path& path) {
+  keep_libav_quiet();
+  const auto format = static_cast<AVPixelFormat>(frame->format);
+  const bool jpeg = format != AV_PIX_FMT_RGB24 && format != AV_PIX_FMT_GRAY8;
+  const AVCodec* encoder = avcodec_find_encoder(jpeg ? AV_CODEC_ID_MJPEG : AV_CODEC_ID_PNG);
+  const CodecPtr codec(avcodec_alloc_context3(encoder));
+  codec->width = frame->width;
+  codec->height = frame->height;
+  codec->pix_fmt = format;
+  codec->time_base = {1, 1};
+  codec->flags |= AV_CODEC_FLAG_BITEXACT;
+  codec->color_range = AVCOL_RANGE_JPEG;
+  codec->thread_count = 1;
+  if (jpeg) {
+    codec->flags |= AV_CODEC_FLAG_QSCALE;
+    codec->global_quality = FF_QP2LAMBDA * quality;
+  }
+  frame->quality = codec->global_quality;
+  frame->pts = 0;
+  const PacketPtr packet(av_packet_alloc());
+  int result = avcodec_open2(codec.get(), encoder, nullptr);
+  if (result >= 0) result = avcodec_send_frame(codec.get(), frame.get());
+  if (result >= 0) result = avcodec_receive_packet(codec.get(), packet.get());
+  if (result < 0) throw Error("cannot encode the picture: " + reason(result), {path.string()});
+  return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
+}
+
+constexpr int kQuality = 3;
+
+bool is_jpeg(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  const bool jpeg = extension == ".jpg" || extension == ".jpeg";
+  if (!jpeg && extension != ".png")
+    throw Error("has an unknown ending; expected .png or .jpg", {path.string()});
+  return jpeg;
+}
+
+}  // namespace
+
+void check_still_output(const fs::path& path, bool overwrite) {
+  if (path.empty()) return;
+  is_jpeg(path);
+  check_output_file(path, overwrite);
+}
+
+image::Rgb8 read_still(const fs::path& path) {
+  ReaderOptions options;
+  options.frame_count = 1;
+  options.threads = 1;
+  auto frame = Reader(path, options).next();
+  if (!frame) throw Error("holds no picture", {path.string()});
+  return image::rgb8_from_picture(frame->picture);
+}
+
+std::string jpeg_of(const image::Rgb8& rgb, int quality) {
+  return encoded(frame_of(rgb, AV_PIX_FMT_YUVJ444P), quality, {});
+}
+
+std::string png_of(const Grey& grey) {
+  const auto width = static_cast<std::size_t>(grey.width);
+  check(grey.samples.size() == width * static_cast<std::size_t>(grey.height),
+        "a grey picture has a sample for each pixel");
+  FramePtr frame(av_frame_alloc());
+  frame->format = AV_PIX_FMT_GRAY8;
+  frame->width = grey.width;
+  frame->height = grey.height;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  for (int y = 0; y < grey.height; ++y)
+    std::memcpy(frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
+                grey.samples.data() + static_cast<std::size_t>(y) * width,
+                width);
+  return encoded(frame, 0, {});
+}
+
+Grey read_grey(const fs::path& path) {
+  const auto frame = Reader(path, {.frame_count = 1, .threads = 1}).next();
+  if (!frame || frame->picture.plane_count != 1) throw Error("is no grey picture", {path.string()});
+  const image::Picture& picture = frame->picture;
+  Grey grey{picture.width, picture.height, {}};
+  for (int y = 0; y < grey.height; ++y)
+    grey.samples.insert(
+        grey.samples.end(), picture.planes[0].row(y), picture.planes[0].row(y) + grey.width);
+  return grey;
+}
+
+void write_still(const fs::path& path, const image::Rgb8& rgb, Flush flush) {
+  const AVPixelFormat format = is_jpeg(path) ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_RGB24;
+  write_file(path, encoded(frame_of(rgb, format), kQuality, path), flush);
+}
+
+void write_still(const fs::path& path, const image::Picture& picture, Flush flush) {
+  if (!is_jpeg(path)) return write_still(path, image::rgb8_from_picture(picture), flush);
+  write_file(path, encoded(jpeg_frame(picture), kQuality, path), flush);
+}
+
+image::Mask read_mask(const fs::path& path, int width, int height) {
+  const image::Rgb8 picture = read_still(path);
+  if (picture.width != width || picture.height != height)
+    throw Error("is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                    "; expected the video's " + std::to_string(width) + "x" +
+                    std::to_string(height),
+                {path.string()});
+  image::Mask mask;
+  mask.width = width;
+  mask.height = height;
+  mask.free.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  bool any = false;
+  for (std::size_t i = 0; i < mask.free.size(); ++i) {
+    const std::uint8_t* p = picture.samples.get() + 3 * i;
+    mask.free[i] = (int(p[0]) + 2 * int(p[1]) + int(p[2])) / 4 >= 128 ? 255 : 0;
+    any = any || mask.free[i] != 0;
+  }
+  if (!any)
+    throw Error(
+        "is black all over: the own aircraft would hide everything; expected white where the sky "
+        "is free",
+        {path.string()});
+  return mask;
+}
+
+}  // namespace airtruth::video

@@ -1,0 +1,522 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every decoded sample is compared with what the ffmpeg program makes of the same file.
+#include <cstdlib>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/seed.h"
+#include "foundation/image/colour.h"
+#include "picture/video/libav.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "picture/video/writer.h"
+
+namespace airtruth::video {
+namespace {
+
+class Video : public testing::Test {
+ protected:
+  Video() : folder_(fs::temp_directory_path() / ("airtruth_video_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Video() override { fs::remove_all(folder_); }
+
+  void ffmpeg(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && ffmpeg -nostdin -v error -y " + arguments;
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  }
+  std::string raw(const fs::path& video, const std::string& pixel_format) const {
+    ffmpeg("-i '" + video.string() + "' -f rawvideo -fps_mode passthrough -pix_fmt " +
+           pixel_format + " raw.bin");
+    return read_file(folder_ / "raw.bin");
+  }
+  std::string probe(const fs::path& video, const std::string& entries) const {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && ffprobe -v error -select_streams v -show_entries " + entries +
+                                " -of csv=p=0 '" + video.string() + "' > probe.txt";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return read_file(folder_ / "probe.txt");
+  }
+  fs::path folder_;
+};
+
+std::string planes_of(const image::Picture& picture) {
+  std::string bytes;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
+    for (int y = 0; y < picture.planes[i].height; ++y)
+      bytes.append(reinterpret_cast<const char*>(picture.planes[i].row(y)),
+                   static_cast<std::size_t>(picture.planes[i].width));
+  return bytes;
+}
+
+std::string all_planes(Reader& reader, int* frames = nullptr) {
+  std::string bytes;
+  while (const auto frame = reader.next()) {
+    bytes += planes_of(frame->picture);
+    if (frames != nullptr) ++*frames;
+  }
+  return bytes;
+}
+
+std::string error_of(const fs::path& path, const ReaderOptions& options = {}) {
+  try {
+    Reader reader(path, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(Video, DecodesEveryCodecAsFfmpegDoes) {
+  struct Case {
+    const char* file;
+    const char* settings;
+    const char* pixel_format;
+  };
+  const std::vector<Case> cases = {
+      {"h264.mp4", "-c:v libx264 -pix_fmt yuv420p", "yuv420p"},
+      {"h264_422.mov", "-c:v libx264 -pix_fmt yuv422p", "yuv422p"},
+      {"h264_444.mkv", "-c:v libx264 -pix_fmt yuv444p", "yuv444p"},
+      {"hevc.mp4", "-c:v libx265 -x265-params log-level=none -pix_fmt yuv420p", "yuv420p"},
+      {"mjpeg.avi", "-c:v mjpeg -pix_fmt yuvj422p", "yuvj422p"},
+      {"mpeg4.avi", "-c:v mpeg4", "yuv420p"},
+      {"vp9.webm", "-c:v libvpx-vp9 -deadline realtime -cpu-used 8", "yuv420p"},
+      {"ffv1.mkv", "-c:v ffv1 -pix_fmt yuv444p", "yuv444p"},
+      {"grey.mkv", "-c:v ffv1 -pix_fmt gray", "gray"}};
+  for (const Case& c : cases) {
+    ffmpeg(std::string("-f lavfi -i testsrc2=s=66x50:r=25:d=0.3 ") + c.settings + " " + c.file);
+    if (HasFatalFailure()) return;
+    Reader reader(folder_ / c.file);
+    EXPECT_EQ(reader.info().pixel_format, c.pixel_format) << c.file;
+    EXPECT_TRUE(all_planes(reader) == raw(c.file, c.pixel_format)) << c.file;
+    EXPECT_EQ(reader.corrupt_packets(), 0) << c.file;
+    EXPECT_FALSE(reader.ends_early()) << c.file;
+  }
+}
+
+TEST_F(Video, ProResIsRoundedToEightBits) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v prores_ks pro.mov");
+  std::string warning;
+  Reader reader(folder_ / "pro.mov", {}, [&](const std::string& message) { warning = message; });
+  EXPECT_THAT(warning, testing::HasSubstr("10 bits"));
+  const std::string ours = all_planes(reader);
+  const std::string deep = raw("pro.mov", "yuv422p10le");
+  ASSERT_EQ(deep.size(), 2 * ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const int value =
+        static_cast<unsigned char>(deep[2 * i]) + 256 * static_cast<unsigned char>(deep[2 * i + 1]);
+    ASSERT_EQ(static_cast<unsigned char>(ours[i]), std::min(255, (value + 2) / 4));
+  }
+}
+
+TEST_F(Video, OddSizesAndNumberedImages) {
+  ffmpeg(
+      "-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=yuv420p -c:v ffv1 odd.mkv");
+  Reader odd(folder_ / "odd.mkv");
+  EXPECT_TRUE(all_planes(odd) == raw("odd.mkv", "yuv420p"));
+  fs::create_directories(folder_ / "frames");
+  ffmpeg("-i odd.mkv -start_number 7 frames/img_%04d.png");
+  ffmpeg("-start_number 7 -i frames/img_%04d.png -f rawvideo -pix_fmt gbrp raw.bin");
+  const std::string expected = read_file(folder_ / "raw.bin");
+  for (const fs::path& path : {folder_ / "frames", folder_ / "frames/img_%04d.png"}) {
+    Reader images(path);
+    int frames = 0;
+    EXPECT_TRUE(all_planes(images, &frames) == expected) << path;
+    EXPECT_EQ(frames, 5);
+  }
+}
+
+// COCO's names have 12 digits and gaps between them; Airborne Object Tracking's are a time in
+// nanoseconds and the flight, which may end in a digit.
+TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
+  const std::vector<std::vector<std::string>> names = {
+      {"000000000139.png", "000000000285.png", "000000581929.png"},
+      {"9.png", "10.png", "111.png"},
+      {"9000000000000000000a1b-737.png",
+       "9000000000033333333a1b-737.png",
+       "10000000000000000000a1b-737.png"}};
+  for (std::size_t set = 0; set < names.size(); ++set) {
+    const fs::path folder = folder_ / ("set" + std::to_string(set));
+    fs::create_directories(folder);
+    for (std::size_t i = 0; i < 3; ++i)
+      ffmpeg("-f lavfi -i color=gray:s=16x16 -vf format=gray,geq=" + std::to_string(50 * (i + 1)) +
+             " -frames:v 1 -update 1 " + (folder / names[set][i]).string());
+    std::string warning;
+    Reader reader(folder, {}, [&](const std::string& message) { warning = message; });
+    EXPECT_EQ(reader.info().frame_count_estimate, 3);
+    for (int i = 0; i < 3; ++i) {
+      const auto frame = reader.next();
+      ASSERT_TRUE(frame) << folder;
+      EXPECT_EQ(frame->index, i);
+      EXPECT_NEAR(frame->time_s, i / 25.0, 1e-12);
+      EXPECT_NEAR(frame->picture.planes[0].row(0)[0], 50 * (i + 1), 1) << folder;
+    }
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.ends_early());
+    EXPECT_EQ(warning.find("gaps between the numbers of its 3") != std::string::npos, set < 2);
+  }
+}
+
+TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p plain.mp4");
+  for (int rotation : {90, 180, 270}) {
+    ffmpeg("-i plain.mp4 -c copy -metadata:s:v rotate=" + std::to_string(rotation) + " turned.mp4");
+    Reader reader(folder_ / "turned.mp4");
+    EXPECT_NE(reader.info().rotation_deg, 0);
+    EXPECT_EQ(reader.info().width, rotation == 180 ? 64 : 48);
+    EXPECT_TRUE(all_planes(reader) == raw("turned.mp4", "yuv420p"))
+        << rotation;  // ffmpeg turns it upright itself
+  }
+}
+
+TEST_F(Video, VariableFrameRateKeepsItsTimes) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.6 -vf \"select='not(eq(n,3)+eq(n,4)+eq(n,9))'\" "
+      "-fps_mode vfr -c:v libx264 vfr.mp4");
+  Reader reader(folder_ / "vfr.mp4");
+  std::vector<double> times;
+  while (const auto frame = reader.next()) times.push_back(frame->time_s);
+  ASSERT_EQ(times.size(), 12u);
+  EXPECT_NEAR(times[2], 0.08, 1e-9);
+  EXPECT_NEAR(times[3], 0.20, 1e-9);
+  StreamInfo info = reader.info();
+  Reader again(folder_ / "vfr.mp4");
+  Writer writer(folder_ / "copy.mp4", info, {});
+  while (const auto frame = again.next()) writer.write(*frame);
+  writer.finish();
+  Reader copy(folder_ / "copy.mp4");
+  for (double time : times) EXPECT_NEAR(copy.next()->time_s, time, 1e-6);
+}
+
+TEST_F(Video, LosslessOutputGivesEverySampleBack) {
+  for (const char* format : {"yuv420p", "yuv422p", "yuv444p", "yuv440p", "gray", "yuvj420p"}) {
+    ffmpeg(std::string("-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=") + format +
+           " -c:v " + (std::string(format) == "yuvj420p" ? "mjpeg" : "ffv1") +
+           " -strict -1 in.mkv");
+    Reader reader(folder_ / "in.mkv");
+    {
+      Writer writer(folder_ / "out.mkv", reader.info(), {.format = Format::kMkv});
+      while (const auto frame = reader.next()) writer.write(*frame);
+      writer.finish();
+    }
+    Reader a(folder_ / "in.mkv");
+    Reader b(folder_ / "out.mkv");
+    EXPECT_TRUE(all_planes(a) == all_planes(b)) << format;
+    EXPECT_EQ(a.info().colour.range, b.info().colour.range) << format;
+    EXPECT_EQ(a.info().colour.chroma, b.info().colour.chroma) << format;
+  }
+}
+
+// Two shots and a slow change; the frame that begins the second one is said to, and no other, and
+// every frame is the one that comes without looking ahead.
+TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
+  ffmpeg(
+      "-f lavfi -i color=0x404040:s=64x48:r=25:d=0.4 -f lavfi -i testsrc=s=64x48:r=25:d=0.4 "
+      "-filter_complex [0][1]concat=n=2,format=yuv420p -c:v ffv1 cut.mkv");
+  Reader plain(folder_ / "cut.mkv");
+  Reader reader(folder_ / "cut.mkv", {.with_cuts = true});
+  std::vector<std::int64_t> cuts;
+  std::int64_t frames = 0;
+  while (const auto frame = reader.next()) {
+    EXPECT_EQ(frame->index, frames++);
+    const auto same = plain.next();
+    ASSERT_TRUE(same);
+    EXPECT_FALSE(same->begins_shot);
+    EXPECT_EQ(planes_of(frame->picture), planes_of(same->picture));
+    if (frame->begins_shot) cuts.push_back(frame->index);
+  }
+  EXPECT_FALSE(plain.next());
+  EXPECT_EQ(frames, 20);
+  EXPECT_EQ(cuts, std::vector<std::int64_t>{10});
+  // From a later frame on, and up to the last before the cut.
+  Reader later(folder_ / "cut.mkv", {.first_frame = 7, .with_cuts = true});
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(later.next()->begins_shot, k == 3) << k;
+  Reader first(folder_ / "cut.mkv", {.frame_count = 10, .with_cuts = true});
+  int count = 0;
+  while (const auto frame = first.next()) {
+    EXPECT_FALSE(frame->begins_shot);
+    ++count;
+  }
+  EXPECT_EQ(count, 10);
+}
+
+TEST_F(Video, TagsComeThrough) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p -colorspace bt709 "
+      "-color_primaries bt709 "
+      "-color_trc bt709 -color_range pc tagged.mp4");
+  Reader reader(folder_ / "tagged.mp4");
+  EXPECT_FALSE(reader.info().matrix_guessed);
+  EXPECT_EQ(reader.info().colour.matrix, image::Matrix::kBt709);
+  EXPECT_EQ(reader.info().colour.range, image::Range::kFull);
+  Writer writer(folder_ / "out.mp4", reader.info(), {});
+  while (const auto frame = reader.next()) writer.write(*frame);
+  writer.finish();
+  EXPECT_THAT(probe("out.mp4", "stream=color_range,color_space,color_transfer,color_primaries"),
+              testing::HasSubstr("pc,bt709,bt709,bt709"));
+}
+
+TEST_F(Video, SaysWhatIsWrongWithAFile) {
+  EXPECT_THAT(error_of(folder_ / "none.mp4"), testing::HasSubstr("none.mp4: does not exist"));
+  write_file(folder_ / "empty.mp4", "");
+  EXPECT_THAT(error_of(folder_ / "empty.mp4"), testing::HasSubstr("is empty"));
+  write_file(folder_ / "text.mp4", "this is no video, but it is long enough to be looked at");
+  EXPECT_THAT(error_of(folder_ / "text.mp4"), testing::HasSubstr("cannot be read as a video"));
+  EXPECT_THAT(error_of(folder_), testing::HasSubstr("folder"));
+  ffmpeg("-f lavfi -i sine=d=0.3 sound.m4a");
+  EXPECT_THAT(error_of(folder_ / "sound.m4a"), testing::HasSubstr("no video stream"));
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.4 -c:v libx264 whole.mp4");
+  const std::string whole = read_file(folder_ / "whole.mp4");
+  write_file(folder_ / "cut.mp4", whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(error_of(folder_ / "cut.mp4"), testing::HasSubstr("cut.mp4: "));
+  EXPECT_THAT(error_of(folder_ / "whole.mp4", {.first_frame = 10}),
+              testing::HasSubstr("holds 10 frames"));
+}
+
+TEST_F(Video, CorruptPacketsAreFlaggedAndTheRestGoesOn) {
+  ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=2 -c:v libx264 -g 10 -bf 0 whole.mkv");
+  std::string bytes = read_file(folder_ / "whole.mkv");
+  Random random(5);
+  const std::size_t middle = bytes.size() / 2;
+  for (std::size_t i = 0; i < 400; ++i) bytes[middle + i] = static_cast<char>(random());
+  write_file(folder_ / "bad.mkv", bytes);
+  Reader reader(folder_ / "bad.mkv");
+  int frames = 0;
+  int damaged = 0;
+  bool last_damaged = true;
+  while (const auto frame = reader.next()) {
+    ++frames;
+    damaged += frame->damaged ? 1 : 0;
+    last_damaged = frame->damaged;
+  }
+  EXPECT_GT(frames, 35);
+  EXPECT_GT(damaged + (50 - frames), 0);
+  EXPECT_LT(damaged, 30);
+  EXPECT_FALSE(last_damaged);
+}
+
+TEST_F(Video, TruncatedStreamEndsEarly) {
+  ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=2 -c:v libx264 -movflags +faststart whole.mp4");
+  const std::string bytes = read_file(folder_ / "whole.mp4");
+  write_file(folder_ / "cut.mp4", bytes.substr(0, bytes.size() * 2 / 3));
+  Reader reader(folder_ / "cut.mp4");
+  int frames = 0;
+  all_planes(reader, &frames);
+  EXPECT_GT(frames, 5);
+  EXPECT_LT(frames, 50);
+  EXPECT_TRUE(reader.ends_early());
+}
+
+TEST_F(Video, TruncatedMatroskaEndsEarlyToo) {
+  ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=4 -c:v libx264 -g 5 whole.mkv");
+  const std::string bytes = read_file(folder_ / "whole.mkv");
+  write_file(folder_ / "cut.mkv", bytes.substr(0, bytes.size() / 2));
+  Reader cut(folder_ / "cut.mkv");
+  Reader whole(folder_ / "whole.mkv");
+  all_planes(cut);
+  all_planes(whole);
+  EXPECT_TRUE(cut.ends_early());
+  EXPECT_FALSE(whole.ends_early());
+}
+
+TEST_F(Video, NumberedImagesNeverReplaceAFolder) {
+  fs::create_directories(folder_ / "frames");
+  write_file(folder_ / "frames/user.txt", "mine");
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 in.mp4");
+  Reader reader(folder_ / "in.mp4");
+  EXPECT_THROW(Writer(folder_ / "frames", reader.info(), {.format = Format::kPng}), Error);
+  EXPECT_EQ(read_file(folder_ / "frames/user.txt"), "mine");
+}
+
+TEST_F(Video, WriterLeavesNothingUnlessFinished) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 in.mp4");
+  Reader reader(folder_ / "in.mp4");
+  {
+    Writer writer(folder_ / "out.mp4", reader.info(), {});
+    writer.write(*reader.next());
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out.mp4"));
+  EXPECT_FALSE(fs::exists(part_path(folder_ / "out.mp4")));
+}
+
+TEST_F(Video, SameFramesGiveTheSameFile) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.4 -c:v libx264 in.mp4");
+  for (Format format : {Format::kMp4, Format::kMkv, Format::kAvi}) {
+    std::vector<std::string> sums;
+    for (int round = 0; round < 2; ++round) {
+      Reader reader(folder_ / "in.mp4");
+      const fs::path out = folder_ / (std::string("out") + extension(format));
+      Writer writer(out,
+                    reader.info(),
+                    {.format = format, .threads = format == Format::kMkv ? 1 + round : 1});
+      while (const auto frame = reader.next()) writer.write(*frame);
+      writer.finish();
+      sums.push_back(sha256_of_file(out));
+    }
+    EXPECT_EQ(sums[0], sums[1]) << extension(format);
+  }
+}
+
+// A .jpg of a decoded picture shows the colours that the picture has, however they are coded.
+TEST_F(Video, JpegsOfPicturesKeepTheirColours) {
+  image::Rgb8 rgb = image::make_rgb8(96, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      rgb.at(x, y)[0] = static_cast<std::uint8_t>(40 + 2 * x);
+      rgb.at(x, y)[1] = static_cast<std::uint8_t>(30 + 3 * y);
+      rgb.at(x, y)[2] = static_cast<std::uint8_t>(220 - x - y);
+    }
+  using image::Chroma;
+  using image::Matrix;
+  for (const Chroma chroma : {Chroma::k420, Chroma::k422, Chroma::k444})
+    for (const Matrix matrix : {Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020, Matrix::kRgb})
+      for (const image::Range range : {image::Range::kLimited, image::Range::kFull}) {
+        if (matrix == Matrix::kRgb && (chroma != Chroma::k444 || range == image::Range::kLimited))
+          continue;
+        const image::Picture picture =
+            image::picture_from_rgb8(rgb, {chroma, matrix, range, image::Siting::kCenter});
+        write_still(folder_ / "c.jpg", picture);
+        const image::Rgb8 back = read_still(folder_ / "c.jpg");
+        double sum = 0;
+        for (int i = 0; i < 3 * 96 * 64; ++i) sum += std::abs(back.at(0, 0)[i] - rgb.at(0, 0)[i]);
+        EXPECT_LT(sum / (3 * 96 * 64), 2.0)
+            << int(chroma) << ' ' << int(matrix) << ' ' << int(range);
+      }
+}
+
+TEST_F(Video, StillsAndMasks) {
+  image::Rgb8 rgb = image::make_rgb8(33, 21);
+  for (int i = 0; i < 33 * 21 * 3; ++i)
+    rgb.samples[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(i * 7);
+  write_still(folder_ / "a.png", rgb);
+  const image::Rgb8 back = read_still(folder_ / "a.png");
+  EXPECT_TRUE(std::equal(rgb.samples.get(), rgb.samples.get() + 33 * 21 * 3, back.samples.get()));
+  write_still(folder_ / "a.jpg", rgb);
+  EXPECT_EQ(read_still(folder_ / "a.jpg").width, 33);
+  EXPECT_THROW(read_mask(folder_ / "a.png", 32, 21), Error);
+  write_still(folder_ / "black.png", image::make_rgb8(8, 8));
+  EXPECT_THROW(read_mask(folder_ / "black.png", 8, 8), Error);
+  image::Rgb8 half = image::make_rgb8(8, 8);
+  std::fill_n(half.samples.get(), 8 * 4 * 3, std::uint8_t{255});
+  write_still(folder_ / "half.png", half);
+  const image::Mask mask = read_mask(folder_ / "half.png", 8, 8);
+  EXPECT_TRUE(mask.is_free(3, 3));
+  EXPECT_FALSE(mask.is_free(3, 4));
+}
+
+TEST_F(Video, FullDiskIsAnErrorThatSaysSo) {
+  if (::geteuid() != 0) GTEST_SKIP() << "mounting a small file system needs root";
+  const fs::path small = folder_ / "small";
+  fs::create_directories(small);
+  if (std::system(
+          ("mount -t tmpfs -o size=64k tmpfs '" + small.string() + "' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "no small file system can be mounted here";
+  ffmpeg("-f lavfi -i testsrc2=s=320x240:r=25:d=1 -c:v libx264 in.mp4");
+  std::string message;
+  try {
+    Reader reader(folder_ / "in.mp4");
+    Writer writer(small / "out.mkv", reader.info(), {.format = Format::kMkv});
+    while (const auto frame = reader.next()) writer.write(*frame);
+    writer.finish();
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_THAT(message, testing::HasSubstr("No space left on device"));
+  EXPECT_TRUE(fs::is_empty(small));
+  EXPECT_EQ(std::system(("umount '" + small.string() + "'").c_str()), 0);
+}
+
+TEST_F(Video, DecodesTheRealClipsAsFfmpegDoes) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
+  for (const char* clip :
+       {"fixed-wing/cumulus_a4.mp4", "fixed-wing/overcast_b4.mp4", "gopro-karma/karma.mp4"}) {
+    const fs::path path = fs::path(shared) / "footage" / clip;
+    ffmpeg("-i '" + path.string() + "' -frames:v 20 -f rawvideo -fps_mode passthrough real.bin");
+    Reader reader(path, {.frame_count = 20});
+    EXPECT_TRUE(all_planes(reader) == read_file(folder_ / "real.bin")) << clip;
+  }
+}
+
+// Largest difference of two lots of samples; 256 where their numbers differ.
+int worst(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return 256;
+  int most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most,
+                    std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])));
+  return most;
+}
+
+// The planes G, B, R of packed R, G, B.
+std::string planar(const std::string& packed) {
+  std::string result;
+  for (const std::size_t channel : {1u, 2u, 0u})
+    for (std::size_t i = channel; i < packed.size(); i += 3) result += packed[i];
+  return result;
+}
+
+// Each of them against what ffmpeg makes of it, to one step: sixteen bits may be rounded either
+// way.
+TEST_F(Video, ReadsStillsOfEveryDepth) {
+  const std::string source = "-f lavfi -i testsrc=size=46x30:rate=1 -frames:v 1 ";
+  for (const char* format : {"pal8", "rgb48be", "rgba64be", "rgba", "rgb24"}) {
+    ffmpeg(source + "-pix_fmt " + format + " still.png");
+    Reader reader(folder_ / "still.png");
+    ASSERT_EQ(reader.info().colour.matrix, image::Matrix::kRgb) << format;
+    EXPECT_LE(worst(all_planes(reader), planar(raw("still.png", "rgb24"))), 1) << format;
+  }
+  for (const char* format : {"monob", "gray16be", "gray", "ya8"}) {
+    ffmpeg(source + "-pix_fmt " + format + " still.png");
+    Reader reader(folder_ / "still.png");
+    ASSERT_EQ(reader.info().colour.chroma, image::Chroma::kNone) << format;
+    EXPECT_LE(worst(all_planes(reader), raw("still.png", "gray")), 1) << format;
+  }
+}
+
+TEST_F(Video, AMaskOfOneBitIsAMask) {
+  ffmpeg(
+      "-f lavfi -i color=white:size=16x8,drawbox=x=0:y=0:w=4:h=8:color=black:t=fill -frames:v 1 "
+      "-pix_fmt monob m.png");
+  const image::Mask mask = read_mask(folder_ / "m.png", 16, 8);
+  EXPECT_FALSE(mask.is_free(3, 4));
+  EXPECT_TRUE(mask.is_free(4, 4));
+}
+
+// Where the matrix sends the unit vectors says where the picture's corners must go.
+TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
+  for (const double degrees : {0.0, 90.0, 180.0, 270.0}) {
+    for (const bool flip : {false, true}) {
+      std::array<std::int32_t, 9> matrix{};
+      av_display_rotation_set(matrix.data(), degrees);
+      av_display_matrix_flip(matrix.data(), flip ? 1 : 0, 0);
+      image::Picture picture = image::make_picture(3, 2, {image::Chroma::kNone});
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+          picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(10 * y + x);
+      const image::Picture shown = oriented(picture.clone(), orientation_of(matrix.data()));
+      const bool turned = matrix[0] == 0;
+      ASSERT_EQ(shown.width, turned ? 2 : 3);
+      // A step in the shown picture along where the matrix sends x (y) is a step along x (y) in the
+      // stored one.
+      const auto sign = [](std::int32_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
+      const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]),
+                cy = sign(matrix[4]);
+      const int x0 = (ax < 0 || cx < 0) ? shown.width - 1 : 0;
+      const int y0 = (ay < 0 || cy < 0) ? shown.height - 1 : 0;
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+          EXPECT_EQ(shown.planes[0].row(y0 + ay * x + cy * y)[x0 + ax * x + cx * y], 10 * y + x)
+              << degrees << (flip ? " flipped" : "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::video

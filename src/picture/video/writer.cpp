@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/writer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "foundation/base/unfinished.h"
+#include "foundation/image/colour.h"
+#include "picture/video/libav.h"
+#include "picture/video/still.h"
+
+namespace airtruth::video {
+namespace {
+
+using image::Chroma;
+using image::Colour;
+using image::Matrix;
+using image::Picture;
+using image::Range;
+
+struct FreeOutput {
+  void operator()(AVFormatContext* p) const {
+    if (p->pb != nullptr) avio_closep(&p->pb);
+    avformat_free_context(p);
+  }
+};
+
+// The colour that a format stores for a picture of this one.
+Colour stored_colour(const Colour& colour, Format format, const fs::path& path) {
+  Colour stored = colour;
+  if (format == Format::kMkv || format == Format::kPng) return stored;
+  if (colour.matrix == Matrix::kRgb)
+    stored = {Chroma::k444, Matrix::kBt709, Range::kFull, image::Siting::kCenter};
+  if (format == Format::kAvi) {
+    stored.range = Range::kFull;  // JPEG has no other
+    if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
+  }
+  if (stored.chroma == Chroma::k440)
+    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"",
+                {path.string()});
+  return stored;
+}
+
+// H.264 halves chroma in whole samples. libx264 refuses such a size too, but leaks memory where it
+// does.
+void check_size(const StreamInfo& info, Chroma chroma, Format format, const fs::path& path) {
+  const bool half_width = chroma == Chroma::k420 || chroma == Chroma::k422;
+  const bool half_height = chroma == Chroma::k420;
+  if (format != Format::kMp4 ||
+      ((!half_width || info.width % 2 == 0) && (!half_height || info.height % 2 == 0)))
+    return;
+  throw Error("H.264 cannot hold " + std::to_string(info.width) + "x" +
+                  std::to_string(info.height) +
+                  " with halved chroma (an odd size); expected output.video = \"mkv\", \"avi\" or "
+                  "\"png\"",
+              {path.string()});
+}
+
+AVPixelFormat pixel_format(const Colour& colour, Format format) {
+  const bool jpeg = format == Format::kAvi;
+  if (colour.matrix == Matrix::kRgb) return AV_PIX_FMT_BGR0;
+  switch (colour.chroma) {
+    case Chroma::kNone:
+      return AV_PIX_FMT_GRAY8;
+    case Chroma::k420:
+      return jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUV420P;
+    case Chroma::k422:
+      return jpeg ? AV_PIX_FMT_YUVJ422P : AV_PIX_FMT_YUV422P;
+    case Chroma::k440:
+      return jpeg ? AV_PIX_FMT_YUVJ440P : AV_PIX_FMT_YUV440P;
+    case Chroma::k444:
+      return jpeg ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_YUV444P;
+  }
+  return AV_PIX_FMT_NONE;
+}
+
+// Through packed sRGB where a format cannot hold the picture's own colour.
+Picture converted(const Picture& picture, const Colour& to) {
+  if (picture.colour == to) return picture.clone();
+  return image::picture_from_rgb8(image::rgb8_from_picture(picture), to);
+}
+
+// Limited to full range with nothing else changed (JPEG): each plane by its own line.
+Picture with_full_range(const Picture& picture, const Colour& to) {
+  Picture result = image::make_picture(picture.width, picture.height, to);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(result.plane_count); ++i) {
+    for (int y = 0; y < result.planes[i].height; ++y) {
+      std::uint8_t* target = result.planes[i].row(y);
+      if (i > 0 && picture.plane_count == 1) {
+        std::memset(target, 128, static_cast<std::size_t>(result.planes[i].width));
+        continue;
+      }
+      const std::uint8_t* source = picture.planes[i].row(y);
+      for (int x = 0; x < result.planes[i].width; ++x) {
+        const double value =
+            i == 0 ? (source[x] - 16) * 255.0 / 219 : (source[x] - 128) * 255.0 / 224 + 128;
+        target[x] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+      }
+    }
+  }
+  return result;
+}
+
+void fill_frame(AVFrame& frame, const Picture& picture) {
+  if (picture.colour.matrix == Matrix::kRgb) {
+    for (int y = 0; y < picture.height; ++y) {
+      std::uint8_t* row = frame.data[0] + static_cast<std::ptrdiff_t>(y) * frame.linesize[0];
+      for (int x = 0; x < picture.width; ++x) {
+        row[4 * x] = picture.planes[1].row(y)[x];
+        row[4 * x + 1] = picture.planes[0].row(y)[x];
+        row[4 * x + 2] = picture.planes[2].row(y)[x];
+        row[4 * x + 3] = 255;
+      }
+    }
+    return;
+  }
+  for (int i = 0; i < picture.plane_count; ++i) {
+    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
+    for (int y = 0; y < plane.height; ++y)
+      std::memcpy(frame.data[i] + static_cast<std::ptrdiff_t>(y) * frame.linesize[i],
+                  plane.row(y),
+                  static_cast<std::size_t>(plane.width));
+  }
+}
+
+}  // namespace
+
+struct Writer::State {
+  fs::path path;
+  fs::path part;
+  StreamInfo info;
+  WriterOptions options;
+  Colour stored;
+  std::unique_ptr<AVFormatContext, FreeOutput> output;
+  CodecPtr codec;
+  AVStream* stream = nullptr;
+  PacketPtr packet;
+  std::int64_t count = 0;
+  std::int64_t last_pts = -1;
+  std::int64_t first_pts = 0;
+  bool finished = false;
+  std::optional<Unfinished> unfinished;
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(message, {path.string()});
+  }
+  void check_av(int result, const char* what) const {
+    if (result < 0) fail(std::string(what) + ": " + reason(result));
+  }
+  void open();
+  void open_codec();
+  void set_codec_options(AVDictionary** settings) const;
+  void encode(const AVFrame* frame);
+  void write_image(const Picture& picture) const;
+};
+
+void Writer::State::set_codec_options(AVDictionary** settings) const {
+  if (options.format == Format::kMp4) {
+    av_dict_set(settings, "preset", options.preset.c_str(), 0);
+    av_dict_set_int(settings, "crf", options.quality, 0);
+    // The same bytes on every machine. Without it x264's fastest code (AVX-512, mbtree) even gives
+    // other bytes from one encode to the next in the same process.
+    av_dict_set(settings, "x264-params", "cpu-independent=1", 0);
+  } else if (options.format == Format::kMkv) {
+    av_dict_set_int(settings, "level", 3, 0);
+    av_dict_set_int(settings, "slicecrc", 1, 0);
+  }
+}
+
+void Writer::State::open_codec() {
+  const char* name = options.format == Format::kMp4   ? "libx264"
+                     : options.format == Format::kMkv ? "ffv1"
+                                                      : "mjpeg";
+  const AVCodec* encoder = avcodec_find_encoder_by_name(name);
+  if (encoder == nullptr) fail(std::string("the encoder ") + name + " is missing from this FFmpeg");
+  codec.reset(avcodec_alloc_context3(encoder));
+  codec->width = info.width;
+  codec->height = info.height;
+  codec->pix_fmt = pixel_format(stored, options.format);
+  codec->time_base = {info.time_base.num, info.time_base.den};
+  codec->framerate = {info.frame_rate.num, info.frame_rate.den};
+  if (options.format == Format::kAvi) codec->time_base = {info.frame_rate.den, info.frame_rate.num};
+  codec->sample_aspect_ratio = {info.sample_aspect.num, info.sample_aspect.den};
+  codec->color_range = stored.range == Range::kFull ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+  codec->colorspace = space_of(stored.matrix);
+  codec->color_primaries = static_cast<AVColorPrimaries>(info.primaries_tag);
+  codec->color_trc = static_cast<AVColorTransferCharacteristic>(info.transfer_tag);
+  codec->chroma_sample_location = stored.siting == image::Siting::kCenter    ? AVCHROMA_LOC_CENTER
+                                  : stored.siting == image::Siting::kTopLeft ? AVCHROMA_LOC_TOPLEFT
+                                                                             : AVCHROMA_LOC_LEFT;
+  codec->thread_count = std::max(0, options.threads);  // 0: as many as the encoder likes
+  codec->flags |= AV_CODEC_FLAG_BITEXACT;
+  if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0)
+    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (options.format == Format::kAvi) {
+    codec->flags |= AV_CODEC_FLAG_QSCALE;
+    codec->global_quality = FF_QP2LAMBDA * std::clamp(1 + options.quality / 6, 1, 31);
+  }
+  AVDictionary* settings = nullptr;
+  set_codec_options(&settings);
+  const int opened = avcodec_open2(codec.get(), encoder, &settings);
+  av_dict_free(&settings);
+  if (opened < 0) fail(std::string("cannot encode as ") + name + ": " + reason(opened));
+}
+
+void Writer::State::open() {
+  keep_libav_quiet();
+  const char* muxer = options.format == Format::kMp4   ? "mp4"
+                      : options.format == Format::kMkv ? "matroska"
+                                                       : "avi";
+  AVFormatContext* raw = nullptr;
+  check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, part.c_str()), "cannot create");
+  output.reset(raw);
+  output->flags |= AVFMT_FLAG_BITEXACT;
+  open_codec();
+  stream = avformat_new_stream(output.get(), nullptr);
+  check(stream != nullptr, "a stream can be made");
+  check_av(avcodec_parameters_from_context(stream->codecpar, codec.get()),
+           "cannot describe the stream");
+  stream->time_base = codec->time_base;
+  stream->avg_frame_rate = codec->framerate;
+  stream->sample_aspect_ratio = codec->sample_aspect_ratio;
+  if (const int opened = avio_open(&output->pb, part.c_str(), AVIO_FLAG_WRITE); opened < 0)
+    fail("cannot create: " + reason(opened));
+  AVDictionary* settings = nullptr;
+  if (options.format == Format::kMp4) av_dict_set(&settings, "movflags", "+faststart", 0);
+  const int written = avformat_write_header(output.get(), &settings);
+  av_dict_free(&settings);
+  check_av(written, "cannot write");
+  packet.reset(av_packet_alloc());
+}
+
+void Writer::State::encode(const AVFrame* frame) {
+  check_av(avcodec_send_frame(codec.get(), frame), "cannot encode");
+  for (;;) {
+    const int got = avcodec_receive_packet(codec.get(), packet.get());
+    if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
+    check_av(got, "cannot encode");
+    if (packet->duration == 0) packet->duration = 0;
+    av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+    packet->stream_index = stream->index;
+    const int written = av_interleaved_write_frame(output.get(), packet.get());
+    check_av(written, "cannot write");
+    if (output->pb->error < 0) fail("cannot write: " + reason(output->pb->error));
+  }
+}
+
+void Writer::State::write_image(const Picture& picture) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06lld.png", static_cast<long long>(count));
+  write_still(part / name, image::rgb8_from_picture(picture));
+}
+
+Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions& options)
+    : state_(std::make_unique<State>()) {
+  if (options.quality < 0 || options.quality > 51)
+    throw Error("quality is " + std::to_string(options.quality) + "; expected 0 (best) to 51",
+                {path.string()});
+  state_->path = path;
+  state_->part = part_path(path);
+  state_->info = info;
+  state_->options = options;
+  state_->stored = stored_colour(info.colour, options.format, path);
+  check_size(info, state_->stored.chroma, options.format, path);
+  state_->unfinished.emplace(Unfinished::path(state_->part));
+  try {
+    if (options.format == Format::kPng) {
+      std::error_code failed;
+      if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
+        state_->fail("exists already; expected the name of a new folder for the images");
+      fs::remove_all(state_->part, failed);
+      fs::create_directories(state_->part, failed);
+      if (failed) state_->fail("cannot create: " + failed.message());
+    } else {
+      state_->open();
+    }
+  } catch (...) {
+    std::error_code ignored;
+    state_->output.reset();
+    fs::remove_all(state_->part, ignored);
+    throw;
+  }
+}
+
+Writer::~Writer() {
+  if (!state_ || state_->finished) return;
+  state_->output.reset();
+  std::error_code ignored;
+  fs::remove_all(state_->part, ignored);
+}
+Writer::Writer(Writer&&) noexcept = default;
+Writer& Writer::operator=(Writer&&) noexcept = default;
+
+void Writer::write(const Frame& frame) {
+  State& s = *state_;
+  check(frame.picture.width == s.info.width && frame.picture.height == s.info.height,
+        "frames keep their size");
+  if (s.options.format == Format::kPng) {
+    s.write_image(frame.picture);
+    ++s.count;
+    return;
+  }
+  const FramePtr out(av_frame_alloc());
+  out->format = s.codec->pix_fmt;
+  out->width = s.info.width;
+  out->height = s.info.height;
+  out->color_range = s.codec->color_range;
+  out->colorspace = s.codec->colorspace;
+  s.check_av(av_frame_get_buffer(out.get(), 0), "out of memory");
+  if (frame.picture.colour == s.stored) {
+    fill_frame(*out, frame.picture);
+  } else if (frame.picture.colour.matrix != Matrix::kRgb && s.options.format == Format::kAvi &&
+             frame.picture.colour.range == Range::kLimited) {
+    fill_frame(*out, with_full_range(frame.picture, s.stored));
+  } else if (frame.picture.colour.matrix == Matrix::kRgb) {
+    fill_frame(*out, converted(frame.picture, s.stored));
+  } else {
+    Picture same = frame.picture.clone();
+    same.colour = s.stored;
+    fill_frame(*out,
+               s.stored.chroma == frame.picture.colour.chroma ? std::move(same)
+                                                              : converted(frame.picture, s.stored));
+  }
+  if (s.count == 0) s.first_pts = frame.pts;
+  std::int64_t pts = s.options.format == Format::kAvi ? s.count : frame.pts - s.first_pts;
+  if (pts <= s.last_pts) pts = s.last_pts + 1;
+  s.last_pts = pts;
+  out->pts = pts;
+  out->quality = s.codec->global_quality;
+  s.encode(out.get());
+  ++s.count;
+}
+
+void Writer::finish() {
+  State& s = *state_;
+  if (s.options.format != Format::kPng) {
+    s.encode(nullptr);
+    s.check_av(av_write_trailer(s.output.get()), "cannot write");
+    avio_flush(s.output->pb);
+    if (s.output->pb->error < 0) s.fail("cannot write: " + reason(s.output->pb->error));
+    if (const int closed = avio_closep(&s.output->pb); closed < 0)
+      s.fail("cannot write: " + reason(closed));
+  }
+  s.unfinished->finish([&s] {
+    std::error_code failed;
+    if (s.options.format == Format::kPng && fs::exists(s.path))
+      fs::remove(s.path, failed);  // empty
+    fs::rename(s.part, s.path, failed);
+    if (failed) s.fail("cannot create: " + failed.message());
+  });
+  s.finished = true;
+}
+
+Format format_from_name(std::string_view name) {
+  static const std::vector<std::string> kNames = {"mp4", "mkv", "avi", "png"};
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (name == kNames[i]) return static_cast<Format>(i);
+  throw Error("'" + std::string(name) + "' is no video format; expected mp4, mkv, avi or png");
+}
+
+Format format_of_file(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension != ".mp4" && extension != ".mkv" && extension != ".avi")
+    throw Error("has " + (extension.empty() ? "no ending" : "the ending " + extension) +
+                    "; expected .mp4, .mkv or .avi",
+                {path.string()});
+  return format_from_name(extension.substr(1));
+}
+
+const char* extension(Format format) {
+  switch (format) {
+    case Format::kMp4:
+      return ".mp4";
+    case Format::kMkv:
+      return ".mkv";
+    case Format::kAvi:
+      return ".avi";
+    case Format::kPng:
+      return "";
+  }
+  return "";
+}
+
+}  // namespace airtruth::video

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "sequence/sequence/sequence.h"
+
+namespace airtruth::sequence {
+
+struct DemoOptions {
+  std::uint64_t seed = 1;
+  int frame_count = 322;
+  bool overwrite = false;
+  std::stop_token stop;
+  Warn warn;
+  std::function<void(const std::string& stage, std::int64_t done, std::int64_t total)> progress;
+};
+
+// Makes <out>/ from nothing but this program and the installed aircraft: flight.mp4 (a virtual
+// flight), flight.csv (its true camera), own_aircraft.png (its mask), demo.toml (the scene, a start
+// for one's own), demo/ (the sequence) and overlay.mp4. Error where <out>/demo exists and overwrite
+// is false.
+Summary make_demo(const fs::path& out, const DemoOptions& options);
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "foundation/base/log.h"
+#include "foundation/geometry/box.h"
+
+// The published E-Vision annotations against boxes of our own making (docs/evision.md).
+//
+// Their virtual camera is a pinhole of 480 px focal length on 1280x960 that looks north, level.
+// Each sequence's intruder goes through its published positions along its path, an airliner where
+// the sequence's name ends in B737 and a light aircraft where it ends in C172. Ours is the box of
+// the pixels that it covers by 0.3 or more, as a colour key would take them.
+//
+// The published boxes were measured on pictures that the camera's motion had moved and that two
+// Lanczos warps had spread. The motion is not published. Sequences over one background share it
+// frame by frame, so it is taken from the centres of their boxes; widths and heights have no part
+// in it.
+namespace airtruth::sequence {
+
+namespace fs = std::filesystem;
+
+// One frame of one sequence.
+struct EvisionFramePair {
+  std::string sequence;
+  int frame = 0;  // from 1, as in the files
+  std::optional<PixelBox> ours;
+  PixelBox published;  // all zero: none
+};
+
+struct EvisionOptions {
+  std::string airliner = "733/733-AirBaltic";
+  std::string light_aircraft = "c172/news";
+  int spread_px = 3;  // what a warp adds to each side of a box; the first frame is not warped
+  bool recover_motion =
+      true;          // from the centres of all the sequences over one background (evision_motion.h)
+  bool bank = true;  // as a coordinated turn along the path would have it; else wings level
+  double scale = 1;  // of the aircraft
+  std::function<void(const EvisionFramePair&)> each;  // sees every compared frame
+  std::stop_token stop;
+};
+
+struct EvisionRow {
+  std::string sequence;
+  int frames = 0;           // with a defined intruder position
+  int published_boxes = 0;  // of those, and not empty
+  int compared = 0;         // both boxes there, neither cut by the frame
+  int without_box_published =
+      0;                     // the whole aircraft is in the picture and the published box is empty
+  int without_box_ours = 0;  // the middle of its outline is in the picture and ours is empty
+  double published_width_px = 0;  // medians over the compared frames
+  double published_height_px = 0;
+  double width_off_px = 0;  // of |ours - published|
+  double height_off_px = 0;
+  double width_off = 0;  // of |ours - published| / published
+  double height_off = 0;
+  double centre_off_px = 0;  // distance of the centres
+  double centre_off_p95_px = 0;
+
+  // Within 2 px or 10 % in the median.
+  bool sizes_hold() const {
+    return (width_off_px <= 2 || width_off <= 0.1) && (height_off_px <= 2 || height_off <= 0.1);
+  }
+};
+
+// One row per file of folder/groundtruth/*.xml, by name; positions from folder/positions/<same
+// name>.csv. Throws Error where a file is missing or not of its format.
+std::vector<EvisionRow> evision_table(const fs::path& folder,
+                                      const EvisionOptions& options,
+                                      const Warn& warn = {});
+
+}  // namespace airtruth::sequence

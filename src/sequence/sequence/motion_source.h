@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "camera/gyro/gyro.h"
+#include "camera/lens/lens.h"
+#include "camera/motion/cache.h"
+#include "camera/motion/motion.h"
+#include "camera/motion/reach.h"
+#include "foundation/image/layer.h"
+#include "picture/video/reader.h"
+#include "world/scene/scene.h"
+
+// Where a frame's homography comes from: the cache, a pass made before, or an estimator that runs
+// along.
+namespace airtruth::sequence {
+
+namespace fs = std::filesystem;
+
+// SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of
+// numbered images.
+std::string sha256_of_video(const fs::path& video);
+
+// Every number of a lens, so that two lenses never share what is cached for one of them.
+std::string words_of(const lens::Lens& lens);
+
+class MotionSource {
+ public:
+  // model "none": identity for every frame.
+  // `needs_change`: next() must know how the shake goes on within a frame, which takes the frame
+  // after it, and so a pass before.
+  MotionSource(const scene::Scene& scene,
+               const lens::Lens& lens,
+               bool needs_change,
+               const std::string& video_sha256,
+               const image::Mask* mask,
+               const fs::path& cache);  // empty: none
+
+  // True when frames must be seen once before the first motion is known (reference "smoothed", a
+  // shutter, a gyroscope; not cached).
+  bool needs_pass() const {
+    return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
+  }
+  // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
+  void measure(video::Reader& reader,
+               const std::stop_token& stop,
+               const std::function<void(std::int64_t)>& seen);
+
+  // Frames in order.
+  struct Measured {
+    motion::FrameMotion motion;
+    Shake shake;
+  };
+  Measured next(const video::Frame& frame);
+  // After the last frame: keeps what was measured for the next run. A cache that cannot be written
+  // is no error.
+  void store() const;
+  bool from_cache() const { return from_cache_; }
+
+ private:
+  void set_pass(std::vector<motion::FrameMotion> against_first);
+  motion::FrameMotion measured(const video::Frame& frame);
+
+  motion::Estimator estimator(int width, int height) const;
+
+  bool none_ = false;
+  bool needs_change_ = false;
+  std::vector<motion::GyroSample> gyro_;  // bridges what cannot be measured; empty: none
+  std::optional<lens::Lens> lens_;        // of the model rotation
+  bool smoothed_ = false;
+  bool ready_ = false;  // all_ holds every frame
+  bool from_cache_ = false;
+  fs::path cache_;
+  motion::Options options_;
+  motion::CacheKey key_;
+  const image::Mask* mask_;
+  lens::ImageSize size_;
+  motion::ReachGuard guard_;  // of motion against the first frame
+  std::optional<motion::Estimator> estimator_;
+  std::vector<motion::FrameMotion> against_first_;
+  std::vector<motion::FrameMotion> all_;
+};
+
+// The scene's model of motion, with "auto" made out: "rotation", since a scene states its lens, but
+// "homography" for chroma-key, the paper's method.
+std::string motion_model(const scene::Scene& scene);
+
+// What a video's own gyroscope told (a GoPro's telemetry); empty where it has none.
+std::vector<motion::GyroSample> gyro_of(const fs::path& video);
+
+// Bridges what could not be measured by a gyroscope that agrees with what was; rotations only.
+// Says how it fits; empty, and nothing changed, where it does not.
+std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
+                                              std::vector<motion::FrameMotion>& motion);
+
+// Motion of a whole clip against its first frame, as a rotation where a lens is given; `seen` after
+// each frame. Throws Interrupted on stop.
+std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+                                                motion::Estimator estimator,
+                                                std::stop_token stop,
+                                                const std::function<void(std::int64_t)>& seen);
+
+}  // namespace airtruth::sequence

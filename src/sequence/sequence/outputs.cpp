@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/outputs.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/version.h"
+#include "picture/composite/cover.h"
+#include "picture/video/still.h"
+
+namespace airtruth::sequence {
+namespace {
+
+video::WriterOptions writer_options(const scene::Output& output, int threads) {
+  video::WriterOptions options;
+  options.format = video::format_from_name(output.video);
+  options.quality = output.quality;
+  options.threads = threads;
+  return options;
+}
+
+annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
+                                       const annotation::Intruder& intruder) {
+  annotation::EvisionFrame frame;
+  frame.number = static_cast<int>(truth.frame) + 1;
+  frame.camera_ned_m = truth.camera_position_ned_m;
+  frame.intruder_ned_m = *intruder.position_ned_m;
+  frame.distance_m = *intruder.range_m;
+  if (intruder.covered_box_px) frame.rect_px = *intruder.covered_box_px;
+  return frame;
+}
+
+nlohmann::ordered_json json_of(const std::vector<Checksum>& files) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Checksum& file : files) list.push_back({{"name", file.name}, {"sha256", file.sha256}});
+  return list;
+}
+
+// Checksums of the files of a folder, and of the images in its sub-folders, by name.
+std::vector<Checksum> checksums_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<Checksum> result;
+  for (const fs::path& file : files)
+    result.push_back({fs::relative(file, folder).string(), sha256_of_file(file)});
+  return result;
+}
+
+}  // namespace
+
+annotation::LensFacts facts_of(const lens::Lens& lens) {
+  annotation::LensFacts facts;
+  facts.model = lens.name();
+  facts.width = lens.size().width;
+  facts.height = lens.size().height;
+  std::visit(
+      [&](const auto& model) {
+        facts.focal_px = {model.focal_px.x(), model.focal_px.y()};
+        facts.principal_point_px = {model.principal_point_px.x(), model.principal_point_px.y()};
+        if constexpr (requires { model.distortion; }) facts.distortion = model.distortion;
+      },
+      lens.model());
+  return facts;
+}
+
+Outputs::Outputs(const fs::path& folder,
+                 const scene::Scene& scene,
+                 const lens::Lens& lens,
+                 const video::StreamInfo& info,
+                 int threads)
+    : folder_(folder),
+      scene_(scene),
+      lens_(facts_of(lens)),
+      video_(folder / (scene.name + video::extension(video::format_from_name(scene.output.video)))),
+      writer_(video_, info, writer_options(scene.output, threads)),
+      truth_(folder / "truth.jsonl", std::ios::binary),
+      evision_(std::max<std::size_t>(1, scene.intruders.size())),
+      sheet_(scene.name, info.frame_count_estimate) {
+  if (!truth_)
+    throw Error(std::string("cannot create: ") + std::strerror(errno),
+                {(folder / "truth.jsonl").string()});
+}
+
+void Outputs::write(const video::Frame& frame,
+                    const annotation::Frame& truth,
+                    const std::vector<MaskFile>& masks) {
+  writer_.write(frame);
+  for (const MaskFile& mask : masks) {
+    fs::create_directories((folder_ / mask.name).parent_path());
+    write_file(folder_ / mask.name, mask.png, Flush::kLater);
+  }
+  truth_ << annotation::jsonl_line(truth, lens_) << '\n';
+  if (!truth_)
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
+  camera_ned_m_.push_back(truth.camera_position_ned_m);
+  if (truth.intruders.empty()) evision_[0].push_back(std::nullopt);
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    const annotation::Intruder& intruder = truth.intruders[i];
+    evision_[i].push_back(intruder.state == annotation::State::kEnded
+                              ? std::nullopt
+                              : std::optional(evision_frame(truth, intruder)));
+  }
+  sheet_.add(frame.picture, truth);
+}
+
+void Outputs::finish(const scene::Scene& scene,
+                     const std::vector<Checksum>& inputs,
+                     const Summary& summary) {
+  scene_ = scene;
+  writer_.finish();
+  truth_.close();
+  if (!truth_)
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
+  write_annotations();
+  write_preview();
+  if (scene_.output.masks) flush_files(folder_);
+  write_record(inputs, summary);
+}
+
+void Outputs::write_annotations() const {
+  for (std::size_t i = 0; i < evision_.size(); ++i) {
+    const std::string suffix = evision_.size() == 1 ? "" : "-" + scene_.intruders[i].id;
+    write_file(folder_ / (scene_.name + suffix + ".xml"),
+               annotation::evision_xml(evision_[i], camera_ned_m_));
+  }
+}
+
+void Outputs::write_preview() const { video::write_still(folder_ / "preview.jpg", sheet_.sheet()); }
+
+void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& summary) const {
+  nlohmann::ordered_json record;
+  record["format"] = "airtruth sequence 1";
+  record["version"] = kVersion;
+  record["name"] = scene_.name;
+  record["seed"] = scene_.seed;
+  record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
+  record["scene_toml"] = scene::toml_from_scene(scene_);
+  record["inputs"] = json_of(inputs);
+  record["outputs"] = json_of(checksums_below(folder_));
+  record["summary"] = {{"frames", summary.frames},
+                       {"frames_with_an_intruder_visible", summary.frames_visible},
+                       {"frames_with_bridged_motion", summary.frames_bridged},
+                       {"frames_damaged_in_the_background", summary.frames_damaged}};
+  write_file(folder_ / "sequence.json", record.dump(2) + "\n");
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/lens/lens.h"
+#include "picture/video/reader.h"
+#include "picture/video/writer.h"
+#include "sequence/sequence/masks.h"
+#include "sequence/sequence/sequence.h"
+#include "show/report/pictures.h"
+#include "truth/annotation/evision.h"
+#include "truth/annotation/truth.h"
+#include "world/scene/scene.h"
+
+// What a run leaves (docs/formats/output.md), written frame by frame into the staged folder.
+namespace airtruth::sequence {
+
+annotation::LensFacts facts_of(const lens::Lens& lens);
+
+// An input or output file with its SHA-256, for sequence.json.
+struct Checksum {
+  std::string name;
+  std::string sha256;
+};
+
+class Outputs {
+ public:
+  Outputs(const fs::path& folder,
+          const scene::Scene& scene,
+          const lens::Lens& lens,
+          const video::StreamInfo& info,
+          int threads);
+
+  void write(const video::Frame& frame,
+             const annotation::Frame& truth,
+             const std::vector<MaskFile>& masks);
+  // Closes everything and writes the annotation, the preview and, last, sequence.json.
+  // `scene` is the one that was drawn: its camera model may have been measured since the outputs
+  // were opened.
+  void finish(const scene::Scene& scene,
+              const std::vector<Checksum>& inputs,
+              const Summary& summary);
+
+ private:
+  void write_annotations() const;
+  void write_preview() const;
+  void write_record(const std::vector<Checksum>& inputs, const Summary& summary) const;
+
+  fs::path folder_;
+  scene::Scene scene_;
+  annotation::LensFacts lens_;
+  fs::path video_;
+  video::Writer writer_;
+  std::ofstream truth_;
+  std::vector<Vector3> camera_ned_m_;
+  std::vector<std::vector<std::optional<annotation::EvisionFrame>>>
+      evision_;  // [intruder][frame]; of a scene
+                 // without intruders one without positions
+  report::ContactSheet sheet_;
+};
+
+}  // namespace airtruth::sequence

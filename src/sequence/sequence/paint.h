@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "foundation/image/layer.h"
+#include "foundation/image/picture.h"
+#include "picture/composite/matte.h"
+#include "sequence/sequence/ambient.h"
+#include "sequence/sequence/sequence.h"
+#include "sequence/sequence/world.h"
+#include "world/scene/scene.h"
+
+// Puts the intruders of one moment into a picture, by the method that the scene names.
+namespace airtruth::sequence {
+
+struct Painted {
+  image::Layer layer;  // what the ray tracer drew (for chroma-key: what it would draw)
+  std::vector<composite::Visible> visible;  // per intruder; empty where none is in view
+  double render_s = 0;                      // of the time that painting took, the ray tracer's
+};
+
+class Painter {
+ public:
+  virtual ~Painter() = default;
+  // The layer of a moment. matte: any thread, any order. chroma-key: one thread.
+  Painted draw(const Moment& moment, const Ambient& ambient) const;
+  // Puts what was drawn into the picture, and adds what it did there to `painted`.
+  virtual void compose(image::Picture& picture,
+                       const Moment& moment,
+                       const Ambient& ambient,
+                       Painted& painted) = 0;
+  // True where a frame's picture depends on the one before it (a codec's mark): compose() then
+  // takes every frame, in order, one at a time. Known once the scene's values are.
+  virtual bool is_in_order() const { return false; }
+
+  // Both, for a picture by itself.
+  Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient);
+
+ protected:
+  Painter(const scene::Scene& scene,
+          const World& world,
+          const image::Mask* mask,
+          std::stop_token stop)
+      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
+
+  const scene::Scene& scene_;
+  const World& world_;
+  const image::Mask* mask_;
+  std::stop_token stop_;
+};
+
+// The part of a frame's truth that geometry and compositing know: where the camera is, and every
+// intruder.
+void write_moment(const World& world,
+                  const Moment& moment,
+                  const Painted& painted,
+                  annotation::Frame& truth);
+
+// Error where the scene's method cannot draw through the lens.
+void check_method(const scene::Scene& scene, const lens::Lens& lens);
+// Error where the scene has a codec_step and H.264 does not have the clip's layout (4:4:0).
+void check_codec(const scene::Scene& scene, const image::Colour& colour);
+
+// Error where check_method() refuses, and where chroma-key finds no OpenGL.
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
+                                      const World& world,
+                                      const image::Mask* mask,
+                                      const Options& options);
+
+// The scene's mask of the own aircraft, if it has one.
+std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);
+
+// The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
+// `own_aircraft`, if there is one, takes its share of the layer's area_free_px alone.
+image::Layer render_layer(const scene::Scene& scene,
+                          const World& world,
+                          const Moment& moment,
+                          const Ambient& ambient,
+                          const image::Mask* own_aircraft = nullptr,
+                          const std::stop_token& stop = {});
+
+}  // namespace airtruth::sequence

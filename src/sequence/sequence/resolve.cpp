@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/resolve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "measure/calibration/cache.h"
+#include "measure/calibration/calibration.h"
+#include "measure/calibration/profile.h"
+#include "sequence/sequence/ambient.h"
+#include "sequence/sequence/motion_source.h"
+#include "sequence/sequence/paint.h"
+#include "sequence/sequence/world.h"
+#include "world/scene/camera_keys.h"
+
+namespace airtruth::sequence {
+namespace {
+
+scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size) {
+  const fs::path& path = *scene.realism.file;
+  const scene::CameraFile file = scene::read_camera_file(path);
+  if (file.width != size.width || file.height != size.height)
+    throw Error(fmt::format("was measured on a clip of {} x {} px; the background is {} x {}",
+                            file.width,
+                            file.height,
+                            size.width,
+                            size.height),
+                {path.string()});
+  const std::string lens = calibration::lens_words(lens_of(scene.lens, size));
+  if (!file.lens.empty() && file.lens != lens)
+    throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
+                {path.string()});
+  if (scene.camera_model.gamma && scene.camera_model.gamma != file.gamma)
+    throw Error(fmt::format("was measured with {}; the scene's is {}",
+                            file.gamma ? fmt::format("gamma {}", *file.gamma) : "sRGB's tone curve",
+                            *scene.camera_model.gamma),
+                {path.string()});
+  return file;
+}
+
+// Where calibrations are kept; empty: nowhere.
+fs::path calibrations_of(const Options& options) {
+  if (!options.use_cache) return {};
+  return (options.cache.empty() ? cache_folder() : options.cache) / "calibration";
+}
+
+// On the whole clip, so that all scenes over one clip have one camera.
+calibration::Calibration measured_on(const scene::Scene& scene,
+                                     const lens::ImageSize& size,
+                                     const image::Mask* mask,
+                                     const Options& options) {
+  calibration::Options how;
+  how.lens = lens_of(scene.lens, size);
+  how.own_aircraft = mask;
+  if (!scene.camera.path_file && scene.camera.position_ned_m.z() < 0)
+    how.altitude_m = -scene.camera.position_ned_m.z();
+  how.tone = tone_of(scene.camera_model);
+  how.stop = options.stop;
+  how.warn = options.warn;
+  how.progress = [&](std::int64_t done, std::int64_t total) {
+    if (options.progress) options.progress({done, total, "measuring the camera"});
+  };
+  calibration::CacheKey key;
+  key.video_sha256 = sha256_of_video(scene.background.video);
+  if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
+  key.lens = words_of(*how.lens);
+  key.altitude_m = how.altitude_m;
+  key.tone = how.tone;
+  return calibration::calibrate_once(scene.background.video, how, calibrations_of(options), key);
+}
+
+// From north, where the calibration has it from the heading of the camera in the clip's first
+// frame.
+double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration& found) {
+  const auto first = static_cast<std::size_t>(scene.background.first_frame);
+  const double turned_deg =
+      first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
+  const auto camera = camera_path(scene.camera).at(0);
+  const double heading_deg = camera ? yaw_pitch_roll(camera->world_from_body).yaw_deg : 0;
+  const double azimuth_deg = std::remainder(
+      found.values.at("light.sun_azimuth_deg")[0].value + heading_deg - turned_deg, 360);
+  return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
+}
+
+// A clip may show no edges of colour, as many do, and a decoder may not tell its quantiser where
+// [realism] auto asks for it: such a clip is measured in all else.
+bool may_be_missing(std::string_view key, const scene::Realism& realism) {
+  return key == "sensor.chroma_spread_px" || (key == "sensor.codec_step" && realism.automatic);
+}
+
+bool is_named(const scene::Scene& scene, const std::string& key) {
+  const auto& named = scene.camera_model.automatic;
+  return std::find(named.begin(), named.end(), key) != named.end();
+}
+
+bool is_wanted(const scene::Scene& scene, const std::string& key) {
+  return is_named(scene, key) || scene.realism.automatic;
+}
+
+// Fills what the scene does not state from its camera file; is a value that is wanted still
+// missing?
+bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
+  bool is_missing = false;
+  scene::CameraModel& model = scene.camera_model;
+  scene::for_each_camera_key(
+      [&](const char* key, auto& stated, const auto& filed) {
+        if (!stated) stated = filed;
+        is_missing = is_missing || (!stated && is_wanted(scene, key));
+      },
+      model,
+      file.model);
+  if (!model.readout) model.readout = file.model.readout;
+  if (!model.gamma) model.gamma = file.gamma;
+  return is_missing;
+}
+
+// The chroma-key method has no place for what a camera and its air do; half of it would be worse.
+void refuse_with_chroma_key(const scene::Scene& scene) {
+  if (scene.composite.method != "chroma-key") return;
+  scene::CameraModel model = scene.camera_model;
+  bool any = scene.realism.file || scene.realism.automatic || model.angle_deg || model.readout ||
+             model.gamma || !model.automatic.empty();
+  scene::for_each_camera_key([&](const char*, const auto& value) { any = any || value; }, model);
+  if (any)
+    throw Error(
+        "composite.method chroma-key is for the picture as it is, without [shutter], [air], "
+        "[optics], "
+        "[sensor] and [realism]; expected none of them, or method = \"matte\"",
+        scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
+}
+
+void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
+  scene::CameraModel& model = scene.camera_model;
+  if (!model.angle_deg) return;
+  const double rate_hz = info.frame_rate.value();
+  if (!(rate_hz > 0))
+    throw Error("has no frame rate, which shutter.angle_deg is a share of; expected exposure_s",
+                {scene.background.video.string()});
+  model.exposure_s = *model.angle_deg / 360 / rate_hz;
+  model.angle_deg.reset();
+}
+
+// A named profile has its word on what is measured, so something must be measured.
+void check_profile(const scene::Realism& realism,
+                   const video::StreamInfo& info,
+                   bool is_any_to_measure) {
+  if (!realism.profile) return;
+  calibration::check_size(calibration::camera_profile(*realism.profile, realism.where),
+                          info.width,
+                          info.height,
+                          realism.where);
+  if (!is_any_to_measure)
+    throw Error(
+        "profile is for what is measured from the clip, and nothing is; expected auto = "
+        "true, or a key that is \"auto\"",
+        realism.where);
+}
+
+// What was measured, with the word of the camera's profile; where none is named, of cameras in the
+// median.
+calibration::Calibration with_camera(calibration::Calibration measured,
+                                     const scene::Realism& realism) {
+  return calibration::with_profile(
+      std::move(measured),
+      realism.profile ? calibration::camera_profile(*realism.profile, realism.where)
+                      : calibration::usual_camera());
+}
+
+// Takes what the scene wants to be measured: from the clip, as far as it can tell, and from the
+// camera's profile.
+void take_measured(scene::Scene& scene,
+                   const StatedScene& stated,
+                   calibration::Calibration measured,
+                   const Warn& to_warn) {
+  const std::map<std::string, std::string> untold = measured.missing;  // by the clip
+  const calibration::Calibration found = with_camera(std::move(measured), stated.realism);
+  const scene::CameraModel from_clip = calibration::model_of(found);
+  scene::for_each_camera_key(
+      [&](const char* key, auto& value, const auto& seen) {
+        const auto& wanted = stated.to_measure;
+        if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
+        value = seen;
+        if (value && (stated.realism.profile || !untold.contains(key))) return;
+        std::string what = fmt::format("{} cannot be measured: {}", key, untold.at(key));
+        const auto horizon = untold.find("horizon");
+        if (key == std::string_view("air.airlight") && horizon != untold.end())
+          what += " (" + horizon->second + ")";
+        if (!stated.realism.fallback && !may_be_missing(key, stated.realism))
+          throw Error(
+              what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
+                              "= true to take what cameras have in the median"
+                            : "; state it, or set fallback = true in [realism] to leave it out"),
+              stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
+        warn(to_warn, what + (value ? "; it is " + found.sources.at(key) : "; it is left out"));
+      },
+      scene.camera_model,
+      from_clip);
+  if (stated.realism.profile)
+    for (const std::string& key : stated.to_measure)
+      if (const auto doubt = found.doubts.find(key); doubt != found.doubts.end())
+        warn(to_warn, key + " is doubtful: " + doubt->second);
+  if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
+  if (stated.sun_is_known || !found.values.contains("light.sun_azimuth_deg")) return;
+  scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
+  scene.light.sun_elevation_deg = found.values.at("light.sun_elevation_deg")[0].value;
+}
+
+// The keys that are wanted and that neither the scene nor its camera file states.
+std::vector<std::string> left_to_measure(const scene::Scene& filled) {
+  std::vector<std::string> keys;
+  scene::for_each_camera_key(
+      [&](const char* key, const auto& value) {
+        if (!value && is_wanted(filled, key)) keys.emplace_back(key);
+      },
+      filled.camera_model);
+  return keys;
+}
+
+}  // namespace
+
+StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
+  StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
+  refuse_with_chroma_key(scene);
+  take_angle(result.scene, info);
+  scene::CameraFile file;
+  if (scene.realism.file) file = file_of(scene, {info.width, info.height});
+  fill_from_file(result.scene, file);
+  result.to_measure = left_to_measure(result.scene);
+  check_profile(scene.realism, info, !result.to_measure.empty());
+  if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
+    result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
+    result.scene.light.sun_elevation_deg = *file.sun_elevation_deg;
+    result.sun_is_known = true;
+  }
+  result.scene.camera_model.automatic.clear();
+  result.scene.realism = {};
+  return result;
+}
+
+scene::Scene resolved(const StatedScene& stated,
+                      const lens::ImageSize& size,
+                      const image::Mask* mask,
+                      const Options& options) {
+  scene::Scene result = stated.scene;
+  if (stated.to_measure.empty()) return result;
+  take_measured(result, stated, measured_on(result, size, mask, options), options.warn);
+  return result;
+}
+
+bool needs_calibration(const scene::Scene& scene) {
+  if (scene.composite.method == "chroma-key") return false;
+  scene::Scene filled = scene;
+  scene::CameraFile file;
+  if (scene.realism.file) file = scene::read_camera_file(*scene.realism.file);
+  // A shutter angle is an exposure, once the frame rate is known.
+  if (filled.camera_model.angle_deg) filled.camera_model.exposure_s = 0;
+  return fill_from_file(filled, file);
+}
+
+void calibrate_ahead(const scene::Scene& scene, const Options& options) {
+  if (!needs_calibration(scene)) return;
+  scene::Scene filled = scene;
+  const video::StreamInfo info = video::Reader(scene.background.video, {}, options.warn).info();
+  const lens::ImageSize size{info.width, info.height};
+  if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
+  const auto mask = read_mask(scene, size);
+  measured_on(filled, size, mask ? &*mask : nullptr, options);
+}
+
+}  // namespace airtruth::sequence

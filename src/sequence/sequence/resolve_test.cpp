@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/resolve.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "measure/calibration/cache.h"
+#include "measure/calibration/profile.h"
+#include "sequence/sequence/ambient.h"
+#include "sequence/sequence/motion_source.h"
+#include "sequence/sequence/world.h"
+#include "world/scene/camera_keys.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// A calibration that is in the cache, so that no video is read: the file holds its checksum alone.
+class Resolve : public testing::Test {
+ protected:
+  Resolve()
+      : root_(fs::temp_directory_path() / ("airtruth_resolve_" + std::to_string(::getpid()))) {
+    fs::create_directories(root_);
+    write_file(root_ / "clip.mkv", "no video");
+    scene_.background.video = root_ / "clip.mkv";
+    scene_.lens.vertical_fov_deg = 60;
+    scene_.camera_model.automatic = {"sensor.codec_step"};
+    info_.width = 640;
+    info_.height = 480;
+    options_.cache = root_;
+  }
+  ~Resolve() override { fs::remove_all(root_); }
+
+  void keep(const calibration::Calibration& calibration) const {
+    calibration::CacheKey key;
+    key.video_sha256 = sha256_of_file(scene_.background.video);
+    key.lens = words_of(lens_of(scene_.lens, {640, 480}));
+    key.altitude_m = 150;
+    key.tone = tone_of(scene_.camera_model);
+    calibration::store(root_ / "calibration", key, calibration);
+  }
+
+  scene::Scene resolve() const {
+    return resolved(stated(scene_, info_), {info_.width, info_.height}, nullptr, options_);
+  }
+  bool needs_calibration() const { return !stated(scene_, info_).to_measure.empty(); }
+
+  fs::path root_;
+  scene::Scene scene_;
+  video::StreamInfo info_;
+  Options options_;
+};
+
+// The camera has turned by 30 degrees to the right when the scene begins, where it heads 10 degrees
+// from north: the sun, 100 degrees to the right of the clip's first frame, stands at 80 degrees.
+TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
+  calibration::Calibration found;
+  found.values["sensor.codec_step"] = {{7, 1}};
+  found.values["light.sun_azimuth_deg"] = {{100, 1}};
+  found.values["light.sun_elevation_deg"] = {{40, 1}};
+  found.yaw_from_first_deg = {0, 15, 30, 45};
+  keep(found);
+  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = 10;
+  scene_.background.first_frame = 2;
+  const scene::Scene second = resolve();
+  EXPECT_NEAR(second.light.sun_azimuth_deg, 80, 1e-9);
+  EXPECT_DOUBLE_EQ(second.light.sun_elevation_deg, 40);
+  EXPECT_EQ(second.camera_model.codec_step, 7);
+  scene_.background.first_frame = 0;
+  EXPECT_NEAR(resolve().light.sun_azimuth_deg, 110, 1e-9);
+  // From 0 to 360.
+  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = -150;
+  EXPECT_NEAR(resolve().light.sun_azimuth_deg, 310, 1e-9);
+}
+
+// Whatever part of the clip a scene uses, it takes the one calibration.
+TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
+  calibration::Calibration found;
+  found.values["sensor.codec_step"] = {{1.0 / 3, 1}};
+  keep(found);
+  EXPECT_TRUE(needs_calibration());
+  for (const std::int64_t first : {0, 5, 100})
+    for (const std::int64_t count : {1, 90}) {
+      scene_.background.first_frame = first;
+      scene_.background.frame_count = count;
+      EXPECT_EQ(resolve().camera_model.codec_step, 1.0 / 3);
+    }
+  scene_.camera_model.codec_step = 2;
+  EXPECT_FALSE(needs_calibration());
+}
+
+std::string said_by(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A clip without edges: stopped without a word from the scene, the median over cameras with
+// fallback, the profile's value where one is named, nothing where none is wanted.
+TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  found.missing["optics.point_spread_px"] = "no edges";
+  keep(found);
+  scene_.camera_model.automatic = {"optics.point_spread_px"};
+  EXPECT_NE(said_by([&] { resolve(); }).find("cannot be measured: no edges; state it, name"),
+            std::string::npos);
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  scene_.realism.fallback = true;
+  EXPECT_EQ(resolve().camera_model.point_spread_px,
+            calibration::usual_camera().values.at("optics.point_spread_px").value);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("it is of the median over"), std::string::npos) << warnings[0];
+  scene_.realism.profile = "none";
+  EXPECT_FALSE(resolve().camera_model.point_spread_px);
+  scene_.realism.fallback = false;
+  scene_.realism.profile = "fixed-wing-nose";
+  EXPECT_EQ(
+      resolve().camera_model.point_spread_px,
+      calibration::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
+}
+
+TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
+  constexpr const char* kKey = "sensor.chroma_spread_px";
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  found.missing[kKey] = "no colour";
+  keep(found);
+  scene_.camera_model.automatic = {kKey};
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(resolve().camera_model.chroma_spread_px,
+            calibration::usual_camera().values.at(kKey).value);
+  scene_.realism.profile = "none";
+  EXPECT_FALSE(resolve().camera_model.chroma_spread_px);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("no colour; it is of the median over"), std::string::npos);
+  EXPECT_NE(warnings[1].find("no colour; it is left out"), std::string::npos) << warnings[1];
+}
+
+// As of clips that are not H.264; `auto` asks for all that can be had, and takes the step where it
+// is.
+TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
+  constexpr const char* kKey = "sensor.codec_step";
+  calibration::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  scene::for_each_camera_key(
+      [&](const std::string& key, const auto&) {
+        found.values[key].assign(key.starts_with("air.") ? 3 : 1, {0.1, 0.01});
+      },
+      scene_.camera_model);
+  found.notes["shutter.readout"] = "down";
+  found.values[kKey] = {{7, 1}};
+  keep(found);
+  scene_.camera_model.automatic.clear();
+  scene_.realism.automatic = true;
+  scene_.realism.profile = "none";
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(resolve().camera_model.codec_step, 7);
+  EXPECT_TRUE(warnings.empty());
+  found.values.erase(kKey);
+  found.missing[kKey] = "no quantiser";
+  keep(found);
+  EXPECT_FALSE(resolve().camera_model.codec_step);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("no quantiser; it is left out"), std::string::npos) << warnings[0];
+}
+
+TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
+  scene_.realism.where = {"s.toml", 7, 1};
+  scene_.realism.profile = "fixed-wing-nos";
+  EXPECT_NE(said_by([&] { needs_calibration(); })
+                .find("s.toml:7:1: there is no camera profile 'fixed-wing-nos'; did you mean "
+                      "'fixed-wing-nose'?"),
+            std::string::npos);
+  scene_.realism.profile = "gopro-karma";
+  EXPECT_NE(said_by([&] { needs_calibration(); }).find("the clip is 640 x 480"), std::string::npos);
+  scene_.realism.profile = "fixed-wing-nose";
+  scene_.camera_model.automatic.clear();
+  EXPECT_NE(said_by([&] { needs_calibration(); }).find("expected auto = true"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace airtruth::sequence

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/scene_check.h"
+
+#include "sequence/sequence/motion_source.h"
+#include "sequence/sequence/paint.h"
+#include "sequence/sequence/resolve.h"
+#include "sequence/sequence/world.h"
+
+namespace airtruth::sequence {
+
+void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
+  const lens::ImageSize size{info.width, info.height};
+  read_mask(scene, size);
+  const StatedScene with_camera = stated(scene, info);
+  const lens::Lens lens = lens_of(scene.lens, size);
+  motion_model(scene);
+  check_method(scene, lens);
+  check_paths(with_camera.scene, info);
+}
+
+}  // namespace airtruth::sequence

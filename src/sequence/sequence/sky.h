@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "picture/render/environment.h"
+
+// How bright sky, sun and ground are beside one another. Luminances in kcd/m2, illuminances in klx;
+// only their ratios are used. Shapes of skies are those of the CIE's models, brightnesses those of
+// the IES (1984, "Recommended practice for the calculation of daylight availability").
+namespace airtruth::sequence {
+
+// By the sun's elevation, which is taken as 1 degree where it is less.
+double sun_illuminance_klx(double elevation_deg);        // square to the sun, clear sky
+double clear_sky_illuminance_klx(double elevation_deg);  // level surface, without the sun
+double overcast_illuminance_klx(double elevation_deg);   // level surface
+
+// Luminance of the clear sky relative to its zenith (Perez et al. 1993; Preetham et al. 1999, table
+// 2, turbidity 2.5), of directions at or above the horizon.
+double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg);
+// The same of the overcast sky (Moon and Spencer 1942).
+double overcast_over_zenith(double elevation_deg);
+
+// Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface.
+struct Skies {
+  render::Environment clear;
+  render::Environment overcast;
+  render::Environment ground;  // radiance 1 from all below the horizon
+  Vector3 to_sun{0, 0, -1};    // unit, in world axes
+  // Of a luminance relative to the zenith: its irradiance over pi on a level surface.
+  double clear_level = 1;
+  double overcast_level = 1;
+
+  // The luminance that a camera sees in a direction (unit, in world axes), in the environments'
+  // unit. A direction below 3 degrees of elevation counts as 3 degrees, one within 20 degrees of
+  // the sun as 20 degrees from it: nearer the horizon and the sun the models are steep, and where
+  // both are is not known as well.
+  double clear_seen(const Vector3& direction_in_world) const;
+  double overcast_seen(const Vector3& direction_in_world) const;
+};
+Skies skies(const Vector3& to_sun_in_world);
+
+}  // namespace airtruth::sequence

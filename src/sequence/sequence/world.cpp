@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "camera/lens/calibration_file.h"
+#include "foundation/base/error.h"
+#include "truth/annotation/bearing.h"
+
+namespace airtruth::sequence {
+namespace {
+
+constexpr double kMetresPerSecondInKnots = 1.943844;
+constexpr double kMetresInFeet = 3.280840;
+constexpr double kSearchMarginPx = 1.5;
+
+// Adds the place in the scene to an error that knows none.
+template <typename Make>
+auto at_place(const Where& where, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (!error.where().file.empty()) throw;
+    throw Error(error.message(), where);
+  }
+}
+
+std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
+  if (distortion.size() < size) distortion.resize(size, 0.0);
+  return distortion;
+}
+
+lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
+  if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
+    if (lens.model == "pinhole")
+      return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    if (lens.model == "fisheye")
+      return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
+  }
+  Pixel focal{0, 0};
+  if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
+  if (lens.vertical_fov_deg) {
+    const lens::Lens plain = lens.model == "fisheye"
+                                 ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
+                                 : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    focal = {plain.focal_px(), plain.focal_px()};
+  }
+  Pixel centre{size.width / 2.0, size.height / 2.0};
+  if (lens.principal_point_px)
+    centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
+  if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
+  if (lens.model == "fisheye")
+    return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
+  return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
+}
+
+aircraft::LoadOptions load_options(const scene::Intruder& intruder,
+                                   const trajectory::Path& path,
+                                   const std::stop_token& stop = {}) {
+  aircraft::LoadOptions options;
+  options.stop = stop;
+  if (const auto state = path.at(path.start_s())) {
+    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
+    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
+  }
+  options.catalogue_scale = intruder.catalogue_scale;
+  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
+    aircraft::ModelAxes axes;
+    if (intruder.model_forward) axes.forward = *intruder.model_forward;
+    if (intruder.model_up) axes.up = *intruder.model_up;
+    if (intruder.model_scale) axes.scale = *intruder.model_scale;
+    options.axes = axes;
+  }
+  return options;
+}
+
+struct Type {
+  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const render::Model> model;
+};
+
+Type load_type(const scene::Intruder& intruder,
+               const trajectory::Path& path,
+               const Warn& warn,
+               const std::stop_token& stop) {
+  const auto loaded = aircraft_of(intruder, path, warn, stop);
+  return {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+}
+
+bool meets_frame(const Box& box, const lens::ImageSize& size) {
+  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
+}
+
+Box grown(const Box& box, double margin) {
+  return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
+}
+
+// The whole frame, for an aircraft so near that part of it has no pixel.
+Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
+
+std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::ImageSize& size) {
+  if (!exact.box) return std::nullopt;
+  const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
+  if (!meets_frame(box, size)) return std::nullopt;
+  return box;
+}
+
+Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake, double dt_s) {
+  Rigid world_from_cam =
+      camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  if (shake.rotation)
+    world_from_cam.rotation =
+        (world_from_cam.rotation * shake.rotation_at(dt_s).conjugate()).normalized();
+  return world_from_cam;
+}
+
+// Rate of turning along a path, in world axes; one-sided where the path begins or ends.
+// rotation(state, dt_s) is what turns.
+template <typename Rotation>
+Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
+  constexpr double kStep_s = 1e-3;
+  const double before_s = path.at(time_s - kStep_s) ? -kStep_s : 0;
+  const double after_s = path.at(time_s + kStep_s) ? kStep_s : 0;
+  if (!(after_s > before_s)) return Vector3::Zero();
+  const auto before = path.at(time_s + before_s);
+  const auto after = path.at(time_s + after_s);
+  return vector_from_rotation(rotation(*after, after_s) * rotation(*before, before_s).conjugate()) /
+         (after_s - before_s);
+}
+
+annotation::State state_of(const Moment& moment,
+                           std::size_t i,
+                           const Vector3& p_in_cam,
+                           const image::Layer& layer,
+                           const composite::Visible* visible) {
+  using annotation::State;
+  if (visible != nullptr && visible->box) return State::kVisible;
+  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
+                     layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) return State::kHidden;
+  if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
+  return State::kOutside;
+}
+
+void add_bearings(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state,
+                  const Vector3& offset_in_world) {
+  const annotation::Bearing nominal = annotation::bearing_of(
+      cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
+  truth.nominal_azimuth_deg = nominal.azimuth_deg;
+  truth.nominal_elevation_deg = nominal.elevation_deg;
+  const auto seen =
+      annotation::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
+  if (!seen) return;
+  truth.azimuth_deg = seen->azimuth_deg;
+  truth.elevation_deg = seen->elevation_deg;
+}
+
+void add_geometry(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state) {
+  const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
+  const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
+  const double range_m = offset.norm();
+  truth.position_ned_m = state.position_in_world;
+  truth.velocity_ned_mps = state.velocity_in_world_mps;
+  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
+  truth.position_in_cam_m = p_in_cam;
+  truth.range_m = range_m;
+  if (range_m > 0) {
+    const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
+    truth.range_rate_mps = offset.dot(relative) / range_m;
+    add_bearings(truth, moment, state, offset);
+  }
+}
+
+void add_pixels(annotation::Intruder& truth,
+                std::size_t i,
+                const image::Layer& layer,
+                const composite::Visible& visible) {
+  truth.visible_box_px = visible.box;
+  if (visible.box) truth.covered_box_px = visible.covered;
+  truth.visible_area_px = visible.pixels;
+  truth.alpha_sum_px = visible.alpha_sum_px;
+  truth.centroid_px = visible.centroid;
+  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
+  const double alone = layer.area_alone_px[i];
+  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
+  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
+  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
+  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
+  constexpr double kRounding = 1e-6;  // sums of float coverages
+  for (double* share :
+       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+    if (*share < kRounding) *share = 0;
+}
+
+}  // namespace
+
+// Intruders share a mesh when they load the same: gear and axes included.
+static std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  const aircraft::LoadOptions options = load_options(intruder, path);
+  std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' +
+                    std::to_string(options.altitude_agl_ft);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
+}
+
+Shutter shutter_of(const scene::CameraModel& model) {
+  Shutter shutter;
+  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
+  shutter.exposure_s = model.exposure_s.value_or(0);
+  shutter.readout_s = model.readout_s.value_or(0);
+  const std::string readout = model.readout.value_or("down");
+  shutter.readout = readout == "up"      ? Readout::kUp
+                    : readout == "right" ? Readout::kRight
+                    : readout == "left"  ? Readout::kLeft
+                                         : Readout::kDown;
+  return shutter;
+}
+
+trajectory::Path path_of(const scene::Intruder& intruder) {
+  const trajectory::AttitudeOverride attitude{
+      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  return at_place(intruder.where, [&] {
+    const trajectory::Path path =
+        intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
+        : intruder.speed_mps
+            ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
+            : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
+    return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
+  });
+}
+
+std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                      const trajectory::Path& path,
+                                                      const Warn& warn,
+                                                      const std::stop_token& stop) {
+  return std::make_shared<const aircraft::Aircraft>(
+      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
+}
+
+trajectory::Path camera_path(const scene::Camera& camera) {
+  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  return trajectory::uniform(
+      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+}
+
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
+  return at_place(lens.where, [&] {
+    return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
+  });
+}
+
+World load_world(const scene::Scene& scene,
+                 lens::ImageSize size,
+                 const Warn& warn,
+                 const std::stop_token& stop) {
+  World world{lens_of(scene.lens, size),
+              at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
+              {},
+              shutter_of(scene.camera_model)};
+  std::map<std::string, Type> types;  // one BVH for all intruders of one type
+  for (const scene::Intruder& intruder : scene.intruders) {
+    const trajectory::Path path = path_of(intruder);
+    Type& type = types[type_key(intruder, path)];
+    if (!type.aircraft)
+      type = at_place(intruder.where, [&] { return load_type(intruder, path, warn, stop); });
+    annotation::Silhouette silhouette{&type.aircraft->mesh,
+                                      aircraft::silhouette_points(type.aircraft->mesh)};
+    world.actors.push_back(
+        {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
+  }
+  return world;
+}
+
+void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info) {
+  const auto refuse = [&](const char* what, double path_s, double clip_s) {
+    throw Error(
+        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+                    "{:.3f} s; expected a path as long as the clip, or a frame_count",
+                    what,
+                    path_s,
+                    clip_s));
+  };
+  const double rate_hz = info.frame_rate.value();
+  const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
+  const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
+  // A container's length is that of its longest stream: sound may outlast the picture.
+  constexpr double kLengthError_s = 1;
+  if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
+  if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);
+}
+
+void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
+  check_camera_path(at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), info);
+  for (const scene::Intruder& intruder : scene.intruders) {
+    at_place(intruder.where, [&] {
+      return std::filesystem::exists(intruder.aircraft)
+                 ? std::filesystem::path(intruder.aircraft)
+                 : aircraft::find_aircraft(intruder.aircraft).file;
+    });
+    path_of(intruder);
+  }
+}
+
+std::optional<PixelBox> search_bounds(const Moment& moment) {
+  std::optional<PixelBox> all;
+  for (const auto& box : moment.search)
+    if (box) all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
+  return all;
+}
+
+Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
+  const auto camera = world.camera.at(time_s);
+  if (!camera)
+    throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
+                " s, but the clip goes on at " + std::to_string(time_s) +
+                " s; expected a path as long as the clip");
+  Moment moment;
+  moment.frame = frame;
+  moment.time_s = time_s;
+  moment.camera = *camera;
+  const Rigid world_from_cam = world_from_shaken_cam(*camera, shake, 0);
+  moment.sight = {&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
+  if (!world.shutter.is_instant()) {
+    moment.sight.shutter = world.shutter;
+    moment.sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
+    moment.sight.camera = {
+        camera->velocity_in_world_mps,
+        turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
+          return world_from_shaken_cam(state, shake, dt_s).rotation;
+        })};
+  }
+  for (const Actor& actor : world.actors) {
+    const auto state = actor.path.at(time_s);
+    moment.states.push_back(state);
+    Twist twist;
+    if (state && !world.shutter.is_instant())
+      twist = {state->velocity_in_world_mps,
+               turning(actor.path, time_s, [](const trajectory::State& then, double) {
+                 return then.world_from_body;
+               })};
+    moment.twists.push_back(twist);
+    moment.boxes.push_back(
+        state ? annotation::exact_box(
+                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
+              : annotation::ExactBox{});
+    moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
+  }
+  return moment;
+}
+
+std::vector<annotation::Intruder> truth_of(const World& world,
+                                           const Moment& moment,
+                                           const image::Layer& layer,
+                                           const std::vector<composite::Visible>& visible) {
+  std::vector<annotation::Intruder> result;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    annotation::Intruder truth;
+    truth.id = world.actors[i].id;
+    truth.aircraft = world.actors[i].aircraft;
+    if (moment.states[i]) {
+      add_geometry(truth, moment, *moment.states[i]);
+      const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
+      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
+      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
+      if (seen != nullptr) add_pixels(truth, i, layer, *seen);
+    }
+    result.push_back(std::move(truth));
+  }
+  return result;
+}
+
+std::optional<NearestApproach> nearest_approach(const World& world,
+                                                std::size_t actor,
+                                                double end_s) {
+  std::optional<NearestApproach> best;
+  const lens::ImageSize size = world.lens.size();
+  for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
+    const auto state = world.actors[actor].path.at(time_s);
+    const auto camera = world.camera.at(time_s);
+    if (!state || !camera) continue;
+    const Rigid world_from_cam =
+        camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+    const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
+    // The nearest pixel of the image to the direction, through a coarse walk along the image's
+    // border.
+    double off = kPi;
+    for (int i = 0; i <= 64; ++i) {
+      const double s = i / 64.0;
+      for (const Pixel& edge : {Pixel(s * size.width, 0),
+                                Pixel(s * size.width, size.height),
+                                Pixel(0, s * size.height),
+                                Pixel(size.width, s * size.height)}) {
+        const auto ray = world.lens.ray_from_pixel(edge);
+        if (ray && p_in_cam.norm() > 0)
+          off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
+      }
+    }
+    if (!best || degrees(off) < best->off_view_deg)
+      best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
+  }
+  return best;
+}
+
+}  // namespace airtruth::sequence

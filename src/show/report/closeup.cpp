@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "show/report/draw.h"
+#include "show/report/pictures.h"
+
+namespace airtruth::report {
+namespace {
+
+image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
+  image::Rgb8 result = image::make_rgb8(area.width, area.height);
+  const auto common = layer.empty() ? std::nullopt : intersection(layer.patch, area);
+  if (!common) return result;
+  for (int y = common->y; y < common->bottom(); ++y) {
+    for (int x = common->x; x < common->right(); ++x) {
+      const float alpha = std::clamp(layer.pixels[layer.index(x, y)].alpha, 0.0f, 1.0f);
+      std::fill_n(result.at(x - area.x, y - area.y),
+                  3,
+                  static_cast<std::uint8_t>(std::lround(alpha * 255)));
+    }
+  }
+  return result;
+}
+
+// How much each pixel changed, brightened fourfold.
+image::Rgb8 difference_picture(const image::Rgb8& a, const image::Rgb8& b) {
+  image::Rgb8 result = image::make_rgb8(a.width, a.height);
+  const std::size_t count =
+      static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height) * 3;
+  for (std::size_t i = 0; i < count; ++i)
+    result.samples[i] = static_cast<std::uint8_t>(
+        std::min(255, 4 * std::abs(int(a.samples[i]) - int(b.samples[i]))));
+  return result;
+}
+
+void paste(cv::Mat& canvas, const image::Rgb8& small, int zoom, int x, int y) {
+  image::Rgb8 large = resized(small, small.width * zoom, small.height * zoom, cv::INTER_NEAREST);
+  view(large).copyTo(canvas(cv::Rect(x, y, large.width, large.height)));
+}
+
+void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& area, int zoom) {
+  for (const annotation::Intruder& intruder : truth.intruders) {
+    if (intruder.exact_box_px) {
+      const Box& e = *intruder.exact_box_px;
+      outline(panel, {e.x - area.x, e.y - area.y, e.width, e.height}, zoom, kAmber);
+    }
+    const auto draw = [&](const std::optional<PixelBox>& box, const cv::Scalar& colour) {
+      if (!box) return;
+      const Box moved{double(box->x - area.x),
+                      double(box->y - area.y),
+                      double(box->width),
+                      double(box->height)};
+      outline(panel, moved, zoom, colour);
+    };
+    draw(intruder.visible_box_px, kWhite);
+    draw(intruder.covered_box_px, kGreen);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+constexpr int kPanelGapPx = 12;
+constexpr int kHeadingPx = 52;     // two lines of text
+constexpr int kLeastSlotPx = 110;  // that the longest caption of a panel needs
+constexpr double kCloseupTextPx = 12;
+
+// What the colours of the boxes stand for, each word in its colour, as far as the width goes.
+void draw_heading(cv::Mat& canvas, std::int64_t frame, int zoom) {
+  int x = kPanelGapPx;
+  const auto add = [&](const std::string& words, const cv::Scalar& colour) {
+    if (x + text_size(words, kCloseupTextPx).width > canvas.cols) return;
+    text(canvas, words, x, 20, kCloseupTextPx, colour);
+    x += text_width(words, kCloseupTextPx) + 2 * kPanelGapPx;
+  };
+  add(fmt::format("frame {}, {}x", frame, zoom), kWhite);
+  add("covered box", kGreen);
+  add("exact box", kAmber);
+  add("visible box", kWhite);
+}
+
+}  // namespace
+
+image::Rgb8 closeup(const Closeup& what,
+                    const annotation::Frame& truth,
+                    const PixelBox& area,
+                    int zoom) {
+  check(what.background != nullptr && what.result != nullptr && zoom > 0,
+        "a closeup has its pictures");
+  const image::Rgb8 before =
+      image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
+  const image::Rgb8 after =
+      image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
+  const image::Rgb8 middle =
+      what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
+  const int panel = area.width * zoom;
+  const int slot = std::max(panel, kLeastSlotPx);
+  cv::Mat canvas(kHeadingPx + area.height * zoom + kPanelGapPx,
+                 4 * kPanelGapPx + 3 * slot,
+                 CV_8UC3,
+                 kDarkPaper);
+  draw_heading(canvas, truth.frame, zoom);
+  const std::array<std::string, 3> names = {
+      "background", what.layer != nullptr ? "alpha" : "difference x4", "result"};
+  const std::array<const image::Rgb8*, 3> pictures = {&before, &middle, &after};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int x = kPanelGapPx + static_cast<int>(i) * (slot + kPanelGapPx);
+    text(
+        canvas, fitted(names[i], kCloseupTextPx, slot), x, kHeadingPx - 10, kCloseupTextPx, kWhite);
+    paste(canvas, *pictures[i], zoom, x, kHeadingPx);
+    cv::Mat part = canvas(cv::Rect(x, kHeadingPx, panel, area.height * zoom));
+    if (i == 2) draw_boxes(part, truth, area, zoom);
+  }
+  return from_mat(canvas);
+}
+
+}  // namespace airtruth::report

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/image/colour.h"
+#include "show/report/draw.h"
+#include "show/report/pictures.h"
+
+namespace airtruth::report {
+namespace {
+
+constexpr int kTileWidthPx = 640;
+constexpr int kColumns = 3;
+constexpr int kCaptionPx = 22;  // of the line of text below a tile's picture
+constexpr int kInsetGapPx = 6;
+constexpr double kTileTextPx = 12;
+
+// The square around an intruder that fills a close-up, in frame pixels.
+PixelBox around(const PixelBox& box) {
+  const int side = std::max({24, box.width * 3 / 2, box.height * 3 / 2});
+  return {box.x + box.width / 2 - side / 2, box.y + box.height / 2 - side / 2, side, side};
+}
+
+PixelBox on_tile(const PixelBox& box, double scale) {
+  return pixels_of({box.x * scale, box.y * scale, box.width * scale, box.height * scale});
+}
+
+// The square of `side` along the tile's upper or lower edge that covers no other inset, the least
+// of the boxes and, of those, lies farthest from `box`; nullopt where the insets leave none free.
+std::optional<PixelBox> inset_place(const cv::Mat& tile,
+                                    int side,
+                                    const PixelBox& box,
+                                    const std::vector<PixelBox>& boxes,
+                                    const std::vector<PixelBox>& insets) {
+  std::optional<PixelBox> best;
+  std::pair<std::int64_t, double> least;
+  const int step = side + kInsetGapPx;
+  for (int column = 0; column * step + kInsetGapPx + side <= tile.cols; ++column) {
+    for (const bool at_right : {false, true}) {
+      for (const bool at_bottom : {false, true}) {
+        const int x = kInsetGapPx + column * step;
+        const PixelBox place{at_right ? tile.cols - x - side : x,
+                             at_bottom ? tile.rows - side - kInsetGapPx : kInsetGapPx,
+                             side,
+                             side};
+        const auto meets = [&](const PixelBox& other) {
+          return intersection(place, other).has_value();
+        };
+        if (place.y < 0 || std::any_of(insets.begin(), insets.end(), meets)) continue;
+        std::int64_t covered = 0;
+        for (const PixelBox& one : boxes)
+          if (const auto common = intersection(place, one))
+            covered += std::int64_t{common->width} * common->height;
+        const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,
+                                       place.y + side / 2.0 - box.y - box.height / 2.0);
+        const std::pair<std::int64_t, double> cost{covered, -away};
+        if (boxes.size() > 2 && covered > 0) continue;  // an inset is less than what it would hide
+        if (best && !(cost < least)) continue;
+        best = place;
+        least = cost;
+      }
+    }
+  }
+  return best;
+}
+
+void draw_inset(cv::Mat& tile,
+                const image::Picture& picture,
+                const annotation::Intruder& intruder,
+                const PixelBox& place,
+                const cv::Scalar& colour) {
+  const PixelBox area = around(*annotation::box_to_show(intruder));
+  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
+  image::Rgb8 large = resized(
+      crop, place.width, place.height, place.width > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
+  view(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
+  cv::rectangle(
+      tile, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), colour, 1);
+  constexpr int kInsetMarginPx = 4;
+  const std::string range =
+      intruder.range_m ? fmt::format(" {:.0f} m", *intruder.range_m) : std::string();
+  const int room = place.width - 2 * kInsetMarginPx - text_width(range, kTileTextPx);
+  const std::string shown = fitted(intruder.id, kTileTextPx, room) + range;
+  const TextSize size = text_size(shown, kTileTextPx);
+  text_in(tile,
+          shown,
+          {place.x + kInsetMarginPx, place.y + kInsetMarginPx, size.width, size.height},
+          kTileTextPx,
+          colour);
+}
+
+// The picture with a line of text below it.
+image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
+  const double scale = static_cast<double>(kTileWidthPx) / picture.width;
+  const int height = std::max(1, static_cast<int>(picture.height * scale));
+  cv::Mat tile(height + kCaptionPx, kTileWidthPx, CV_8UC3, kDarkPaper);
+  image::Rgb8 small = resized(image::rgb8_from_picture(picture),
+                              kTileWidthPx,
+                              height,
+                              scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
+  view(small).copyTo(canvas);
+  std::vector<PixelBox> boxes;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const PixelBox v = *annotation::box_to_show(truth.intruders[i]);
+    outline(
+        canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
+    boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
+  }
+  const int side = boxes.size() > 2 ? height / 4 : height * 2 / 5;
+  std::vector<PixelBox> insets;
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const auto place = inset_place(canvas, side, boxes[seen++], boxes, insets);
+    if (!place) continue;
+    insets.push_back(*place);
+    draw_inset(canvas, picture, truth.intruders[i], *place, intruder_colour(i));
+  }
+  text(tile,
+       fmt::format("frame {}   {:.2f} s{}",
+                   truth.frame,
+                   truth.time_s,
+                   boxes.empty() ? "   no intruder is seen" : ""),
+       2,
+       height + kCaptionPx - 7,
+       kTileTextPx,
+       boxes.empty() ? kGrey : kWhite);
+  return from_mat(tile);
+}
+
+// How `count` tiles fill a rectangle: at most kColumns side by side, and as many tiles, at most
+// `count`, as leave no place empty.
+struct Layout {
+  int columns = 1;
+  int tiles = 0;
+};
+Layout layout_of(int count) {
+  if (count == 4) return {2, 4};
+  if (count < kColumns) return {std::max(1, count), count};
+  return {kColumns, count - count % kColumns};
+}
+
+}  // namespace
+
+ContactSheet::ContactSheet(std::string title, std::int64_t frame_count_estimate, std::size_t tiles)
+    : title_(std::move(title)), tiles_(tiles) {
+  const auto wanted = static_cast<std::int64_t>(tiles);
+  every_ = std::max<std::int64_t>(1, (frame_count_estimate + wanted - 1) / wanted);
+}
+
+void ContactSheet::add(const image::Picture& picture, const annotation::Frame& truth) {
+  if (truth.frame % every_ != 0) return;
+  if (chosen_.size() == tiles_) {  // more frames than were expected: keep every other one
+    every_ *= 2;
+    std::erase_if(chosen_, [this](const Tile& tile) { return tile.frame % every_ != 0; });
+    if (truth.frame % every_ != 0) return;
+  }
+  chosen_.push_back({truth.frame, tile_of(picture, truth)});
+}
+
+image::Rgb8 ContactSheet::sheet() const {
+  constexpr int kGapPx = 10;
+  constexpr int kHeaderPx = 56;
+  const Layout layout = layout_of(static_cast<int>(chosen_.size()));
+  const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
+  const int rows = std::max(1, layout.tiles / layout.columns);
+  cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx),
+                 kGapPx + layout.columns * (kTileWidthPx + kGapPx),
+                 CV_8UC3,
+                 kDarkPaper);
+  text(canvas, fitted(title_, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
+  for (int i = 0; i < layout.tiles; ++i) {
+    // Spread over all that were chosen, the first and the last among them.
+    const std::size_t from = layout.tiles == 1
+                                 ? 0
+                                 : static_cast<std::size_t>(i) * (chosen_.size() - 1) /
+                                       static_cast<std::size_t>(layout.tiles - 1);
+    const image::Rgb8& tile = chosen_[from].picture;
+    const cv::Mat source(tile.height, tile.width, CV_8UC3, tile.samples.get());
+    source.copyTo(canvas(cv::Rect(kGapPx + i % layout.columns * (kTileWidthPx + kGapPx),
+                                  kHeaderPx + i / layout.columns * (tile_height + kGapPx),
+                                  tile.width,
+                                  tile.height)));
+  }
+  if (chosen_.empty()) text(canvas, "no frames", kGapPx, kHeaderPx + 40, 16, kGrey);
+  return from_mat(canvas);
+}
+
+}  // namespace airtruth::report

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/report/thumbnails.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/median.h"
+#include "foundation/geometry/whole_pixels.h"
+#include "foundation/image/colour.h"
+#include "show/report/draw.h"
+
+namespace airtruth::report {
+namespace {
+
+constexpr double kSurroundings = 2.2;  // of the box's longer side
+constexpr int kSmallestPx = 24;
+
+}  // namespace
+
+image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
+  const double scale = std::min(1.0, static_cast<double>(width) / picture.width);
+  const auto scaled = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(length * scale)));
+  };
+  return resized(picture, scaled(picture.width), scaled(picture.height), cv::INTER_AREA);
+}
+
+image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side) {
+  const int largest = 2 * std::max({picture.width, picture.height, kSmallestPx});
+  const int size = std::clamp(
+      whole_pixels(kSurroundings * std::max(box.width, box.height)), kSmallestPx, largest);
+  return square(
+      picture, box.x + box.width / 2 - size / 2.0, box.y + box.height / 2 - size / 2.0, size, side);
+}
+
+image::Rgb8 square(const image::Picture& picture, double left, double top, double px, int side) {
+  const int size = whole_pixels(px);
+  const int x = whole_pixels(left);
+  const int y = whole_pixels(top);
+  image::Rgb8 square = image::make_rgb8(size, size);
+  const auto inside = intersection({x, y, size, size}, {0, 0, picture.width, picture.height});
+  if (inside) {
+    const image::Rgb8 part =
+        image::rgb8_from_picture(picture, inside->x, inside->y, inside->width, inside->height);
+    for (int row = 0; row < inside->height; ++row)
+      std::memcpy(square.at(inside->x - x, inside->y - y + row),
+                  part.at(0, row),
+                  3 * static_cast<std::size_t>(inside->width));
+  }
+  return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
+}
+
+image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
+  check(!pictures.empty(), "a strip has pictures");
+  const int width = pictures.front().width;
+  image::Rgb8 result =
+      image::make_rgb8(width * static_cast<int>(pictures.size()), pictures.front().height);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (int y = 0; y < result.height; ++y)
+      std::memcpy(result.at(static_cast<int>(i) * width, y),
+                  pictures[i].at(0, y),
+                  3 * static_cast<std::size_t>(width));
+  return result;
+}
+
+double contrast(const image::Picture& picture, const PixelBox& box) {
+  const int ring = std::max(4, std::min(box.width, box.height));
+  const auto around =
+      intersection({box.x - ring, box.y - ring, box.width + 2 * ring, box.height + 2 * ring},
+                   {0, 0, picture.width, picture.height});
+  if (!around) return 0;
+  std::vector<std::uint8_t> outside;
+  for (int y = around->y; y < around->bottom(); ++y)
+    for (int x = around->x; x < around->right(); ++x)
+      if (!box.contains(x, y)) outside.push_back(picture.luma().row(y)[x]);
+  const auto inside = intersection(box, *around);
+  if (outside.empty() || !inside) return 0;
+  const double background = median(std::move(outside));
+  double sum = 0;
+  for (int y = inside->y; y < inside->bottom(); ++y)
+    for (int x = inside->x; x < inside->right(); ++x) {
+      const double off = picture.luma().row(y)[x] - background;
+      sum += off * off;
+    }
+  return std::sqrt(sum / (double(inside->width) * inside->height));
+}
+
+}  // namespace airtruth::report

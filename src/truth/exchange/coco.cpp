@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/unfinished.h"
+#include "truth/exchange/json_file.h"
+#include "truth/exchange/parts.h"
+#include "truth/exchange/text.h"
+
+// COCO (Lin et al. 2014; cocodataset.org, "Data format"): one JSON file with images, annotations
+// and categories; ids from 1, boxes [x, y, width, height] from the top-left corner at (0, 0).
+// pycocotools (PythonAPI/pycocotools/coco.py) reads id, bbox, area, iscrowd and segmentation of
+// every annotation; without masks the segmentation is the box as a polygon, which is what loadRes()
+// itself makes of a box. An annotation with iscrowd = 1 is a region in which detections do not
+// count, no object.
+// Videos and tracks as the video data sets that grew from it have them: videos, video_id, frame_id,
+// track_id.
+namespace airtruth::exchange {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The lists of one part, as they grow; a JSON file is made of them in the end.
+struct Lists {
+  std::ofstream images;
+  std::ofstream annotations;
+  Json videos = Json::array();
+  std::int64_t next_image = 1;
+  std::int64_t next_annotation = 1;
+  std::int64_t masks = 0;  // annotations that hold their object's pixels
+};
+
+// Run lengths of the object's pixels; without a mask the box as a polygon.
+Json segmentation_of(const Label& label) {
+  if (label.mask)
+    return {{"size", {label.mask->height, label.mask->width}}, {"counts", label.mask->counts}};
+  const Box& b = label.box_px;
+  return Json::array({{b.x, b.y, b.x, b.bottom(), b.right(), b.bottom(), b.right(), b.y}});
+}
+
+class CocoWriter : public IndexedWriter {
+ public:
+  CocoWriter(fs::path root, const WriteOptions& options)
+      : root_(std::move(root)), options_(options) {
+    fs::create_directories(folder());
+    for (const std::string& part : options.parts) {
+      Lists& lists = lists_[part];
+      for (const char* what : {"images", "annotations"})
+        lists_on_disk_.push_back(Unfinished::path(list(part, what)));
+      lists.images.open(list(part, "images"), std::ios::binary);
+      lists.annotations.open(list(part, "annotations"), std::ios::binary);
+    }
+  }
+
+  // Of a run that failed too, nothing half-written stays.
+  ~CocoWriter() override {
+    std::error_code ignored;
+    for (const auto& [part, lists] : lists_) {
+      fs::remove(list(part, "images"), ignored);
+      fs::remove(list(part, "annotations"), ignored);
+      fs::remove(part_path(whole(part)), ignored);
+    }
+  }
+  CocoWriter(const CocoWriter&) = delete;
+  CocoWriter& operator=(const CocoWriter&) = delete;
+
+  void add(const Clip& clip, const std::string& part) override {
+    Lists& lists = lists_.at(part);
+    const auto video = static_cast<std::int64_t>(lists.videos.size()) + 1;
+    Json about = {{"id", video}, {"name", clip.name}};
+    if (clip.width > 0) about["width"] = clip.width;
+    if (clip.height > 0) about["height"] = clip.height;
+    if (clip.frame_rate_hz) about["frame_rate_hz"] = *clip.frame_rate_hz;
+    about["length"] = clip.frames.size();
+    lists.videos.push_back(about);
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, video, lists);
+    if (!lists.images || !lists.annotations)
+      throw Error("cannot be written: is the disk full?", {folder().string()});
+  }
+
+  void finish() override {
+    for (auto& [part, lists] : lists_) {
+      lists.images.close();
+      lists.annotations.close();
+      if (!lists.images || !lists.annotations)
+        throw Error("cannot be written: is the disk full?", {folder().string()});
+      write(part, lists);
+    }
+  }
+
+ private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path("images") / part / file_name(clip, i);
+  }
+
+  fs::path folder() const { return root_ / "annotations"; }
+  fs::path whole(const std::string& part) const {
+    return folder() / ("instances_" + part + ".json");
+  }
+  fs::path list(const std::string& part, const std::string& what) const {
+    return folder() / ("." + part + "." + what + ".part");
+  }
+  std::string file_name(const Clip& clip, std::size_t i) const {
+    return clip.name + "/" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
+  }
+  std::int64_t category_id(const std::string& category) const {
+    const auto& all = options_.categories;
+    return std::find(all.begin(), all.end(), category) - all.begin() + 1;
+  }
+
+  void add_frame(const Clip& clip, std::size_t i, std::int64_t video, Lists& lists) {
+    const LabelledFrame& frame = clip.frames[i];
+    const std::int64_t id = lists.next_image++;
+    Json image = {{"id", id},
+                  {"file_name", file_name(clip, i)},
+                  {"width", clip.width},
+                  {"height", clip.height},
+                  {"video_id", video},
+                  {"frame_id", i}};
+    if (frame.time_s) image["time_s"] = *frame.time_s;
+    lists.images << (id > 1 ? ",\n" : "") << image.dump();
+    for (const Label& label : frame.labels) {
+      const Box& b = label.box_px;
+      const std::int64_t number = lists.next_annotation++;
+      lists.masks += label.mask ? 1 : 0;
+      Json json = {{"id", number},
+                   {"image_id", id},
+                   {"video_id", video},
+                   {"category_id", category_id(label.category)},
+                   {"track_id", label.track},
+                   {"bbox", {b.x, b.y, b.width, b.height}},
+                   {"area", label.mask ? double(label.mask->area_px) : b.area()},
+                   {"segmentation", segmentation_of(label)},
+                   {"iscrowd", 0}};
+      if (label.visible) json["visibility"] = *label.visible;
+      if (label.occluded) json["occluded"] = *label.occluded;
+      if (label.truncated) json["truncated"] = *label.truncated;
+      if (label.range_m) json["range_m"] = *label.range_m;
+      if (label.above_horizon) json["above_horizon"] = *label.above_horizon;
+      lists.annotations << (number > 1 ? ",\n" : "") << json.dump();
+    }
+  }
+
+  void write(const std::string& part, const Lists& lists) const {
+    Json categories = Json::array();
+    for (const std::string& category : options_.categories)
+      categories.push_back(
+          {{"id", category_id(category)}, {"name", category}, {"supercategory", "aircraft"}});
+    const fs::path file = whole(part);
+    Unfinished unfinished = Unfinished::path(part_path(file));
+    {
+      std::ofstream out(part_path(file), std::ios::binary);
+      out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
+          << segmentations(lists)
+          << "\"},"
+             "\n\"licenses\":[],\n\"categories\":"
+          << categories.dump() << ",\n\"videos\":" << lists.videos.dump() << ",\n\"images\":[";
+      append(out, list(part, "images"));
+      out << "],\n\"annotations\":[";
+      append(out, list(part, "annotations"));
+      out << "]}\n";
+      if (!out.flush()) throw Error("cannot be written: is the disk full?", {file.string()});
+    }
+    unfinished.finish([&] { fs::rename(part_path(file), file); });
+    // Now: an export is complete before its writer ends, and a killed one is not cleared again.
+    fs::remove(list(part, "images"));
+    fs::remove(list(part, "annotations"));
+  }
+
+  static const char* segmentations(const Lists& lists) {
+    return lists.masks == 0 ? "the boxes as polygons"
+           : lists.masks + 1 == lists.next_annotation
+               ? "run lengths of the objects' pixels"
+               : "run lengths of the objects' pixels where they "
+                 "are known, else the boxes as polygons";
+  }
+
+  static void append(std::ofstream& out, const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
+  }
+
+  fs::path root_;
+  WriteOptions options_;
+  std::map<std::string, Lists> lists_;
+  std::vector<Unfinished> lists_on_disk_;
+};
+
+// One annotation file.
+class CocoReader {
+ public:
+  CocoReader(const fs::path& file, const Warn& warn)
+      : file_(file), json_(file), left_out_(warn), warn_(warn) {}
+
+  Clips read() {
+    categories();
+    images();
+    annotations();
+    Clips clips;
+    for (auto& [key, video] : videos_) clips.push_back(clip_of(video));
+    return clips;
+  }
+
+ private:
+  struct Picture {
+    std::string file_name;
+    std::int64_t frame = 0;
+    LabelledFrame labels;
+    int width = 0, height = 0;
+  };
+  struct Video {
+    std::string name;
+    std::optional<double> frame_rate_hz;
+    std::vector<std::int64_t> images;
+  };
+
+  void categories() {
+    for (const JsonObject& category : json_.objects("categories"))
+      categories_[category.whole("id")] = category.text("name");
+    if (!json_.has("videos")) return;
+    for (const JsonObject& video : json_.objects("videos")) {
+      Video& about = videos_["#" + padded(video.whole("id"), 12)];
+      about.name = video.has("name") ? video.text("name") : video.text("file_name");
+      about.frame_rate_hz = video.maybe_number("frame_rate_hz");
+    }
+  }
+
+  void images() {
+    for (const JsonObject& image : json_.objects("images")) {
+      const std::int64_t id = image.whole("id");
+      Picture picture;
+      picture.file_name = image.text("file_name");
+      picture.width = side_of(image.number("width"));
+      picture.height = side_of(image.number("height"));
+      picture.labels.time_s = image.maybe_number("time_s");
+      Video& video = video_of(image, picture.file_name);
+      // By its place in the video, its number, or its place in the list.
+      picture.frame = image.has("frame_id")
+                          ? image.whole("frame_id")
+                          : name_and_number(fs::path(picture.file_name).stem().string())
+                                .second.value_or(std::ssize(video.images));
+      if (!pictures_.emplace(id, picture).second)
+        image.fail("id is " + std::to_string(id) + ", as an earlier image's");
+      video.images.push_back(id);
+    }
+  }
+
+  // Pictures without a video are a clip for each of their folders.
+  Video& video_of(const JsonObject& image, const std::string& file_name) {
+    if (image.has("video_id")) {
+      const auto found = videos_.find("#" + padded(image.whole("video_id"), 12));
+      if (found == videos_.end()) image.fail("video_id names no video");
+      return found->second;
+    }
+    const std::string folder = fs::path(file_name).parent_path().string();
+    Video& video = videos_[folder];
+    std::string name = folder.empty() ? file_.stem().string() : folder;
+    std::replace(name.begin(), name.end(), '/', '-');
+    video.name = name;
+    return video;
+  }
+
+  void annotations() {
+    std::map<std::int64_t, std::int64_t> labels_without_track;
+    for (const JsonObject& annotation : json_.objects("annotations")) {
+      const auto image = pictures_.find(annotation.whole("image_id"));
+      if (image == pictures_.end()) {
+        left_out_.add("annotations of images that are not listed", annotation.place());
+        continue;
+      }
+      if (annotation.maybe_truth("iscrowd").value_or(false)) {
+        left_out_.add("crowds (iscrowd = 1), which are regions and no objects", annotation.place());
+        continue;
+      }
+      Label label;
+      const auto category = categories_.find(annotation.whole("category_id"));
+      if (category == categories_.end()) annotation.fail("category_id names no category");
+      label.category = category->second;
+      const auto box = box_of(annotation);
+      if (!box) {
+        left_out_.add("annotations with neither bbox nor polygons", annotation.place());
+        continue;
+      }
+      label.box_px = *box;
+      Picture& picture = image->second;
+      if (!is_in_picture(*box, picture.width, picture.height)) {
+        left_out_.add("boxes that are empty or outside their image", annotation.place());
+        continue;
+      }
+      label.track = annotation.has("track_id")      ? annotation.whole("track_id")
+                    : annotation.has("instance_id") ? annotation.whole("instance_id")
+                                                    : ++labels_without_track[image->first];
+      label.visible = annotation.maybe_number("visibility");
+      label.occluded = annotation.maybe_truth("occluded");
+      label.truncated = annotation.maybe_truth("truncated");
+      label.range_m = annotation.maybe_number("range_m");
+      label.above_horizon = annotation.maybe_truth("above_horizon");
+      picture.labels.labels.push_back(label);
+    }
+    if (!labels_without_track.empty())
+      warn(warn_,
+           file_.string() +
+               ": holds annotations without a track; the k-th of each image counts as "
+               "track k");
+  }
+
+  // bbox, or the bounds of the polygons.
+  static std::optional<Box> box_of(const JsonObject& annotation) {
+    if (annotation.has("bbox")) {
+      const auto b = annotation.numbers("bbox");
+      if (b.size() != 4) annotation.fail("bbox has not 4 numbers");
+      return Box{b[0], b[1], b[2], b[3]};
+    }
+    BoxBounds bounds;
+    for (const std::vector<double>& polygon : annotation.lists_of_numbers("segmentation"))
+      for (std::size_t i = 0; i + 1 < polygon.size(); i += 2)
+        bounds.add({polygon[i], polygon[i + 1]});
+    return bounds.box();
+  }
+
+  Clip clip_of(Video& video) {
+    std::stable_sort(video.images.begin(), video.images.end(), [&](std::int64_t a, std::int64_t b) {
+      return pictures_.at(a).frame < pictures_.at(b).frame;
+    });
+    Clip clip;
+    clip.name = fs::path(video.name).filename().string();
+    clip.frame_rate_hz = video.frame_rate_hz;
+    bool same_size = true;
+    for (const std::int64_t id : video.images) {
+      Picture& picture = pictures_.at(id);
+      same_size = same_size && (clip.frames.empty() ||
+                                (picture.width == clip.width && picture.height == clip.height));
+      clip.width = picture.width;
+      clip.height = picture.height;
+      picture.labels.frame = picture.frame;
+      clip.frames.push_back(picture.labels);
+    }
+    if (!same_size) {
+      warn(warn_,
+           file_.string() + ": the pictures of " + clip.name +
+               " differ in size, as those of no video do; they are imported without size and "
+               "pictures");
+      clip.width = clip.height = 0;
+      return clip;
+    }
+    if (!video.images.empty()) clip.media = media_of(pictures_.at(video.images.front()).file_name);
+    return clip;
+  }
+
+  // The folder of a clip's pictures, where it can be found beside the annotations.
+  fs::path media_of(const std::string& file_name) const {
+    const std::string stem = file_.stem().string();
+    const std::string part = stem.substr(stem.rfind('_') + 1);
+    const fs::path root = file_.parent_path().parent_path();
+    for (const fs::path& base :
+         {root / "images" / part, root / "images", root / part, root, file_.parent_path()})
+      if (fs::exists(base / file_name)) return (base / file_name).parent_path();
+    return {};
+  }
+
+  fs::path file_;
+  JsonFile json_;
+  LeftOut left_out_;
+  const Warn& warn_;
+  std::map<std::int64_t, std::string> categories_;
+  std::map<std::int64_t, Picture> pictures_;
+  std::map<std::string, Video> videos_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> coco_writer(const fs::path& root, const WriteOptions& options) {
+  return std::make_unique<CocoWriter>(root, options);
+}
+
+Clips read_coco(const fs::path& source, const ReadOptions&, const Warn& warn) {
+  std::vector<fs::path> files = {source};
+  if (fs::is_directory(source)) {
+    files = files_with(source / "annotations", ".json");
+    if (files.empty()) files = files_with(source, ".json");
+  }
+  if (files.empty()) throw Error("holds no annotation file (*.json)", {source.string()});
+  Clips clips;
+  for (const fs::path& file : files) {
+    Clips more = CocoReader(file, warn).read();
+    std::move(more.begin(), more.end(), std::back_inserter(clips));
+  }
+  return clips;
+}
+
+}  // namespace airtruth::exchange

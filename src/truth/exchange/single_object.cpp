@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "truth/evaluation/vot.h"
+#include "truth/exchange/parts.h"
+#include "truth/exchange/text.h"
+
+// Folders with one object each, a line of x, y, width, height a frame.
+//
+// OTB (Wu et al. 2013): groundtruth_rect.txt, img/0001.jpg; pixels from 1; "0,0,0,0" where the
+// target is not there, which the toolkit passes over.
+// GOT-10k (Huang et al. 2019): groundtruth.txt, 00000001.jpg, absence.label, cut_by_image.label,
+// cover.label (0 to 8 for the share that is seen), meta_info.ini, list.txt. Pixels from 1, as its
+// toolkit's reference tracker takes them. The toolkit (got10k/datasets/got10k.py) reads all three
+// labels of every sequence; pytracking's loader takes the lines of meta_info.ini by their place. So
+// all are written: what is unknown is "unknown" in meta_info.ini, cover 8 where there is a box, and
+// cut where the box reaches the picture's edge. A last line of meta_info.ini names those labels.
+// VOT (Kristan et al. 2013 on; vot-toolkit's vot/dataset/common.py): groundtruth.txt,
+// color/00000001.jpg, a file `sequence` with a whole fps, list.txt, occlusion.tag, range_m.value,
+// and anchor.value with the starts of the multi-start experiment (1 forward, -1 backward, 0 none;
+// vot/experiment/multistart.py). Pixels from 0; "nan,nan,nan,nan" where the target is not there.
+namespace airtruth::exchange {
+namespace {
+
+// A picture's side in px that no camera has.
+constexpr std::int64_t kLongestSide = 1'000'000;
+
+// Frames between the starts of VOT's multi-start experiment (Kristan et al. 2020, VOT2020).
+constexpr int kAnchorStep = 50;
+
+// How many eighths of an object are seen: 0 for none, 8 for all (GOT-10k, section 3).
+int cover_of(double visible) {
+  if (visible <= 0) return 0;
+  if (visible >= 1) return 8;
+  return std::min(7, static_cast<int>(std::ceil(visible / 0.15)));
+}
+
+class SingleObjectWriter : public IndexedWriter {
+ public:
+  SingleObjectWriter(Format format, fs::path root, const WriteOptions& options)
+      : format_(format), root_(std::move(root)), options_(options) {}
+
+  void add(const Clip& clip, const std::string& part) override {
+    const fs::path folder = root_ / part / clip.name;
+    fs::create_directories(folder);
+    lists_[part] += clip.name + "\n";
+    std::string boxes;
+    for (const LabelledFrame& frame : clip.frames) boxes += line_of(frame);
+    write_file(folder / (format_ == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt"),
+               boxes);
+    if (format_ == Format::kGot10k) add_got10k(clip, folder);
+    if (format_ == Format::kVot) add_vot(clip, folder);
+  }
+
+  void finish() override {
+    for (const auto& [part, list] : lists_) write_file(root_ / part / "list.txt", list);
+  }
+
+ private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    // Toolkits sort names: all have the same number of digits.
+    const auto longest = static_cast<int>(std::to_string(clip.frames.size()).size());
+    const int digits = format_ == Format::kOtb ? std::max(4, longest) : 8;
+    const std::string name =
+        padded(static_cast<std::int64_t>(i) + 1, digits) + options_.image_extension;
+    const fs::path folder = fs::path(part) / clip.name;
+    if (format_ == Format::kOtb) return folder / "img" / name;
+    return format_ == Format::kVot ? folder / "color" / name : folder / name;
+  }
+
+  std::string line_of(const LabelledFrame& frame) const {
+    const bool vot = format_ == Format::kVot;
+    if (frame.labels.empty()) return vot ? "nan,nan,nan,nan\n" : "0,0,0,0\n";
+    const Box& b = frame.labels.front().box_px;
+    const int from = vot ? 0 : 1;
+    return fmt::format("{},{},{},{}\n", b.x + from, b.y + from, b.width, b.height);
+  }
+
+  template <typename Value>
+  static void write_column(const fs::path& file, const Clip& clip, const Value& value) {
+    std::string text;
+    for (const LabelledFrame& frame : clip.frames)
+      text += value(frame.labels.empty() ? nullptr : &frame.labels.front()) + "\n";
+    write_file(file, text);
+  }
+
+  static bool knows(const Clip& clip, const auto& member) {
+    return std::all_of(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
+      return frame.labels.empty() || (frame.labels.front().*member).has_value();
+    });
+  }
+
+  static void add_got10k(const Clip& clip, const fs::path& folder) {
+    write_column(folder / "absence.label", clip, [](const Label* label) {
+      return std::string(label == nullptr ? "1" : "0");
+    });
+    write_column(folder / "cut_by_image.label", clip, [&](const Label* label) {
+      return std::string(label != nullptr && is_cut(*label, clip) ? "1" : "0");
+    });
+    write_column(folder / "cover.label", clip, [](const Label* label) {
+      return std::to_string(label == nullptr ? 0 : cover_of(label->visible.value_or(1)));
+    });
+    write_file(folder / "meta_info.ini", got10k_about(clip));
+  }
+
+  static bool is_cut(const Label& label, const Clip& clip) {
+    if (label.truncated) return *label.truncated;
+    const Box& b = label.box_px;
+    return clip.width > 0 && clip.height > 0 &&
+           (b.x <= 0 || b.y <= 0 || b.right() >= clip.width || b.bottom() >= clip.height);
+  }
+
+  static std::string got10k_about(const Clip& clip) {
+    const std::string category = category_of(clip);
+    std::string about = "[METAINFO]\nurl: unknown\nbegin: unknown\nend: unknown\n";
+    about += clip.frame_rate_hz ? fmt::format("anno_fps: {}Hz\n", *clip.frame_rate_hz)
+                                : "anno_fps: unknown\n";
+    about += "object_class: " + (category.empty() ? "unknown" : category) + "\n";
+    for (const char* key : {"motion_class", "major_class", "root_class", "motion_adverb"})
+      about += std::string(key) + ": unknown\n";
+    about += clip.width > 0 ? fmt::format("resolution: ({}, {})\n", clip.width, clip.height)
+                            : "resolution: unknown\n";
+    std::string unknown;
+    if (!knows(clip, &Label::truncated)) unknown += " cut_by_image";
+    if (!knows(clip, &Label::visible)) unknown += " cover";
+    return unknown.empty() ? about : about + "labels_unknown:" + unknown + "\n";
+  }
+
+  void add_vot(const Clip& clip, const fs::path& folder) const {
+    std::string about = "name=" + clip.name + "\n";
+    if (clip.frame_rate_hz) {
+      const double rate = *clip.frame_rate_hz;
+      about += fmt::format("fps={}\n", std::max(1LL, std::llround(rate)));
+      if (rate != std::floor(rate)) about += fmt::format("exact_fps={}\n", rate);
+    }
+    if (clip.width > 0) about += fmt::format("width={}\nheight={}\n", clip.width, clip.height);
+    about += "length=" + std::to_string(clip.frames.size()) + "\nformat=default\n";
+    about += "category=" + category_of(clip) + "\n";
+    about += "channels.color=color/%08d" + options_.image_extension + "\n";
+    write_file(folder / "sequence", about);
+    write_file(folder / "anchor.value", anchors(clip));
+    if (knows(clip, &Label::occluded))
+      write_column(folder / "occlusion.tag", clip, [](const Label* label) {
+        return std::string(label != nullptr && *label->occluded ? "1" : "0");
+      });
+    if (knows(clip, &Label::range_m))
+      write_column(folder / "range_m.value", clip, [](const Label* label) {
+        return label == nullptr ? std::string("nan") : fmt::format("{}", *label->range_m);
+      });
+  }
+
+  // Where this program's own multi-start runs begin (truth/evaluation/vot.h).
+  static std::string anchors(const Clip& clip) {
+    evaluation::VotTruth truth{{}, clip.width, clip.height};
+    for (const LabelledFrame& frame : clip.frames)
+      truth.boxes.push_back(frame.labels.empty() ? std::nullopt
+                                                 : std::optional(frame.labels.front().box_px));
+    std::vector<int> values(clip.frames.size(), 0);
+    for (const evaluation::Anchor& anchor : evaluation::anchors_of(truth, kAnchorStep))
+      values[static_cast<std::size_t>(anchor.frame)] = anchor.is_backward ? -1 : 1;
+    std::string text;
+    for (const int value : values) text += std::to_string(value) + "\n";
+    return text;
+  }
+
+  static std::string category_of(const Clip& clip) {
+    for (const LabelledFrame& frame : clip.frames)
+      if (!frame.labels.empty()) return frame.labels.front().category;
+    return {};
+  }
+
+  Format format_;
+  fs::path root_;
+  WriteOptions options_;
+  std::map<std::string, std::string> lists_;
+};
+
+// Columns beside the boxes; empty where there is no such file.
+std::vector<double> column(const fs::path& file) {
+  std::vector<double> values;
+  if (!fs::exists(file)) return values;
+  for (const Line& line : lines_of(file))
+    for (const double value : numbers_of(line, file)) values.push_back(value);
+  return values;
+}
+
+// VOT's mask, "mX,Y,W,H,ZEROS,ONES,ZEROS,...": run lengths of the rows of a W x H window at (X, Y)
+// that begin with the zeros (vot/region/io.py). The bounds of its ones; an empty box where it has
+// none.
+Box box_of_mask(const Line& line, const fs::path& file) {
+  const std::vector<double> n = numbers_of({line.number, line.text.substr(1)}, file);
+  const Where where{file.string(), line.number};
+  if (n.size() < 5) throw Error("is no mask: expected mX,Y,WIDTH,HEIGHT and run lengths", where);
+  const auto left = whole_in(n[0], -kLongestSide, kLongestSide);
+  const auto top = whole_in(n[1], -kLongestSide, kLongestSide);
+  const auto width = whole_in(n[2], 0, kLongestSide);
+  const auto height = whole_in(n[3], 0, kLongestSide);
+  if (!left || !top || !width || !height)
+    throw Error("is no mask: its window is no whole numbers of pixels", where);
+  BoxBounds bounds;
+  std::int64_t at = 0;
+  for (std::size_t i = 4; i < n.size(); ++i) {
+    const auto run = whole_in(n[i], 0, *width * *height - at);
+    if (!run) throw Error("is no mask: its run lengths do not fit its window", where);
+    if (i % 2 == 1 && *run > 0) {
+      const std::int64_t last = at + *run - 1;
+      const bool wraps = at / *width != last / *width;
+      const auto x = [&](std::int64_t column) { return static_cast<double>(*left + column); };
+      const auto y = [&](std::int64_t row) { return static_cast<double>(*top + row); };
+      bounds.add({x(wraps ? 0 : at % *width), y(at / *width)});
+      bounds.add({x(wraps ? *width : last % *width + 1), y(last / *width + 1)});
+    }
+    at += *run;
+  }
+  return bounds.box().value_or(Box{});
+}
+
+// "key: value" of meta_info.ini.
+std::string got10k_value(const fs::path& file, const std::string& key) {
+  if (fs::exists(file))
+    for (const Line& line : lines_of(file))
+      if (line.text.starts_with(key + ":")) {
+        const std::size_t start = line.text.find_first_not_of(' ', key.size() + 1);
+        return start == std::string::npos ? "" : line.text.substr(start);
+      }
+  return {};
+}
+
+class SequenceReader {
+ public:
+  SequenceReader(Format format, fs::path folder, const ReadOptions& options, LeftOut& left_out)
+      : format_(format), folder_(std::move(folder)), options_(options), left_out_(left_out) {}
+
+  Clip read() {
+    clip_.name = folder_.filename().string();
+    category_ = options_.category;
+    about();
+    boxes();
+    columns();
+    return clip_;
+  }
+
+ private:
+  void about() {
+    const fs::path pictures = format_ == Format::kOtb   ? folder_ / "img"
+                              : format_ == Format::kVot ? folder_ / "color"
+                                                        : folder_;
+    const auto size = options_.size ? options_.size : size_of_pictures(pictures);
+    if (size) std::tie(clip_.width, clip_.height) = *size;
+    if (size && !options_.size) clip_.media = pictures;
+    if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
+      const auto settings = settings_of(folder_ / "sequence");
+      clip_.frame_rate_hz = number_in(settings, "fps");
+      if (const auto exact = number_in(settings, "exact_fps"); exact && *exact > 0)
+        clip_.frame_rate_hz = exact;
+      clip_.width = side_of(number_in(settings, "width").value_or(clip_.width));
+      clip_.height = side_of(number_in(settings, "height").value_or(clip_.height));
+      if (const auto found = settings.find("category"); found != settings.end())
+        category_ = found->second;
+    }
+    if (format_ == Format::kGot10k) about_got10k();
+  }
+
+  void about_got10k() {
+    const fs::path file = folder_ / "meta_info.ini";
+    if (const std::string kind = got10k_value(file, "object_class"); !kind.empty())
+      category_ = kind;
+    std::string rate = got10k_value(file, "anno_fps");
+    if (rate.ends_with("Hz")) rate.resize(rate.size() - 2);
+    const std::vector<double> rates = known_numbers(rate, file);
+    if (rates.size() == 1 && rates[0] > 0) clip_.frame_rate_hz = rates[0];
+    std::string size = got10k_value(file, "resolution");
+    std::replace_if(
+        size.begin(), size.end(), [](char c) { return c == '(' || c == ')'; }, ' ');
+    const std::vector<double> numbers = known_numbers(size, file);
+    const std::string unknown = " " + got10k_value(file, "labels_unknown") + " ";
+    knows_cut_ = unknown.find(" cut_by_image ") == std::string::npos;
+    knows_cover_ = unknown.find(" cover ") == std::string::npos;
+    if (numbers.size() == 2) {
+      clip_.width = side_of(numbers[0]);
+      clip_.height = side_of(numbers[1]);
+    }
+  }
+
+  static std::vector<double> known_numbers(const std::string& text, const fs::path& file) {
+    return text == "unknown" ? std::vector<double>() : numbers_of({0, text}, file);
+  }
+
+  void boxes() {
+    const fs::path file =
+        folder_ / (format_ == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt");
+    const double from = format_ == Format::kVot ? 0 : 1;
+    for (const Line& line : lines_of(file)) {
+      LabelledFrame frame;
+      frame.frame = static_cast<std::int64_t>(clip_.frames.size());
+      const auto box = format_ == Format::kVot && line.text.starts_with('m')
+                           ? box_of_mask(line, file)
+                           : box_of(numbers_of(line, file), from);
+      if (!box)
+        throw Error("is no box: expected x, y, width, height", {file.string(), line.number});
+      const bool empty = box->width == 0 && box->height == 0;
+      if (is_in_picture(*box, clip_.width, clip_.height)) {
+        Label label;
+        label.category = category_;
+        label.box_px = *box;
+        frame.labels.push_back(label);
+      } else if (std::isfinite(box->x) && !empty) {
+        left_out_.add("boxes that are empty or outside their image",
+                      file.string() + ":" + std::to_string(line.number));
+      }
+      clip_.frames.push_back(std::move(frame));
+    }
+  }
+
+  // A rectangle, or the bounds of a polygon; one number alone says that there is nothing (VOT).
+  static std::optional<Box> box_of(const std::vector<double>& n, double from) {
+    if (n.size() == 1) return Box{0, 0, 0, 0};
+    if (n.size() == 4) return Box{n[0] - from, n[1] - from, n[2], n[3]};
+    if (n.size() < 6 || n.size() % 2 != 0) return std::nullopt;
+    BoxBounds bounds;
+    for (std::size_t i = 0; i < n.size(); i += 2) bounds.add({n[i] - from, n[i + 1] - from});
+    return bounds.box();
+  }
+
+  void columns() {
+    const auto each = [&](const char* name, const auto& set) {
+      const std::vector<double> values = column(folder_ / name);
+      for (std::size_t i = 0; i < std::min(values.size(), clip_.frames.size()); ++i)
+        for (Label& label : clip_.frames[i].labels) set(label, values[i]);
+    };
+    if (format_ == Format::kGot10k) {
+      const std::vector<double> absent = column(folder_ / "absence.label");
+      for (std::size_t i = 0; i < std::min(absent.size(), clip_.frames.size()); ++i)
+        if (absent[i] != 0) clip_.frames[i].labels.clear();
+      if (knows_cut_)
+        each("cut_by_image.label", [](Label& label, double v) { label.truncated = v != 0; });
+      // The middle of the step; the whole is exact.
+      if (knows_cover_)
+        each("cover.label", [](Label& label, double v) {
+          label.visible = v >= 8 ? 1.0 : std::clamp(0.15 * v - 0.075, 0.0, 1.0);
+        });
+    }
+    if (format_ == Format::kVot) {
+      each("occlusion.tag", [](Label& label, double v) { label.occluded = v != 0; });
+      each("range_m.value", [](Label& label, double v) {
+        if (std::isfinite(v)) label.range_m = v;
+      });
+    }
+  }
+
+  Format format_;
+  fs::path folder_;
+  const ReadOptions& options_;
+  LeftOut& left_out_;
+  std::string category_;
+  bool knows_cut_ = true;
+  bool knows_cover_ = true;
+  Clip clip_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> single_object_writer(Format format,
+                                             const fs::path& root,
+                                             const WriteOptions& options) {
+  return std::make_unique<SingleObjectWriter>(format, root, options);
+}
+
+Clips read_single_object(Format format,
+                         const fs::path& source,
+                         const ReadOptions& options,
+                         const Warn& warn) {
+  LeftOut left_out(warn);
+  Clips clips;
+  const auto look = [&](const fs::path& folder) {
+    if (fs::exists(folder / (format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt")))
+      clips.push_back(SequenceReader(format, folder, options, left_out).read());
+  };
+  look(source);
+  for (const fs::path& folder : entries(source)) {
+    look(folder);
+    for (const fs::path& inner : entries(folder)) look(inner);
+  }
+  if (clips.empty())
+    throw Error(std::string("holds no sequence of ") + name(format), {source.string()});
+  return clips;
+}
+
+}  // namespace airtruth::exchange

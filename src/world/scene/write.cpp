@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "world/scene/parse_intruder.h"
+#include "world/scene/scene.h"
+
+namespace airtruth::scene {
+namespace {
+
+// TOML text, key by key. Keys without a value are left out.
+class Text {
+ public:
+  void heading(std::string_view title) { text_ += fmt::format("\n{}\n", title); }
+
+  template <typename T>
+  void add(std::string_view key, const T& value) {
+    text_ += fmt::format("{} = {}\n", key, toml(value));
+  }
+  template <typename T>
+  void add(std::string_view key, const std::optional<T>& value) {
+    if (value) add(key, *value);
+  }
+
+  std::string take() { return std::move(text_); }
+
+ private:
+  static std::string toml(double value) {
+    if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" is a whole number without a sign
+    return fmt::format("{}", value);
+  }
+  static std::string toml(bool value) { return value ? "true" : "false"; }
+  static std::string toml(int value) { return fmt::format("{}", value); }
+  static std::string toml(std::int64_t value) { return fmt::format("{}", value); }
+  static std::string toml(const fs::path& path) {
+    return toml(fs::absolute(path).lexically_normal().string());
+  }
+  static std::string toml(const Vector3& v) {
+    return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+  }
+  static std::string toml(const YawPitchRoll& a) {
+    return fmt::format("[{}, {}, {}]", a.yaw_deg, a.pitch_deg, a.roll_deg);
+  }
+  static std::string toml(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+      if (c == '"' || c == '\\') result += '\\';
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+        result += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+      else
+        result += c;
+    }
+    return result + "\"";
+  }
+  template <typename Range>
+  requires requires(const Range& r) {
+    r.front();
+  } &&(!std::same_as<Range, fs::path>)&&(!std::same_as<Range, std::string>)static std::string
+      toml(const Range& values) {
+    std::string result = "[";
+    for (const auto& value : values) result += (result.size() > 1 ? ", " : "") + toml(value);
+    return result + "]";
+  }
+
+  std::string text_;
+};
+
+void add_lens(Text& text, const Lens& lens) {
+  text.heading("[lens]");
+  text.add("file", lens.file);
+  if (lens.file) return;
+  text.add("model", lens.model);
+  text.add("vertical_fov_deg", lens.vertical_fov_deg);
+  text.add("focal_px", lens.focal_px);
+  text.add("principal_point_px", lens.principal_point_px);
+  text.add("distortion", lens.distortion);
+}
+
+void add_camera(Text& text, const Camera& camera) {
+  text.heading("[camera]");
+  text.add("path_file", camera.path_file);
+  if (camera.path_file) return;
+  text.add("position_ned_m", camera.position_ned_m);
+  text.add("velocity_ned_mps", camera.velocity_ned_mps);
+  text.add("attitude_yaw_pitch_roll_deg", camera.attitude_yaw_pitch_roll_deg);
+}
+
+void add_light(Text& text, const Light& light) {
+  text.heading("[light]");
+  text.add("sun_azimuth_deg", light.sun_azimuth_deg);
+  text.add("sun_elevation_deg", light.sun_elevation_deg);
+  text.add("exposure", light.exposure);
+  text.add("sky_colour", light.sky_colour);
+  text.add("ground_colour", light.ground_colour);
+  text.add("ground_albedo", light.ground_albedo);
+}
+
+// A stated value, or "auto".
+template <typename T>
+void add_or_auto(Text& text,
+                 const CameraModel& model,
+                 const std::string& table,
+                 const std::string& key,
+                 const std::optional<T>& value) {
+  const auto& automatic = model.automatic;
+  if (std::find(automatic.begin(), automatic.end(), table + "." + key) != automatic.end())
+    text.add(key, std::string("auto"));
+  else
+    text.add(key, value);
+}
+
+void add_camera_model(Text& text, const CameraModel& model) {
+  text.heading("[shutter]");
+  add_or_auto(text, model, "shutter", "exposure_s", model.exposure_s);
+  text.add("angle_deg", model.angle_deg);
+  add_or_auto(text, model, "shutter", "readout_s", model.readout_s);
+  text.add("readout", model.readout);
+  text.heading("[air]");
+  add_or_auto(text, model, "air", "extinction_per_km", model.extinction_per_km);
+  add_or_auto(text, model, "air", "airlight", model.airlight);
+  text.heading("[optics]");
+  add_or_auto(text, model, "optics", "point_spread_px", model.point_spread_px);
+  add_or_auto(text, model, "optics", "sharpening", model.sharpening);
+  add_or_auto(text, model, "optics", "sharpening_px", model.sharpening_px);
+  text.heading("[sensor]");
+  add_or_auto(text, model, "sensor", "noise_gain", model.noise_gain);
+  add_or_auto(text, model, "sensor", "noise_floor", model.noise_floor);
+  add_or_auto(text, model, "sensor", "noise_correlation_px", model.noise_correlation_px);
+  add_or_auto(text, model, "sensor", "chroma_spread_px", model.chroma_spread_px);
+  add_or_auto(text, model, "sensor", "codec_step", model.codec_step);
+  text.add("gamma", model.gamma);
+}
+
+void add_realism(Text& text, const Realism& realism) {
+  text.heading("[realism]");
+  text.add("file", realism.file);
+  text.add("auto", realism.automatic);
+  text.add("profile", realism.profile);
+  text.add("fallback", realism.fallback);
+}
+
+std::string aircraft_text(const std::string& aircraft) {
+  return names_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string() : aircraft;
+}
+
+void add_intruder(Text& text, const Intruder& intruder) {
+  text.heading("[[intruder]]");
+  text.add("id", intruder.id);
+  text.add("aircraft", aircraft_text(intruder.aircraft));
+  text.add("model_forward", intruder.model_forward);
+  text.add("model_up", intruder.model_up);
+  text.add("model_scale", intruder.model_scale);
+  text.add("catalogue_scale", intruder.catalogue_scale);
+  text.add("path_file", intruder.path_file);
+  if (!intruder.path_file) {
+    text.add("waypoints_ned_m", intruder.waypoints_ned_m);
+    text.add("speed_mps", intruder.speed_mps);
+    if (!intruder.speed_mps) text.add("times_s", intruder.times_s);
+  }
+  text.add("start_s", intruder.start_s);
+  text.add("yaw_deg", intruder.yaw_deg);
+  text.add("pitch_deg", intruder.pitch_deg);
+  text.add("roll_deg", intruder.roll_deg);
+}
+
+}  // namespace
+
+std::string toml_from_scene(const Scene& scene) {
+  check(scene.seed <= static_cast<std::uint64_t>(INT64_MAX), "a seed fits TOML's 64-bit integers");
+  Text text;
+  text.add("name", scene.name);
+  text.add("seed", static_cast<std::int64_t>(scene.seed));
+  text.heading("[background]");
+  text.add("video", scene.background.video);
+  text.add("mask", scene.background.mask);
+  text.add("first_frame", scene.background.first_frame);
+  text.add("frame_count", scene.background.frame_count);
+  add_lens(text, scene.lens);
+  add_camera(text, scene.camera);
+  text.heading("[motion]");
+  text.add("model", scene.motion.model);
+  text.add("reference", scene.motion.reference);
+  text.add("smoothing_s", scene.motion.smoothing_s);
+  add_light(text, scene.light);
+  for (const Intruder& intruder : scene.intruders) add_intruder(text, intruder);
+  add_camera_model(text, scene.camera_model);
+  add_realism(text, scene.realism);
+  text.heading("[render]");
+  text.add("quality", scene.render.quality);
+  text.heading("[composite]");
+  text.add("method", scene.composite.method);
+  text.heading("[output]");
+  text.add("video", scene.output.video);
+  text.add("quality", scene.output.quality);
+  text.add("masks", scene.output.masks);
+  return text.take();
+}
+
+std::string toml_from_camera_model(const CameraModel& model) {
+  Text text;
+  add_camera_model(text, model);
+  return text.take();
+}
+
+}  // namespace airtruth::scene

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "world/synthetic/noise.h"
+#include "world/synthetic/sky.h"
+
+namespace airtruth::synthetic {
+
+// Fair-weather cumulus as a volume that repeats every 20 km, lit by the sun through itself, and
+// thin cirrus far above. Read once, while the sky's panorama is made; what is left for the frames
+// is its shadow on the ground.
+class Clouds {
+ public:
+  Clouds(const Sky& sky, double cover, std::uint32_t seed);
+
+  // The light of the sky in that direction with the clouds before it, from a point near the ground.
+  Light seen_through(const Vector3& direction_in_world, const Light& behind) const;
+
+  // Share of the sunlight that reaches the ground there, 1 = clear.
+  std::vector<float> ground_shadow(int cells) const;
+  static double period_m();
+
+ private:
+  struct Voxel {
+    std::uint8_t density = 0;
+    std::uint8_t sunlit = 0;  // exp(-optical depth towards the sun / 4)
+  };
+  struct Sample {
+    float density = 0;
+    float sunlit = 0;
+  };
+  void fill(double cover);
+  void light_up();
+  Sample sample(float north_m, float east_m, float height) const;
+  float erosion(float north_m, float east_m, float height_m) const;
+  Light scattered(const Sample& sample, float height, float phase) const;
+  void add_cirrus(const Vector3& direction, Light& colour) const;
+
+  const Sky& sky_;
+  std::uint32_t seed_;
+  double cover_;
+  std::vector<Voxel> voxels_;
+  std::vector<std::uint8_t> column_used_;
+  std::vector<float> detail_;
+};
+
+}  // namespace airtruth::synthetic

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "world/synthetic/clouds.h"
+#include "world/synthetic/land.h"
+#include "world/synthetic/noise.h"
+#include "world/synthetic/sky.h"
+
+namespace airtruth::synthetic {
+
+// The ground as a tile of colour and height with its mip levels. Trees and houses stand up from it:
+// a ray is followed through the height field (relief mapping; Policarpo, Oliveira and Comba 2005).
+class Ground {
+ public:
+  static constexpr float kHighest_m = 16;  // of trees and houses
+
+  // `texel_m` is rounded so that the tile has a power of two of texels. `pixel_rad` is the angle of
+  // one pixel.
+  Ground(double texel_m,
+         double pixel_rad,
+         double extinction_per_km,
+         const Sky& sky,
+         const Clouds& clouds,
+         std::uint32_t seed);
+
+  // The light that comes up from the ground to an eye there; `down` > 0, the direction is a unit
+  // vector.
+  Light seen(float eye_north_m,
+             float eye_east_m,
+             float eye_height_m,
+             float north,
+             float east,
+             float down) const;
+
+  // What the ground fades to at the horizon, by direction.
+  Light haze(float north, float east) const;
+
+ private:
+  static constexpr int kShadowCells = 512;
+  static constexpr int kDetailCells = 256;
+  static constexpr int kHazeSectors = 64;
+  struct Level {
+    int size = 0;
+    std::vector<std::uint32_t> texels;  // square root of red, green, blue; height
+  };
+  struct Texel {
+    Light colour = Light::Zero();  // square roots
+    float height_m = 0;
+  };
+  void paint(const Land& land);
+  void plant(const Land& land, std::uint32_t seed);
+  void build(std::uint32_t seed);
+  void make_levels();
+  void find_peaks();
+  float peak_m(float north_m, float east_m, float span_m) const;
+  // How far along the ray something standing up is met, and the height at which; empty where
+  // nothing is.
+  struct Meeting {
+    float distance_m = 0;
+    float shade = 1;
+  };
+  std::optional<Meeting> meet(float eye_north_m,
+                              float eye_east_m,
+                              float north,
+                              float east,
+                              float down,
+                              float far_m,
+                              float across) const;
+  void tree(float north_m, float east_m, float radius_m, float height_m, const Light& colour);
+  void house(float north_m,
+             float east_m,
+             float angle,
+             float length_m,
+             float width_m,
+             float height_m,
+             const Light& roof);
+  void darken(float north_m, float east_m, float radius_m, float factor);
+  std::uint32_t& texel(int x, int y);
+  float height_m(float x, float y, int level) const;  // of the texel
+  float smooth_height_m(float x, float y, int level) const;
+  Light colour(float x, float y, float level) const;
+  float sunlit(float north_m, float east_m) const;
+  float detail(float north_m, float east_m) const;
+
+  float texel_m_;
+  float pixel_rad_;
+  float extinction_per_m_;
+  Vector3 sun_;
+  Light sunlight_;
+  Light skylight_;
+  std::vector<Level> levels_;
+  // Greatest heights in and beside square cells, each level's cells twice as wide: open fields need
+  // no marching.
+  std::vector<std::vector<std::uint8_t>> peaks_;
+  std::vector<float> shadow_;
+  std::vector<float> detail_;
+  std::vector<Light> haze_;
+};
+
+}  // namespace airtruth::synthetic

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "world/synthetic/clouds.h"
+#include "world/synthetic/noise.h"
+#include "world/synthetic/sky.h"
+
+namespace airtruth::synthetic {
+
+// Everything at infinity: sky, sun, clouds, hills. Clouds are kilometres away, so that the few
+// hundred metres of a flight would hardly shift them; they are drawn once, as seen from the start.
+//
+// Stereographic from the nadir: texel = centre + radius (north, east) / (1 + up). One chart without
+// seams for all directions down to a little below the horizon, at least half as fine overhead as at
+// the horizon.
+class Panorama {
+ public:
+  // `texel_rad` at the horizon.
+  explicit Panorama(double texel_rad);
+
+  // Says that the direction will be looked at. Only such parts are drawn.
+  void want(float north, float east, float up);
+  struct Hills {
+    double highest_deg = 0;
+    double extinction_per_km = 0;
+  };
+  void draw(const Sky& sky, const Clouds& clouds, const Hills& hills, std::uint32_t seed);
+
+  Light at(float north, float east, float up) const {
+    const float scale = radius_ / (1 + up);
+    const float x = centre_ + north * scale;
+    const float y = centre_ + east * scale;
+    const int ix = static_cast<int>(x);
+    const int iy = static_cast<int>(y);
+    const Light* p = &texels_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(size_) +
+                              static_cast<std::size_t>(ix)];
+    const float fx = x - static_cast<float>(ix);
+    const float fy = y - static_cast<float>(iy);
+    const Light upper = p[0] + (p[1] - p[0]) * fx;
+    const Light lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
+    return upper + (lower - upper) * fy;
+  }
+  static constexpr float kLowest = -0.02F;  // `up` of the lowest direction
+
+ private:
+  static constexpr int kBlock = 16;
+  int size_ = 0;
+  int blocks_ = 0;
+  float radius_ = 0;
+  float centre_ = 0;
+  std::vector<Light> texels_;
+  std::vector<std::uint8_t> wanted_;
+};
+
+}  // namespace airtruth::synthetic

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "foundation/image/picture.h"
+#include "world/synthetic/flight.h"
+#include "world/synthetic/noise.h"
+
+namespace airtruth::synthetic {
+
+// From light to the samples of a cheap camera: a fixed exposure with a soft shoulder, noise,
+// sharpening, 4:2:0.
+class Sensor {
+ public:
+  Sensor(const FlightOptions& options, std::uint32_t seed);
+
+  // Luma before sharpening, in 1/64 code values.
+  struct Exposure {
+    std::vector<std::uint16_t> luma;
+  };
+  Exposure start() const;
+
+  // Rows y and y + 1 (the same row twice at the bottom of an odd picture); y is even. Any order,
+  // any thread.
+  void expose(int frame,
+              int y,
+              const Light* upper,
+              const Light* lower,
+              Exposure& exposure,
+              image::Picture& picture) const;
+
+  // When all rows are in.
+  void sharpen(const Exposure& exposure, int y, image::Picture& picture) const;
+
+ private:
+  Light coded(const Light& light) const;
+  const Light& grain(int frame, int x, int y) const;
+
+  int width_;
+  int height_;
+  float noise_;
+  bool ideal_;
+  std::uint32_t seed_;
+  std::vector<float> curve_;
+  std::vector<Light> grain_;
+};
+
+}  // namespace airtruth::synthetic

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "foundation/geometry/transform.h"
+#include "world/synthetic/noise.h"
+
+namespace airtruth::synthetic {
+
+// The cloudless sky: a blue that pales towards the horizon (more air), and the sun with its glow.
+class Sky {
+ public:
+  explicit Sky(const Vector3& sun_in_world);
+  Light at(const Vector3& direction_in_world) const;
+  // What far things fade to: the sky just above the horizon in that direction.
+  Light haze(const Vector3& direction_in_world) const;
+  const Vector3& sun_in_world() const { return sun_; }
+  Light sunlight() const { return sunlight_; }
+
+ private:
+  Vector3 sun_;
+  Light sunlight_;
+};
+
+// Toward the sun, north-east-down.
+Vector3 sun_in_world(double azimuth_deg, double elevation_deg);
+
+}  // namespace airtruth::synthetic

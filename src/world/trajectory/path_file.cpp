@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "foundation/base/csv.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "world/trajectory/path_impl.h"
+#include "world/trajectory/spline.h"
+
+namespace airtruth::trajectory {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+const std::vector<std::string> kColumns = {
+    "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
+constexpr std::size_t kRequired = 4;
+constexpr double kLargest = 1e9;  // metres, seconds or degrees: squares stay far from overflow
+
+// Which cell holds each known column; npos where a column is not given.
+std::array<std::size_t, 7> columns_of(const std::string& header, const std::string& file) {
+  std::array<std::size_t, 7> place;
+  place.fill(std::string::npos);
+  const auto names = cells_of(header);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = std::find(kColumns.begin(), kColumns.end(), names[i]);
+    if (at == kColumns.end()) {
+      const auto near = nearest_spelling(names[i], kColumns);
+      throw Error(
+          "unknown column '" + names[i].substr(0, 60) + "'" +
+              (near ? "; did you mean '" + *near + "'?"
+                    : "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]"),
+          {file, 1});
+    }
+    auto& slot = place[static_cast<std::size_t>(at - kColumns.begin())];
+    if (slot != std::string::npos) throw Error("column '" + names[i] + "' stands twice", {file, 1});
+    slot = i;
+  }
+  for (std::size_t i = 0; i < kRequired; ++i)
+    if (place[i] == std::string::npos)
+      throw Error("has no column " + kColumns[i] +
+                      "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]",
+                  {file, 1});
+  return place;
+}
+
+double number_of(const std::string& cell, const std::string& column, const Where& where) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
+  if (failed != std::errc() || rest != end || !(std::abs(value) <= kLargest))
+    throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a number up to 1e9", where);
+  return value;
+}
+
+struct Samples {
+  std::vector<double> times;
+  std::vector<Vector3> positions;
+  std::vector<Vector3> angles;  // yaw, pitch, roll in degrees, unwrapped
+  std::array<bool, 3> given{};  // which of them the file states
+};
+
+double unwrapped(double angle_deg, double before_deg) {
+  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
+}
+
+Samples read_samples(std::string_view text, const std::string& file) {
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  if (!std::getline(lines, line))
+    throw Error("is empty; expected a header and at least two rows", {file});
+  if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
+  const auto place = columns_of(line, file);
+  const std::size_t columns = cells_of(line).size();
+  Samples samples;
+  for (std::size_t i = 0; i < 3; ++i) samples.given[i] = place[kRequired + i] != std::string::npos;
+  int number = 1;
+  while (std::getline(lines, line)) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto cells = cells_of(line);
+    const Where where{file, number};
+    if (cells.size() > columns)
+      throw Error("has " + std::to_string(cells.size()) + " cells for " + std::to_string(columns) +
+                      " columns; expected one each",
+                  where);
+    const auto value = [&](std::size_t column) {
+      if (place[column] == std::string::npos) return 0.0;
+      if (place[column] >= cells.size()) throw Error("has no value for " + kColumns[column], where);
+      return number_of(cells[place[column]], kColumns[column], where);
+    };
+    const double time = value(0);
+    if (!samples.times.empty() && time - samples.times.back() < kShortestStep_s)
+      throw Error("time_s is " + cells[place[0]] +
+                      ", not after the row before; expected times that increase",
+                  where);
+    Vector3 angle(value(4), value(5), value(6));
+    if (!samples.angles.empty())
+      for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
+    samples.times.push_back(time);
+    // Named in turn, so that the first that is missing is the one that is told.
+    const double north = value(1);
+    const double east = value(2);
+    const double down = value(3);
+    samples.positions.emplace_back(north, east, down);
+    samples.angles.push_back(angle);
+  }
+  if (samples.times.size() < 2)
+    throw Error("holds " + std::to_string(samples.times.size()) + " rows; expected at least two",
+                {file, number});
+  return samples;
+}
+
+// Position and its derivatives from the samples; angles from the file where it states them, else
+// along the path.
+class Sampled : public Path::Impl {
+ public:
+  Sampled(const Samples& samples, const AttitudeOverride& stated)
+      : along_(path_through(samples.times, samples.positions, stated)),
+        angles_(samples.times, samples.angles),
+        given_(samples.given),
+        stated_(stated) {}
+  double start_s() const override { return angles_.begin(); }
+  double end_s() const override { return angles_.end(); }
+  State at(double t) const override {
+    State state = along_->at(t);
+    YawPitchRoll attitude = yaw_pitch_roll(state.world_from_body);
+    const Vector3 angle = angles_.at(t, 0);
+    if (given_[0] && !stated_.yaw_deg) attitude.yaw_deg = angle[0];
+    if (given_[1] && !stated_.pitch_deg) attitude.pitch_deg = angle[1];
+    if (given_[2] && !stated_.roll_deg) attitude.roll_deg = angle[2];
+    state.world_from_body = world_from_body(attitude);
+    return state;
+  }
+
+ private:
+  std::shared_ptr<const Path::Impl> along_;
+  CubicSpline<Vector3> angles_;
+  std::array<bool, 3> given_;
+  AttitudeOverride stated_;
+};
+
+}  // namespace
+
+Path parse_path_csv(std::string_view text,
+                    const std::filesystem::path& name,
+                    const AttitudeOverride& attitude) {
+  return Path(std::make_shared<Sampled>(read_samples(text, name.string()), attitude));
+}
+
+Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude) {
+  return parse_path_csv(read_file(path, kMaxBytes), path, attitude);
+}
+
+}  // namespace airtruth::trajectory
