@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-// The parts of our pages, put into the program when it is built: src/dataset/dataset/page/* and
+// The parts of our pages, put into the program when it is built: src/show/html/assets/* and
 // Debian's Chart.js (package libjs-chart.js, MIT licence).
 namespace airtruth::html {
 
