@@ -26,6 +26,7 @@
 #include "foundation/base/median.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/sequence/staging.h"
 #include "sequence/sequence/world.h"

@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "sequence/sequence/ambient.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/paint.h"
 #include "sequence/sequence/world.h"
 

@@ -5,6 +5,7 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/mask_picture.h"
 #include "sequence/sequence/virtual_flight.h"
 #include "sequence/sequence/world.h"

@@ -16,6 +16,7 @@
 #include "dataset/catalogue/sun_position.h"
 #include "foundation/base/error.h"
 #include "sequence/sequence/flyable.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/world.h"
 
 namespace airtruth::dataset {

@@ -8,6 +8,7 @@
 
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/world.h"
 #include "truth/annotation/exact_box.h"
 

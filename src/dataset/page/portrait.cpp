@@ -7,6 +7,7 @@
 
 #include "picture/video/reader.h"
 #include "sequence/sequence/finished.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/world.h"
 #include "truth/annotation/in_view.h"
 

@@ -8,6 +8,7 @@
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
 #include "picture/render/renderer.h"
+#include "sequence/sequence/from_scene.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -260,7 +261,7 @@ AmbientEstimator::AmbientEstimator(const scene::Light& light,
     : light_(light),
       tone_(tone),
       own_aircraft_(own_aircraft),
-      skies_(skies(render::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg))) {}
+      skies_(skies(to_sun_in_world(light))) {}
 
 Ambient AmbientEstimator::next(const image::Picture& picture,
                                const annotation::Sight& sight,

@@ -39,10 +39,6 @@ struct Ambient {
   }
 };
 
-inline image::ToneCurve tone_of(const scene::CameraModel& model) {
-  return {model.gamma.value_or(0)};
-}
-
 class AmbientEstimator {
  public:
   AmbientEstimator(const scene::Light& light,

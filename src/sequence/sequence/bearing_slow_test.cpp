@@ -9,6 +9,7 @@
 
 #include "foundation/base/files.h"
 #include "sequence/sequence/finished.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/sequence/world.h"
 #include "truth/annotation/bearing.h"

@@ -11,24 +11,11 @@
 #include "picture/composite/spread.h"
 #include "picture/video/still.h"
 #include "sequence/sequence/frame_coder.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/stopwatch.h"
 
 namespace airtruth::sequence {
 namespace {
-
-composite::Sensor sensor_of(const scene::CameraModel& model) {
-  composite::Sensor sensor;
-  sensor.sharpening = model.sharpening.value_or(0);
-  sensor.sharpening_px = model.sharpening_px.value_or(sensor.sharpening_px);
-  sensor.noise_gain = model.noise_gain.value_or(0);
-  sensor.noise_floor = model.noise_floor.value_or(0);
-  sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
-  sensor.chroma_spread_px = model.chroma_spread_px.value_or(0);
-  sensor.tone = tone_of(model);
-  return sensor;
-}
-
-bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_or(0) > 0; }
 
 // How far beyond the light that reaches it the layer's samples change.
 int margin_px(const scene::CameraModel& model) {
@@ -109,10 +96,7 @@ class ChromaKey : public Painter {
     }
     if (instances.empty()) return;
     const backdrop::Light light{
-        render::to_sun(scene_.light.sun_azimuth_deg, scene_.light.sun_elevation_deg),
-        ambient.sun,
-        ambient.sky(),
-        ambient.ground};
+        to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
     const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
                                                         pinhole.principal_point_px,
                                                         moment.sight.cam_from_world,
@@ -210,7 +194,7 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.camera,
                           moment.sight.frame_from_nominal_per_s};
   const render::Light light{
-      render::to_sun(scene.light.sun_azimuth_deg, scene.light.sun_elevation_deg),
+      to_sun_in_world(scene.light),
       ambient.sun,
       ambient.sky(),
       ambient.ground,
@@ -255,15 +239,6 @@ std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
   if (scene.composite.method == "chroma-key")
     return std::make_unique<ChromaKey>(scene, world, mask, options);
   return std::make_unique<Matte>(scene, world, mask, options.stop);
-}
-
-void write_moment(const World& world,
-                  const Moment& moment,
-                  const Painted& painted,
-                  annotation::Frame& truth) {
-  truth.camera_position_ned_m = moment.camera.position_in_world;
-  truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
-  truth.intruders = truth_of(world, moment, painted.layer, painted.visible);
 }
 
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {

@@ -53,13 +53,6 @@ class Painter {
   std::stop_token stop_;
 };
 
-// The part of a frame's truth that geometry and compositing know: where the camera is, and every
-// intruder.
-void write_moment(const World& world,
-                  const Moment& moment,
-                  const Painted& painted,
-                  annotation::Frame& truth);
-
 // Error where the scene's method cannot draw through the lens.
 void check_method(const scene::Scene& scene, const lens::Lens& lens);
 // Error where the scene has a codec_step and H.264 does not have the clip's layout (4:4:0).

@@ -9,6 +9,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
+#include "sequence/sequence/frame_truth.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/masks.h"
 #include "sequence/sequence/paint.h"
 #include "sequence/sequence/world.h"
@@ -125,11 +127,11 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
         ambient.next(before->picture, moment.sight, search_bounds(moment), before->begins_shot);
     const bool is_compared = truth.frame % every == 0;
     if (!is_compared && !painter->is_in_order()) continue;
-    annotation::Frame again = truth;
-    again.time_s = before->time_s;
     const Painted painted = painter->paint(before->picture, moment, light);
     if (!is_compared) continue;
-    write_moment(world, moment, painted, again);
+    // The measured motion is the input of both; all else is computed again.
+    annotation::Frame again =
+        frame_truth(world, *before, {truth.motion_state, truth.shake}, moment, painted);
     if (!sequence.has_covered_boxes) as_older_truth(again);
     ++result.compared;
     if (scene.output.masks)

@@ -13,6 +13,7 @@
 #include "measure/calibration/cache.h"
 #include "measure/calibration/profile.h"
 #include "sequence/sequence/ambient.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/motion_source.h"
 #include "sequence/sequence/world.h"
 #include "world/scene/camera_keys.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence/scene_check.h"
 
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/motion_source.h"
 #include "sequence/sequence/paint.h"
 #include "sequence/sequence/resolve.h"

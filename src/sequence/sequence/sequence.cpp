@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// A frame's way through render() is told here, from top to bottom: what is read before the first
+// frame, the stages of one frame, and what is written after the last.
 #include "sequence/sequence/sequence.h"
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
+#include <optional>
 
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
@@ -16,7 +17,9 @@
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "sequence/sequence/ambient.h"
-#include "sequence/sequence/flyable.h"
+#include "sequence/sequence/frame_truth.h"
+#include "sequence/sequence/from_scene.h"
+#include "sequence/sequence/input_files.h"
 #include "sequence/sequence/masks.h"
 #include "sequence/sequence/motion_source.h"
 #include "sequence/sequence/outputs.h"
@@ -24,13 +27,16 @@
 #include "sequence/sequence/resolve.h"
 #include "sequence/sequence/staging.h"
 #include "sequence/sequence/stopwatch.h"
+#include "sequence/sequence/tally.h"
 #include "sequence/sequence/world.h"
 
 namespace airtruth::sequence {
 namespace {
 
-// Where motion is kept; empty: nowhere.
-fs::path cache_of(const Options& options) {
+// ---------------------------------------------------------------- before the first frame
+
+// The folder in which motion is kept; empty: motion is not kept.
+fs::path motion_cache(const Options& options) {
   if (!options.use_cache) return {};
   return options.cache.empty() ? cache_folder() / "motion" : options.cache;
 }
@@ -44,314 +50,260 @@ video::Reader open(const scene::Scene& scene, const Options& options) {
   return video::Reader(scene.background.video, reader_options, options.warn);
 }
 
-// One frame on its way through the pipeline.
+lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
+
+// The stream with the number of frames that this run makes of it.
+video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
+  const std::int64_t left =
+      std::max<std::int64_t>(0, info.frame_count_estimate - background.first_frame);
+  info.frame_count_estimate = left;
+  if (background.frame_count)
+    info.frame_count_estimate =
+        left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
+  return info;
+}
+
+// What every frame is made from. The painter refers to it, so it is neither copied nor moved.
+struct Setting {
+  Setting(const StatedScene& stated, const lens::ImageSize& image_size, const Options& options)
+      : scene(stated.scene),
+        size(image_size),
+        mask(read_mask(scene, size)),
+        world(load_world(scene, size, options.warn, options.stop)),
+        painter(make_painter(scene, world, own_aircraft(), options)) {
+    scene.motion.model = motion_model(scene);
+    // sequence.json records the scale that is drawn, so that the same scene gives the same sizes
+    // whatever the table of published sizes becomes.
+    for (std::size_t i = 0; i < world.actors.size(); ++i)
+      if (const double scale = world.actors[i].type->catalogue_scale; scale != 1)
+        scene.intruders[i].catalogue_scale = scale;
+  }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+
+  const image::Mask* own_aircraft() const { return mask ? &*mask : nullptr; }
+
+  scene::Scene scene;  // complete once complete_camera() has run: what sequence.json records
+  lens::ImageSize size;
+  std::optional<image::Mask> mask;
+  World world;
+  std::unique_ptr<Painter> painter;
+};
+
+// Gives the scene the exposure, noise and other values that [realism] leaves to the clip, which
+// decodes the whole clip where they are not in the cache.
+void complete_camera(Setting& setting,
+                     StatedScene stated,
+                     const video::StreamInfo& info,
+                     const Options& options) {
+  stated.scene = setting.scene;
+  setting.scene = resolved(stated, setting.size, setting.own_aircraft(), options);
+  check_codec(setting.scene, info.colour);
+  setting.world.shutter = shutter_of(setting.scene.camera_model);
+}
+
+// The camera's motion. Decodes the frames once, and opens the reader again, where all motion must
+// be known before the first frame and is not in the cache.
+MotionSource measured_motion(const Setting& setting,
+                             const std::string& video_sha256,
+                             video::Reader& reader,
+                             const Options& options) {
+  MotionSource motion(setting.scene,
+                      setting.world.lens,
+                      !setting.world.shutter.is_instant(),
+                      video_sha256,
+                      setting.own_aircraft(),
+                      motion_cache(options));
+  if (motion.needs_pass()) {
+    motion.measure(reader, options.stop, {});
+    reader = open(setting.scene, options);
+  }
+  return motion;
+}
+
+// ---------------------------------------------------------------- the stages of one frame
+
+struct Clocks {
+  std::atomic<double> read = 0, move = 0, render = 0, composite = 0, write = 0;
+};
+
+// One frame on its way through the stages: each fills the members of its own.
 struct Work {
-  video::Frame frame;
-  motion::FrameMotion motion;
-  Ambient ambient;
-  Moment moment;
-  Painted painted;
-  annotation::Frame truth;
-  std::vector<MaskFile> masks;
+  video::Frame frame;            // decode; compose changes its picture
+  MotionSource::Measured moved;  // locate
+  Moment moment;                 // locate
+  Ambient ambient;               // locate
+  Painted painted;               // draw, compose
+  annotation::Frame truth;       // describe
+  std::vector<MaskFile> masks;   // describe
 };
 using WorkPtr = std::shared_ptr<Work>;
 
-class Run {
- public:
-  Run(const scene::Scene& scene, const fs::path& folder, const Options& options)
-      : options_(options),
-        camera_file_(scene.realism.file),
-        staged_(folder, options.overwrite),
-        reader_(open(scene, options)),
-        size_{reader_.info().width, reader_.info().height},
-        mask_(read_mask(scene, size_)),
-        stated_(stated(scene, reader_.info())),
-        scene_(stated_.scene),
-        world_(load_world(scene_, size_, options.warn, options.stop)),
-        painter_(make_painter(scene_, world_, mask_ptr(), options)) {
-    scene_.motion.model = stated_.scene.motion.model = motion_model(scene_);
-    // What was drawn is recorded: the same scene gives the same sizes whatever the table becomes.
-    for (std::size_t i = 0; i < world_.actors.size(); ++i)
-      if (const double scale = world_.actors[i].type->catalogue_scale; scale != 1)
-        scene_.intruders[i].catalogue_scale = stated_.scene.intruders[i].catalogue_scale = scale;
-    const video::StreamInfo info = stream_info();
-    check_camera_path(world_.camera, info);
-    outputs_.emplace(staged_.path(), scene_, world_.lens, info, options_.threads);
-    seen_.assign(world_.actors.size(), false);
-    // All that can be wrong with the inputs is known here; what follows takes long.
-    measure_camera();
-    measure_motion();
-  }
+// 1. decode: the next frame of the background; null after the last one, or on stop.
+WorkPtr decode(video::Reader& reader, const Options& options) {
+  if (options.stop.stop_requested()) return nullptr;
+  auto frame = reader.next();
+  if (!frame) return nullptr;
+  auto work = std::make_shared<Work>();
+  work->frame = std::move(*frame);
+  return work;
+}
 
-  Summary run() {
-    const Stopwatch running;
-    run_pipeline();
-    if (options_.stop.stop_requested()) throw Interrupted();
-    motion_->store();
-    say_what_was_odd();
-    summary_.motion_from_cache = motion_->from_cache();
-    outputs_->finish(scene_, inputs(), summary_);
-    outputs_.reset();
-    staged_.commit();
-    summary_.seconds = running.seconds();
-    summary_.stages = {
-        clocks_.read, clocks_.move, clocks_.render, clocks_.composite, clocks_.write};
-    return summary_;
-  }
+// 2. locate: how the camera moved, where everything is, and the light that falls there. Frames come
+// in order.
+void locate(Work& work, const World& world, MotionSource& motion, AmbientEstimator& ambient) {
+  work.moved = motion.next(work.frame);
+  work.moment = moment_at(world, work.frame.index, work.frame.time_s, work.moved.shake);
+  work.ambient = ambient.next(
+      work.frame.picture, work.moment.sight, search_bounds(work.moment), work.frame.begins_shot);
+}
 
- private:
-  const image::Mask* mask_ptr() const { return mask_ ? &*mask_ : nullptr; }
+// 3. draw: the intruders' light, coverage and depth on the frame's grid. Frames come in any order.
+void draw(Work& work, const Painter& painter) {
+  work.painted = painter.draw(work.moment, work.ambient);
+}
 
-  // Exposure, noise and what else [realism] leaves to the clip.
-  void measure_camera() {
-    scene_ = resolved(stated_, size_, mask_ptr(), options_);
-    check_codec(scene_, reader_.info().colour);
-    world_.shutter = shutter_of(scene_.camera_model);
-    ambient_.emplace(scene_.light, tone_of(scene_.camera_model), mask_ptr());
-  }
+// 4. compose: what was drawn is put into the picture. Frames come in order where a codec's mark
+// follows from the frame before (Painter::is_in_order), else in any order.
+void compose(Work& work, Painter& painter) {
+  painter.compose(work.frame.picture, work.moment, work.ambient, work.painted);
+}
 
-  // The camera's motion where all of it must be known before the first frame.
-  void measure_motion() {
-    video_sha256_ = sha256_of_video(scene_.background.video);
-    motion_.emplace(scene_,
-                    world_.lens,
-                    !world_.shutter.is_instant(),
-                    video_sha256_,
-                    mask_ptr(),
-                    cache_of(options_));
-    if (!motion_->needs_pass()) return;
-    motion_->measure(reader_, options_.stop, {});
-    reader_ = open(scene_, options_);
-  }
+// 5. describe: the frame's truth and masks, from the geometry and from what compositing changed.
+void describe(Work& work, const Setting& setting) {
+  const bool has_motion = setting.scene.motion.model != "none";
+  const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
+  work.truth =
+      frame_truth(setting.world, work.frame, {state, work.moved.shake}, work.moment, work.painted);
+  if (setting.scene.output.masks)
+    work.masks = mask_files(work.truth, work.painted.layer, setting.own_aircraft(), setting.size);
+  work.painted = {};
+}
 
-  // The stream, with the number of frames that this run will make of it.
-  video::StreamInfo stream_info() const {
-    video::StreamInfo info = reader_.info();
-    const std::int64_t left =
-        std::max<std::int64_t>(0, info.frame_count_estimate - scene_.background.first_frame);
-    info.frame_count_estimate = left;
-    if (scene_.background.frame_count)
-      info.frame_count_estimate = left > 0 ? std::min(left, *scene_.background.frame_count)
-                                           : *scene_.background.frame_count;
-    total_ = info.frame_count_estimate;
-    return info;
-  }
+// 6. write: picture, truth and masks. Frames come in order.
+void write(const Work& work, Outputs& outputs, Tally& tally) {
+  outputs.write(work.frame, work.truth, work.masks);
+  add_frame(tally, work.frame, work.moved.motion.state, work.truth);
+}
 
-  WorkPtr read() {
-    if (options_.stop.stop_requested()) return nullptr;
-    const Timed timed(clocks_.read);
-    auto frame = reader_.next();
-    if (!frame) return nullptr;
-    auto work = std::make_shared<Work>();
-    work->frame = std::move(*frame);
+// All frames through the six stages, as many at a time as there are threads; memory is bounded by
+// the frames in flight.
+Tally make_frames(Setting& setting,
+                  video::Reader& reader,
+                  MotionSource& motion,
+                  Outputs& outputs,
+                  std::int64_t total,
+                  const Options& options,
+                  Clocks& clocks) {
+  Tally tally;
+  AmbientEstimator ambient(
+      setting.scene.light, tone_of(setting.scene.camera_model), setting.own_aircraft());
+  Painter& painter = *setting.painter;
+  const auto stopped = [&] { return options.stop.stop_requested(); };
+  const auto decode_stage = [&](tbb::flow_control& control) {
+    const Timed timed(clocks.read);
+    WorkPtr work = decode(reader, options);
+    if (!work) control.stop();
     return work;
-  }
+  };
+  const auto locate_stage = [&](WorkPtr work) {
+    const Timed timed(clocks.move);
+    locate(*work, setting.world, motion, ambient);
+    return work;
+  };
+  const auto draw_stage = [&](WorkPtr work) {
+    if (stopped()) return work;
+    draw(*work, painter);
+    clocks.render += work->painted.render_s;
+    return work;
+  };
+  const auto compose_stage = [&](WorkPtr work) {
+    if (stopped()) return work;
+    const Timed timed(clocks.composite);
+    compose(*work, painter);
+    describe(*work, setting);
+    return work;
+  };
+  const auto write_stage = [&](const WorkPtr& work) {
+    if (stopped()) return;  // a frame that was not painted is not written
+    const Timed timed(clocks.write);
+    write(*work, outputs, tally);
+    if (options.progress) options.progress({tally.frames, total});
+  };
 
-  void move(Work& work) {
-    const Timed timed(clocks_.move);
-    const MotionSource::Measured measured = motion_->next(work.frame);
-    work.motion = measured.motion;
-    work.truth.shake = measured.shake;
-    work.moment = moment_at(world_, work.frame.index, work.frame.time_s, measured.shake);
-    work.ambient = ambient_->next(
-        work.frame.picture, work.moment.sight, search_bounds(work.moment), work.frame.begins_shot);
-  }
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
+  // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
+  const bool one_thread = setting.scene.composite.method == "chroma-key";
+  tbb::task_arena arena(one_thread ? 1 : threads);
+  const auto in_order = tbb::filter_mode::serial_in_order;
+  const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
+  const auto compose_mode = painter.is_in_order() ? in_order : draw_mode;
+  arena.execute([&] {
+    tbb::parallel_pipeline(in_flight,
+                           tbb::make_filter<void, WorkPtr>(in_order, decode_stage) &
+                               tbb::make_filter<WorkPtr, WorkPtr>(in_order, locate_stage) &
+                               tbb::make_filter<WorkPtr, WorkPtr>(draw_mode, draw_stage) &
+                               tbb::make_filter<WorkPtr, WorkPtr>(compose_mode, compose_stage) &
+                               tbb::make_filter<WorkPtr, void>(in_order, write_stage));
+  });
+  if (stopped()) throw Interrupted();
+  return tally;
+}
 
-  void draw(Work& work) {
-    if (options_.stop.stop_requested()) return;
-    work.painted = painter_->draw(work.moment, work.ambient);
-    clocks_.render += work.painted.render_s;
-  }
+// ---------------------------------------------------------------- after the last frame
 
-  void compose(Work& work) {
-    if (options_.stop.stop_requested()) return;
-    const Timed timed(clocks_.composite);
-    painter_->compose(work.frame.picture, work.moment, work.ambient, work.painted);
-    annotation::Frame& truth = work.truth;
-    truth.frame = work.frame.index;
-    truth.time_s = work.frame.time_s;
-    truth.damaged = work.frame.damaged;
-    truth.motion_state = scene_.motion.model == "none" ? "none" : motion::name(work.motion.state);
-    write_moment(world_, work.moment, work.painted, truth);
-    if (scene_.output.masks) work.masks = mask_files(truth, work.painted.layer, mask_ptr(), size_);
-    work.painted = {};
-  }
+Summary summary_of(const Tally& tally, const Clocks& clocks, bool motion_from_cache) {
+  Summary summary;
+  summary.frames = tally.frames;
+  summary.frames_visible = tally.frames_visible;
+  summary.frames_bridged = tally.frames_bridged;
+  summary.frames_damaged = tally.frames_damaged;
+  summary.stages = {clocks.read, clocks.move, clocks.render, clocks.composite, clocks.write};
+  summary.motion_from_cache = motion_from_cache;
+  return summary;
+}
 
-  void write(const Work& work) {
-    const Timed timed(clocks_.write);
-    outputs_->write(work.frame, work.truth, work.masks);
-    ++summary_.frames;
-    last_time_s_ = work.frame.time_s;
-    bool any = false;
-    for (std::size_t i = 0; i < work.truth.intruders.size(); ++i) {
-      const bool visible = work.truth.intruders[i].state == annotation::State::kVisible;
-      any = any || visible;
-      seen_[i] = seen_[i] || visible;
-    }
-    summary_.frames_visible += any ? 1 : 0;
-    const motion::State state = work.motion.state;
-    summary_.frames_bridged += motion::is_known(state) ? 0 : 1;
-    if (work.frame.begins_shot) cuts_.push_back(work.frame.index);
-    turned_away_ += state == motion::State::kTurnedAway ? 1 : 0;
-    summary_.frames_damaged += work.frame.damaged ? 1 : 0;
-    if (options_.progress) options_.progress({summary_.frames, total_});
-  }
-
-  void run_pipeline() {
-    const int threads = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
-    const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
-    // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
-    const bool one_thread = scene_.composite.method == "chroma-key";
-    tbb::task_arena arena(one_thread ? 1 : threads);
-    const auto in_order = tbb::filter_mode::serial_in_order;
-    const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
-    const auto compose_mode = painter_->is_in_order() ? in_order : draw_mode;
-    arena.execute([&] {
-      tbb::parallel_pipeline(
-          in_flight, tbb::make_filter<void, WorkPtr>(in_order, [&](tbb::flow_control& control) {
-                       WorkPtr work = read();
-                       if (!work) control.stop();
-                       return work;
-                     }) & tbb::make_filter<WorkPtr, WorkPtr>(in_order, [&](WorkPtr work) {
-                       move(*work);
-                       return work;
-                     }) & tbb::make_filter<WorkPtr, WorkPtr>(draw_mode, [&](WorkPtr work) {
-                       draw(*work);
-                       return work;
-                     }) & tbb::make_filter<WorkPtr, WorkPtr>(compose_mode, [&](WorkPtr work) {
-                       compose(*work);
-                       return work;
-                     }) & tbb::make_filter<WorkPtr, void>(in_order, [&](const WorkPtr& work) {
-                       // A frame that was not painted comes after the
-                       // stop.
-                       if (!options_.stop.stop_requested()) write(*work);
-                     }));
-    });
-  }
-
-  void say_what_was_odd() const {
-    const auto number = [](std::int64_t n) { return std::to_string(n); };
-    if (reader_.corrupt_packets() > 0 || summary_.frames_damaged > 0)
-      warn(options_.warn,
-           scene_.background.video.string() + ": " + number(reader_.corrupt_packets()) +
-               " corrupt packets; " + number(summary_.frames_damaged) +
-               " frames are flagged damaged");
-    if (reader_.ends_early())
-      warn(options_.warn,
-           scene_.background.video.string() + ": ends early, after " + number(summary_.frames) +
-               " frames");
-    if (scene_.background.frame_count && summary_.frames < *scene_.background.frame_count)
-      warn(options_.warn,
-           to_string(scene_.background.where) + ": frame_count is " +
-               number(*scene_.background.frame_count) + ", but the video holds " +
-               number(summary_.frames) + " frames from first_frame on");
-    if (summary_.frames_bridged > 0)
-      warn(options_.warn,
-           "the camera's motion could not be measured in " + number(summary_.frames_bridged) +
-               " frames; they are bridged, and truth.jsonl says which");
-    if (!cuts_.empty())
-      warn(options_.warn,
-           fmt::format(
-               "{}: the video is cut at frame {}: nothing links the camera's pose and light to "
-               "the frames before",
-               scene_.background.video.string(),
-               fmt::join(cuts_, ", ")));
-    if (turned_away_ > 0)
-      warn(
-          options_.warn,
-          "in " + number(turned_away_) +
-              " of them the camera has turned so far from the first frame that no homography holds "
-              "both; expected [motion] reference = \"smoothed\", or model = \"rotation\" with the "
-              "camera's lens");
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-      warn_not_flyable(i);
-      if (!seen_[i]) warn_never_seen(i);
-    }
-  }
-
-  void warn_not_flyable(std::size_t i) const {
-    const Actor& actor = world_.actors[i];
-    const std::string words = words_beyond_limits(actor.aircraft, actor.path, 0, last_time_s_);
-    if (words.empty()) return;
-    warn(options_.warn,
-         to_string(scene_.intruders[i].where) + ": intruder '" + actor.id + "': " + words);
-  }
-
-  void warn_never_seen(std::size_t i) const {
-    std::string text = to_string(scene_.intruders[i].where) + ": intruder '" + world_.actors[i].id +
-                       "' is never visible";
-    if (const auto nearest = nearest_approach(world_, i, last_time_s_)) {
-      char detail[160];
-      std::snprintf(detail,
-                    sizeof detail,
-                    "; it comes nearest to the view's edge at %.2f s, %.1f degrees from it, at a "
-                    "range of %.0f m",
-                    nearest->time_s,
-                    nearest->off_view_deg,
-                    nearest->range_m);
-      text += detail;
-    } else {
-      text += "; its path does not overlap the clip in time";
-    }
-    warn(options_.warn, text);
-  }
-
-  std::vector<Checksum> inputs() const {
-    std::vector<Checksum> result;
-    if (!video_sha256_.empty()) result.push_back({scene_.background.video.string(), video_sha256_});
-    const auto add = [&](const fs::path& file) {
-      result.push_back({file.string(), sha256_of_file(file)});
-    };
-    if (scene_.background.mask) add(*scene_.background.mask);
-    if (camera_file_) add(*camera_file_);
-    if (scene_.lens.file) add(*scene_.lens.file);
-    if (scene_.camera.path_file) add(*scene_.camera.path_file);
-    for (const scene::Intruder& intruder : scene_.intruders)
-      if (intruder.path_file) add(*intruder.path_file);
-    std::vector<fs::path> models;
-    for (const Actor& actor : world_.actors)
-      models.insert(models.end(), actor.type->sources.begin(), actor.type->sources.end());
-    std::sort(models.begin(), models.end());
-    models.erase(std::unique(models.begin(), models.end()), models.end());
-    for (const fs::path& model : models) add(model);
-    return result;
-  }
-
-  Options options_;
-  std::optional<fs::path> camera_file_;
-  StagedFolder staged_;
-  video::Reader reader_;
-  lens::ImageSize size_;
-  std::optional<image::Mask> mask_;
-  StatedScene stated_;
-  scene::Scene scene_;
-  World world_;
-  std::unique_ptr<Painter> painter_;
-  std::string video_sha256_;
-  std::optional<MotionSource> motion_;
-  std::optional<AmbientEstimator> ambient_;
-  std::optional<Outputs> outputs_;
-  std::vector<bool> seen_;
-  std::int64_t turned_away_ = 0;    // frames
-  std::vector<std::int64_t> cuts_;  // frames that begin a shot
-  Summary summary_;
-  double last_time_s_ = 0;
-  mutable std::int64_t total_ = 0;
-  struct {
-    std::atomic<double> read = 0, move = 0, render = 0, composite = 0, write = 0;
-  } clocks_;
-};
+std::optional<tbb::global_control> thread_limit(int threads) {
+  if (threads <= 0) return std::nullopt;
+  return std::optional<tbb::global_control>(std::in_place,
+                                            tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+}
 
 }  // namespace
 
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(options.threads));
+  const auto limit = thread_limit(options.threads);
   const fs::path folder = out / scene.name;
-  Run run(scene, folder, options);
-  Summary summary = run.run();
+  StagedFolder staged(folder, options.overwrite);
+
+  // All that can be wrong with the inputs is found here, before anything that takes long.
+  video::Reader reader = open(scene, options);
+  const StatedScene stated_scene = stated(scene, reader.info());
+  Setting setting(stated_scene, size_of(reader.info()), options);
+  const video::StreamInfo info = used_stream(reader.info(), scene.background);
+  check_camera_path(setting.world.camera, info);
+  std::optional<Outputs> outputs;
+  outputs.emplace(staged.path(), setting.scene, setting.world.lens, info, options.threads);
+
+  // What must be known of the whole clip before its first frame.
+  complete_camera(setting, stated_scene, reader.info(), options);
+  const std::string video_sha256 = sha256_of_video(scene.background.video);
+  MotionSource motion = measured_motion(setting, video_sha256, reader, options);
+
+  const Stopwatch running;
+  Clocks clocks;
+  const Tally tally =
+      make_frames(setting, reader, motion, *outputs, info.frame_count_estimate, options, clocks);
+
+  motion.store();
+  warn_of_run(tally, setting.scene, setting.world, reader, options.warn);
+  Summary summary = summary_of(tally, clocks, motion.from_cache());
+  outputs->finish(setting.scene, input_files(scene, setting.world, video_sha256), summary);
+  outputs.reset();
+  staged.commit();
+  summary.seconds = running.seconds();
   summary.folder = folder;
   return summary;
 }
@@ -366,7 +318,7 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
                       false,
                       sha256_of_video(scene.background.video),
                       mask ? &*mask : nullptr,
-                      cache_of(options));
+                      motion_cache(options));
   if (source.from_cache()) return;
   const std::int64_t total =
       scene.background.frame_count.value_or(reader.info().frame_count_estimate);

@@ -13,6 +13,7 @@
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 #include "sequence/sequence/finished.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/masks.h"
 #include "sequence/sequence/recompose.h"
 #include "sequence/sequence/sequence.h"

@@ -8,9 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "camera/lens/calibration_file.h"
 #include "foundation/base/error.h"
-#include "truth/annotation/bearing.h"
+#include "sequence/sequence/from_scene.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -18,46 +17,6 @@ namespace {
 constexpr double kMetresPerSecondInKnots = 1.943844;
 constexpr double kMetresInFeet = 3.280840;
 constexpr double kSearchMarginPx = 1.5;
-
-// Adds the place in the scene to an error that knows none.
-template <typename Make>
-auto at_place(const Where& where, Make make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    if (!error.where().file.empty()) throw;
-    throw Error(error.message(), where);
-  }
-}
-
-std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
-  if (distortion.size() < size) distortion.resize(size, 0.0);
-  return distortion;
-}
-
-lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
-  if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
-    if (lens.model == "pinhole")
-      return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    if (lens.model == "fisheye")
-      return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
-  }
-  Pixel focal{0, 0};
-  if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
-  if (lens.vertical_fov_deg) {
-    const lens::Lens plain = lens.model == "fisheye"
-                                 ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
-                                 : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    focal = {plain.focal_px(), plain.focal_px()};
-  }
-  Pixel centre{size.width / 2.0, size.height / 2.0};
-  if (lens.principal_point_px)
-    centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
-  if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
-  if (lens.model == "fisheye")
-    return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
-  return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
-}
 
 aircraft::LoadOptions load_options(const scene::Intruder& intruder,
                                    const trajectory::Path& path,
@@ -133,74 +92,6 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
          (after_s - before_s);
 }
 
-annotation::State state_of(const Moment& moment,
-                           std::size_t i,
-                           const Vector3& p_in_cam,
-                           const image::Layer& layer,
-                           const composite::Visible* visible) {
-  using annotation::State;
-  if (visible != nullptr && visible->box) return State::kVisible;
-  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
-                     layer.area_alone_in_frame_px[i] > 0;
-  if (drawn) return State::kHidden;
-  if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
-  return State::kOutside;
-}
-
-void add_bearings(annotation::Intruder& truth,
-                  const Moment& moment,
-                  const trajectory::State& state,
-                  const Vector3& offset_in_world) {
-  const annotation::Bearing nominal = annotation::bearing_of(
-      cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
-  truth.nominal_azimuth_deg = nominal.azimuth_deg;
-  truth.nominal_elevation_deg = nominal.elevation_deg;
-  const auto seen =
-      annotation::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
-  if (!seen) return;
-  truth.azimuth_deg = seen->azimuth_deg;
-  truth.elevation_deg = seen->elevation_deg;
-}
-
-void add_geometry(annotation::Intruder& truth,
-                  const Moment& moment,
-                  const trajectory::State& state) {
-  const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
-  const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
-  const double range_m = offset.norm();
-  truth.position_ned_m = state.position_in_world;
-  truth.velocity_ned_mps = state.velocity_in_world_mps;
-  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
-  truth.position_in_cam_m = p_in_cam;
-  truth.range_m = range_m;
-  if (range_m > 0) {
-    const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
-    truth.range_rate_mps = offset.dot(relative) / range_m;
-    add_bearings(truth, moment, state, offset);
-  }
-}
-
-void add_pixels(annotation::Intruder& truth,
-                std::size_t i,
-                const image::Layer& layer,
-                const composite::Visible& visible) {
-  truth.visible_box_px = visible.box;
-  if (visible.box) truth.covered_box_px = visible.covered;
-  truth.visible_area_px = visible.pixels;
-  truth.alpha_sum_px = visible.alpha_sum_px;
-  truth.centroid_px = visible.centroid;
-  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
-  const double alone = layer.area_alone_px[i];
-  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
-  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
-  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
-  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
-  constexpr double kRounding = 1e-6;  // sums of float coverages
-  for (double* share :
-       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
-    if (*share < kRounding) *share = 0;
-}
-
 }  // namespace
 
 // Intruders share a mesh when they load the same: gear and axes included.
@@ -214,50 +105,12 @@ static std::string type_key(const scene::Intruder& intruder, const trajectory::P
   return key;
 }
 
-Shutter shutter_of(const scene::CameraModel& model) {
-  Shutter shutter;
-  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
-  shutter.exposure_s = model.exposure_s.value_or(0);
-  shutter.readout_s = model.readout_s.value_or(0);
-  const std::string readout = model.readout.value_or("down");
-  shutter.readout = readout == "up"      ? Readout::kUp
-                    : readout == "right" ? Readout::kRight
-                    : readout == "left"  ? Readout::kLeft
-                                         : Readout::kDown;
-  return shutter;
-}
-
-trajectory::Path path_of(const scene::Intruder& intruder) {
-  const trajectory::AttitudeOverride attitude{
-      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
-  return at_place(intruder.where, [&] {
-    const trajectory::Path path =
-        intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
-        : intruder.speed_mps
-            ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
-            : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
-    return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
-  });
-}
-
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
                                                       const std::stop_token& stop) {
   return std::make_shared<const aircraft::Aircraft>(
       aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
-}
-
-trajectory::Path camera_path(const scene::Camera& camera) {
-  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
-  return trajectory::uniform(
-      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
-}
-
-lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
-  return at_place(lens.where, [&] {
-    return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
-  });
 }
 
 World load_world(const scene::Scene& scene,
@@ -357,27 +210,6 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }
   return moment;
-}
-
-std::vector<annotation::Intruder> truth_of(const World& world,
-                                           const Moment& moment,
-                                           const image::Layer& layer,
-                                           const std::vector<composite::Visible>& visible) {
-  std::vector<annotation::Intruder> result;
-  for (std::size_t i = 0; i < world.actors.size(); ++i) {
-    annotation::Intruder truth;
-    truth.id = world.actors[i].id;
-    truth.aircraft = world.actors[i].aircraft;
-    if (moment.states[i]) {
-      add_geometry(truth, moment, *moment.states[i]);
-      const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
-      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
-      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
-      if (seen != nullptr) add_pixels(truth, i, layer, *seen);
-    }
-    result.push_back(std::move(truth));
-  }
-  return result;
 }
 
 std::optional<NearestApproach> nearest_approach(const World& world,

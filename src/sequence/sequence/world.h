@@ -38,20 +38,13 @@ struct World {
   Shutter shutter;
 };
 
-// Where the camera of a scene is at each time of its clip. Errors as of read_path_file().
-trajectory::Path camera_path(const scene::Camera& camera);
-
-// An intruder's path on the clip's clock, and its aircraft as it is loaded to fly there: gear and
-// flaps go by the airspeed and the height with which the path begins.
-trajectory::Path path_of(const scene::Intruder& intruder);
+// An intruder's aircraft as it flies at the beginning of its path: the airspeed and the height
+// there decide on gear and flaps.
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
-// The shutter of a camera model without "auto" keys (resolve.h).
-Shutter shutter_of(const scene::CameraModel& model);
 // The scene has no "auto" keys left (resolve.h). Throws Interrupted on stop.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
@@ -84,12 +77,6 @@ std::optional<PixelBox> search_bounds(const Moment& moment);
 
 // Error where the camera's path does not reach that time.
 Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake);
-
-// The truth of the frame's intruders from geometry and from what compositing changed.
-std::vector<annotation::Intruder> truth_of(const World& world,
-                                           const Moment& moment,
-                                           const image::Layer& layer,
-                                           const std::vector<composite::Visible>& visible);
 
 // Where an actor comes nearest to being in view: for the warning about an intruder that never is.
 struct NearestApproach {

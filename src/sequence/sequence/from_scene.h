@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "camera/lens/lens.h"
+#include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
+#include "foundation/geometry/within_frame.h"
+#include "foundation/image/tone_curve.h"
+#include "picture/composite/sensor.h"
+#include "world/scene/scene.h"
+#include "world/trajectory/path.h"
+
+// What the tables of a scene file mean to the modules that work with them: one function for each
+// table. A scene holds strings and optional numbers as its file states them; lens, composite and
+// trajectory take values of their own.
+namespace airtruth::sequence {
+
+// [lens]: read from its file, or built from the view or the focal lengths for a picture of `size`.
+// Error where a calibration cannot be read or is of another size.
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
+
+// [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
+trajectory::Path camera_path(const scene::Camera& camera);
+
+// [[intruder]]: its path on the clip's clock.
+trajectory::Path path_of(const scene::Intruder& intruder);
+
+// [light]: the unit vector to the sun, in world axes.
+Vector3 to_sun_in_world(const scene::Light& light);
+
+// [shutter] of a camera model without "auto" keys (resolve.h). Defaults: exposure and read-out of 0
+// s.
+Shutter shutter_of(const scene::CameraModel& model);
+
+// [sensor] gamma: the curve from linear light to code values; sRGB's where gamma is not stated.
+image::ToneCurve tone_of(const scene::CameraModel& model);
+
+// [optics] and [sensor]: what the camera does to samples after the point spread. Quantities that
+// the model lacks are 0: no sharpening, no noise, no chroma spread.
+composite::Sensor sensor_of(const scene::CameraModel& model);
+
+// [sensor] codec_step: true where the codec's mark is made.
+bool has_codec(const scene::CameraModel& model);
+
+// Adds the place in the scene to an Error that names no file.
+template <typename Make>
+auto at_place(const Where& where, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (!error.where().file.empty()) throw;
+    throw Error(error.message(), where);
+  }
+}
+
+}  // namespace airtruth::sequence

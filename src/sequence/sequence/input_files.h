@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sequence/sequence/outputs.h"
+#include "sequence/sequence/world.h"
+#include "world/scene/scene.h"
+
+namespace airtruth::sequence {
+
+// Every file that a run reads, with its SHA-256, for sequence.json: video, mask, camera file, lens
+// file, path files, and the files of the aircraft's models by name. `scene` is the one the user
+// gave. `video_sha256` is empty for a pattern of numbered images, which is then left out.
+std::vector<Checksum> input_files(const scene::Scene& scene,
+                                  const World& world,
+                                  const std::string& video_sha256);
+
+}  // namespace airtruth::sequence
