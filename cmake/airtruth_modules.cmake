@@ -65,8 +65,13 @@ function(add_module_test target label module sources libraries)
   endif()
   add_dependencies(${target} airtruth-model-reader)  # which reads the model files of tests
   add_test(NAME ${target} COMMAND ${target})
+  # A limit stops a test that hangs: ten times and more what the longest of its label takes on two quiet cores.
+  set(limit_s 600)
+  if(label STREQUAL slow)
+    set(limit_s 3600)
+  endif()
   set_tests_properties(${target} PROPERTIES
-    LABELS ${label} TIMEOUT 900
+    LABELS ${label} TIMEOUT ${limit_s}
     ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1;AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader")
   if(label STREQUAL slow)
     set_tests_properties(${target} PROPERTIES COST 100)  # begun first, so that none is left alone at the end

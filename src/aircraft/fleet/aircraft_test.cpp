@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -194,6 +196,24 @@ TEST(Catalogue, ListsHundredsAndTheirLiveries) {
   const auto entries = list_aircraft();
   EXPECT_GT(entries.size(), 900u);
   EXPECT_THAT(liveries("738/738-Ryanair"), testing::Contains("738/738-KLM"));
+}
+
+// The ending decides, in upper or lower case, before anything is looked up.
+TEST(AircraftFile, AModelFileIsItselfAndAnythingElseIsACatalogueName) {
+  const fs::path file = fs::path(testing::TempDir()) / "plane.OBJ";
+  std::ofstream(file) << "v 0 0 0\n";
+  EXPECT_EQ(aircraft_file(file.string()), file);
+  fs::remove(file);
+  EXPECT_EQ(aircraft_file("738/738-Ryanair").filename(), "738-Ryanair.xml");
+  const auto message = [](const std::string& name) -> std::string {
+    try {
+      return aircraft_file(name).string();
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(message(file.string()), testing::HasSubstr("plane.OBJ' does not exist"));
+  EXPECT_THAT(message("738/738-Ryanaire"), testing::HasSubstr("738/738-Ryanair"));
 }
 
 }  // namespace

@@ -185,6 +185,12 @@ Entry find_aircraft(const std::string& name) {
               joined(nearest_aircraft(name, 3)) + " (`airtruth aircraft list` shows all)");
 }
 
+fs::path aircraft_file(const std::string& name) {
+  if (!is_model_file(name)) return find_aircraft(name).file;
+  if (!fs::exists(name)) throw Error("model file '" + name + "' does not exist");
+  return name;
+}
+
 std::vector<std::string> aircraft_named_like(const std::string& word) {
   return names_that([&](const std::string& name) { return is_named_like(name, word); });
 }

@@ -49,6 +49,11 @@ std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t c
 // The entry of that name; Error with the nearest names otherwise.
 Entry find_aircraft(const std::string& name);
 
+// The file of the aircraft that `name` means: the model file itself where is_model_file(name)
+// (aircraft/wrapper/reader.h), else the wrapper of that catalogue name. Error where the model file
+// does not exist, or no aircraft has that name; the message holds the nearest names.
+std::filesystem::path aircraft_file(const std::string& name);
+
 struct Aircraft {
   std::string name;
   std::filesystem::path file;

@@ -12,6 +12,7 @@
 #include "sequence/sequence/finished.h"
 #include "show/report/thumbnails.h"
 #include "truth/annotation/in_view.h"
+#include "truth/annotation/lens_facts.h"
 #include "truth/exchange/exchange.h"
 
 namespace airtruth::experiment {
@@ -23,7 +24,7 @@ constexpr double kLeastClosePx = 48;
 
 std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
   if (set.is_imported(name)) return std::nullopt;
-  return annotation::lens_from(sequence::open_finished(set.folder(name)).truth.lens);
+  return annotation::lens_of(sequence::open_finished(set.folder(name)).truth.lens);
 }
 
 TruthClip truth_from(exchange::Clip clip) {

@@ -14,6 +14,7 @@
 #include "sequence/sequence/masks.h"
 #include "sequence/sequence/recompose.h"
 #include "truth/annotation/in_view.h"
+#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -95,7 +96,7 @@ class Check {
     if (frames != finished.truth.frames.size())
       fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
             std::to_string(finished.truth.frames.size()));
-    const lens::Lens lens = annotation::lens_from(finished.truth.lens);
+    const lens::Lens lens = annotation::lens_of(finished.truth.lens);
     for (const annotation::Frame& frame : finished.truth.frames)
       for (const annotation::Intruder& intruder : frame.intruders) {
         box(frame, intruder, width, height);

@@ -16,13 +16,8 @@ namespace airtruth::dataset {
 namespace {
 
 void check_aircraft(const Aircraft& aircraft) {
-  if (fs::path(aircraft.aircraft).has_extension()) {
-    if (!fs::exists(aircraft.aircraft))
-      throw Error("model file '" + aircraft.aircraft + "' does not exist", aircraft.where);
-    return;
-  }
   try {
-    aircraft::find_aircraft(aircraft.aircraft);
+    aircraft::aircraft_file(aircraft.aircraft);
   } catch (const Error& error) {
     throw Error(error.message(), aircraft.where);
   }

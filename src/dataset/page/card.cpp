@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "aircraft/wrapper/reader.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/version.h"
 
@@ -102,8 +103,7 @@ std::string aircraft_text(const Scenes& scenes) {
   bool any_of_flightgear = false, any_file = false;
   for (const Scene& s : scenes)
     for (const scene::Intruder& intruder : s.intruders)
-      (std::filesystem::path(intruder.aircraft).has_extension() ? any_file : any_of_flightgear) =
-          true;
+      (aircraft::is_model_file(intruder.aircraft) ? any_file : any_of_flightgear) = true;
   std::vector<std::string> parts;
   if (any_of_flightgear)
     parts.emplace_back(

@@ -10,6 +10,7 @@
 #include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/world.h"
 #include "truth/annotation/in_view.h"
+#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -55,7 +56,7 @@ std::size_t cell_of(const PixelBox& box, int width, int height) {
 
 void count(const sequence::Finished& finished, Portrait& portrait) {
   std::optional<lens::Lens> lens;
-  if (finished.scene) lens = annotation::lens_from(finished.truth.lens);
+  if (finished.scene) lens = annotation::lens_of(finished.truth.lens);
   portrait.centres.assign(Portrait::kCellColumns * Portrait::kCellRows, 0);
   for (const annotation::Frame& frame : finished.truth.frames) {
     bool is_seen = false;

@@ -9,11 +9,11 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/telemetry.h"
-#include "sequence/sequence/outputs.h"
+#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::sequence {
 std::string words_of(const lens::Lens& lens) {
-  const annotation::LensFacts facts = facts_of(lens);
+  const annotation::LensFacts facts = annotation::facts_of(lens);
   return fmt::format("{} {} {} {}",
                      facts.model,
                      fmt::join(facts.focal_px, ","),

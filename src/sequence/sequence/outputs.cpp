@@ -55,21 +55,6 @@ std::vector<Checksum> checksums_below(const fs::path& folder) {
 
 }  // namespace
 
-annotation::LensFacts facts_of(const lens::Lens& lens) {
-  annotation::LensFacts facts;
-  facts.model = lens.name();
-  facts.width = lens.size().width;
-  facts.height = lens.size().height;
-  std::visit(
-      [&](const auto& model) {
-        facts.focal_px = {model.focal_px.x(), model.focal_px.y()};
-        facts.principal_point_px = {model.principal_point_px.x(), model.principal_point_px.y()};
-        if constexpr (requires { model.distortion; }) facts.distortion = model.distortion;
-      },
-      lens.model());
-  return facts;
-}
-
 Outputs::Outputs(const fs::path& folder,
                  const scene::Scene& scene,
                  const lens::Lens& lens,
@@ -77,7 +62,7 @@ Outputs::Outputs(const fs::path& folder,
                  int threads)
     : folder_(folder),
       scene_(scene),
-      lens_(facts_of(lens)),
+      lens_(annotation::facts_of(lens)),
       video_(folder / (scene.name + video::extension(video::format_from_name(scene.output.video)))),
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),

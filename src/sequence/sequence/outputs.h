@@ -15,13 +15,12 @@
 #include "sequence/sequence/sequence.h"
 #include "show/report/pictures.h"
 #include "truth/annotation/evision.h"
+#include "truth/annotation/lens_facts.h"
 #include "truth/annotation/truth.h"
 #include "world/scene/scene.h"
 
 // What a run leaves (docs/formats/output.md), written frame by frame into the staged folder.
 namespace airtruth::sequence {
-
-annotation::LensFacts facts_of(const lens::Lens& lens);
 
 // An input or output file with its SHA-256, for sequence.json.
 struct Checksum {

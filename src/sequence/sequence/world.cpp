@@ -126,7 +126,11 @@ World load_world(const scene::Scene& scene,
     const trajectory::Path path = path_of(intruder);
     Type& type = types[type_key(intruder, path)];
     if (!type.aircraft)
-      type = at_place(intruder.where, [&] { return load_type(intruder, path, warn, stop); });
+      type = at_place(intruder.where, [&] {
+        aircraft::aircraft_file(
+            intruder.aircraft);  // a missing file is an error at the scene's line
+        return load_type(intruder, path, warn, stop);
+      });
     annotation::Silhouette silhouette{&type.aircraft->mesh,
                                       aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
@@ -156,11 +160,7 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   check_camera_path(at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), info);
   for (const scene::Intruder& intruder : scene.intruders) {
-    at_place(intruder.where, [&] {
-      return std::filesystem::exists(intruder.aircraft)
-                 ? std::filesystem::path(intruder.aircraft)
-                 : aircraft::find_aircraft(intruder.aircraft).file;
-    });
+    at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
     path_of(intruder);
   }
 }

@@ -3,17 +3,6 @@
 
 namespace airtruth::annotation {
 
-lens::Lens lens_from(const LensFacts& facts) {
-  const Pixel focal(facts.focal_px[0], facts.focal_px[1]);
-  const Pixel principal(facts.principal_point_px[0], facts.principal_point_px[1]);
-  const lens::ImageSize size{facts.width, facts.height};
-  if (facts.model == "fisheye")
-    return lens::Lens(lens::Fisheye{focal, principal, facts.distortion}, size);
-  if (facts.model == "brown_conrady")
-    return lens::Lens(lens::BrownConrady{focal, principal, facts.distortion}, size);
-  return lens::Lens(lens::Pinhole{focal, principal}, size);
-}
-
 bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens) {
   if (!intruder.position_in_cam_m) return false;
   const auto nominal = lens.pixel_from_cam(*intruder.position_in_cam_m);

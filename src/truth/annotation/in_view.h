@@ -6,9 +6,6 @@
 
 namespace airtruth::annotation {
 
-// The lens that a line of truth states.
-lens::Lens lens_from(const LensFacts& facts);
-
 // Does the intruder's reference point lie in the picture, by its position through the stated lens
 // and motion alone? No pixel and no box is looked at.
 bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens);
