@@ -9,6 +9,7 @@
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
 #include "sequence/sequence/flyable.h"
+#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/sequence/world.h"
 
