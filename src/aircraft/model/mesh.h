@@ -22,11 +22,13 @@ struct Texture {
     int height = 0;
     std::vector<std::array<float, 4>>
         texels;  // linear premultiplied RGBA; row 0 is v = 0 (the bottom, as OpenGL's)
+    bool operator==(const Level&) const = default;
   };
   std::vector<Level> levels;
   bool repeat_u = true;
   bool repeat_v = true;
   bool has_translucency = false;  // some texel has alpha below kOpaque
+  bool operator==(const Texture&) const = default;
 };
 
 // Opacity at which a surface counts as opaque: 254 / 255, since files round.
@@ -40,11 +42,13 @@ struct Material {
   float opacity = 1;
   int texture = -1;  // index into Mesh::textures, -1: none
   Finish finish = Finish::kPaint;
+  bool operator==(const Material&) const = default;
 };
 
 struct Triangle {
   std::array<std::uint32_t, 3> vertex{};
   std::uint32_t material = 0;
+  bool operator==(const Triangle&) const = default;
 };
 
 // Triangles that move together. part 0 is the airframe; a spinning part (propeller, rotor) turns
@@ -56,6 +60,7 @@ struct Part {
   Eigen::Vector3f axis_in_body{1, 0, 0};
   Eigen::Vector3f centre_in_body{0, 0, 0};
   double revolutions_per_s = 0;
+  bool operator==(const Part&) const = default;
 };
 
 struct Mesh {
@@ -67,6 +72,7 @@ struct Mesh {
   std::vector<Part> parts;
 
   std::size_t triangle_count() const;
+  bool operator==(const Mesh&) const = default;
 };
 
 // body_from_part at a time: the identity for the airframe, a rotation about the axis for a spinning

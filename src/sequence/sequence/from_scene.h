@@ -44,7 +44,7 @@ bool has_codec(const scene::CameraModel& model);
 
 // Adds the place in the scene to an Error that names no file.
 template <typename Make>
-auto at_place(const Where& where, Make make) {
+decltype(auto) at_place(const Where& where, Make make) {
   try {
     return make();
   } catch (const Error& error) {

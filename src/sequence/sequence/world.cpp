@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "sequence/sequence/from_scene.h"
 
@@ -43,13 +44,44 @@ struct Type {
   std::shared_ptr<const render::Model> model;
 };
 
-Type load_type(const scene::Intruder& intruder,
-               const trajectory::Path& path,
-               const Warn& warn,
-               const std::stop_token& stop) {
-  const auto loaded = aircraft_of(intruder, path, warn, stop);
-  return {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+// What decides how an intruder's aircraft is loaded. A FlightGear wrapper answers to the airspeed
+// and the height at which the path begins (gear, flaps); a bare model file does not.
+std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  const aircraft::LoadOptions options = load_options(intruder, path);
+  const bool has_wrapper = !aircraft::is_model_file(intruder.aircraft) ||
+                           aircraft::ending_of(intruder.aircraft) == ".xml";
+  std::string key = intruder.aircraft;
+  if (has_wrapper)
+    key +=
+        '|' + std::to_string(options.airspeed_kt) + '|' + std::to_string(options.altitude_agl_ft);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
 }
+
+// The aircraft of a scene, each loaded once. Two that come out as the same mesh, such as one type
+// at two cruising speeds, share it with its BVH.
+class LoadedTypes {
+ public:
+  const Type& type_of(const scene::Intruder& intruder,
+                      const trajectory::Path& path,
+                      const Warn& warn,
+                      const std::stop_token& stop) {
+    const std::string key = type_key(intruder, path);
+    const auto known = types_.find(key);
+    if (known != types_.end()) return known->second;
+    aircraft::aircraft_file(intruder.aircraft);  // a missing file is an error at the scene's line
+    const auto loaded = aircraft_of(intruder, path, warn, stop);
+    for (const auto& [other_key, other] : types_)
+      if (other.aircraft->name == loaded->name && other.aircraft->mesh == loaded->mesh)
+        return types_[key] = other;
+    return types_[key] = {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+  }
+
+ private:
+  std::map<std::string, Type> types_;
+};
 
 bool meets_frame(const Box& box, const lens::ImageSize& size) {
   return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
@@ -94,17 +126,6 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 
 }  // namespace
 
-// Intruders share a mesh when they load the same: gear and axes included.
-static std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
-  const aircraft::LoadOptions options = load_options(intruder, path);
-  std::string key = intruder.aircraft + '|' + std::to_string(options.airspeed_kt) + '|' +
-                    std::to_string(options.altitude_agl_ft);
-  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
-  if (options.axes)
-    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
-  return key;
-}
-
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
@@ -121,16 +142,11 @@ World load_world(const scene::Scene& scene,
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
               shutter_of(scene.camera_model)};
-  std::map<std::string, Type> types;  // one BVH for all intruders of one type
+  LoadedTypes types;
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = path_of(intruder);
-    Type& type = types[type_key(intruder, path)];
-    if (!type.aircraft)
-      type = at_place(intruder.where, [&] {
-        aircraft::aircraft_file(
-            intruder.aircraft);  // a missing file is an error at the scene's line
-        return load_type(intruder, path, warn, stop);
-      });
+    const Type& type = at_place(
+        intruder.where, [&]() -> const Type& { return types.type_of(intruder, path, warn, stop); });
     annotation::Silhouette silhouette{&type.aircraft->mesh,
                                       aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
