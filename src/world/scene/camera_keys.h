@@ -9,11 +9,13 @@
 
 namespace airtruth::scene {
 
-// The camera model's keys that a camera file or a clip can tell, each with its place in the model.
+// One key of the camera model: its name and its member of CameraModel. These are the keys that
+// calibration can measure on a clip and that a camera file can state.
 struct CameraKey {
   using Number = std::optional<double> CameraModel::*;
   using Colour = std::optional<std::array<double, 3>> CameraModel::*;
-  const char* name;  // table and key
+  // Table and key, separated by a dot.
+  const char* name;
   std::variant<Number, Colour> member;
 };
 
@@ -32,7 +34,7 @@ inline constexpr std::array<CameraKey, 12> kCameraKeys = {{
     {"sensor.codec_step", &CameraModel::codec_step},
 }};
 
-// visit(name, member of each model) for every key.
+// Calls visit(name, member of each model) for every key, in the order of kCameraKeys.
 template <typename Visit, typename... Models>
 void for_each_camera_key(const Visit& visit, Models&... models) {
   for (const CameraKey& key : kCameraKeys)

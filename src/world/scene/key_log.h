@@ -9,24 +9,25 @@
 
 #include "world/scene/limits.h"
 
-// What readers of tables ask for, so that a test can walk every key of a format without a list of
-// its own. Not installed.
+// Records the keys that readers of TOML tables use, so that a test can visit every key of a format
+// without its own list. This header is not installed.
 namespace airtruth::scene {
 
 enum class NumberShape { kOne, kList, kTuple, kPoints };
 
 struct NumberKey {
   NumberShape shape = NumberShape::kOne;
-  std::vector<Limits> limits;  // one, or one for each place of a tuple or point
+  // One range for all numbers, or one for each place of a tuple or point.
+  std::vector<Limits> limits;
 };
 struct WholeKey {
   std::int64_t low = 0;
   std::int64_t high = 0;
 };
 
-// While one lives, the TableReaders of its thread write down which keys they know, which they read,
-// and within what ranges. A key is named by its path: "background[0].lens.focal_px". One at a time
-// on a thread.
+// While a KeyLog exists, every TableReader of the same thread records the keys that it accepts, the
+// keys that it reads and their ranges. A key is named by its path: "background[0].lens.focal_px". A
+// thread holds one KeyLog at a time.
 class KeyLog {
  public:
   KeyLog();
@@ -39,7 +40,7 @@ class KeyLog {
   const std::map<std::string, NumberKey>& numbers() const { return numbers_; }
   const std::map<std::string, WholeKey>& wholes() const { return wholes_; }
 
-  // For TableReader; each does nothing where no log lives.
+  // TableReader calls these functions. They do nothing while the thread has no KeyLog.
   static void note_known(const std::string& path);
   static void note_read(const std::string& path);
   static void note_numbers(const std::string& path,

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <string_view>
 
-// The ranges of the numbers in TOML files; docs/formats/scene.md states each. Every range is closed
-// and bounded on both sides, far beyond what a flight needs and far from where squares and
-// quotients of doubles or floats overflow or vanish. Not installed.
+// The ranges of the numbers in TOML files; docs/formats/scene.md states each. Every range is
+// bounded on both sides, far beyond what a flight needs, and keeps the squares and quotients of
+// floats and doubles far from overflow and underflow. This header is not installed.
 namespace airtruth::scene {
 
-// The numbers that a key takes, and how a message calls them. NaN and infinity are never among
-// them. A bound that is itself excluded is written in `expected`.
+// The range of a number, and the words that an error message uses for it. NaN and infinity lie
+// outside every range. The bounds belong to the range unless without_low or without_high is set;
+// `expected` then says so.
 struct Limits {
   std::string_view expected;
   double low = 0;
@@ -35,7 +36,7 @@ inline constexpr Limits kPinholeView{
     .high = 180,
     .without_high = true};
 
-// Places, times and speeds. 1e9 is what path files allow as well.
+// Positions, times and speeds. The bound 1e9 is also that of path files (trajectory/path_file.cpp).
 inline constexpr Limits kPosition{.expected = "metres from -1e9 to 1e9", .low = -1e9, .high = 1e9};
 inline constexpr Limits kTime{.expected = "seconds from -1e9 to 1e9", .low = -1e9, .high = 1e9};
 inline constexpr Limits kVelocity{
@@ -58,10 +59,15 @@ inline constexpr Limits kDistortion{
 inline constexpr Limits kExposureFactor{
     .expected = "a number from 1e-6 to 1e4", .low = 1e-6, .high = 1e4};
 inline constexpr Limits kAlbedo{.expected = "a number from 0 to 1", .low = 0, .high = 1};
-inline constexpr Limits kLinearLight{
-    .expected = "a number from 0 to 1e4", .low = 0, .high = 1e4};  // 1 is white
+inline constexpr Limits kLinearLight{// Linear light; 1 is white.
+                                     .expected = "a number from 0 to 1e4",
+                                     .low = 0,
+                                     .high = 1e4};
 inline constexpr Limits kExtinction{
-    .expected = "a number from 0 to 1e4", .low = 0, .high = 1e4};  // 1/km: sees 0.4 m far
+    // Extinction in 1/km. At the upper bound the range of sight is 0.4 m.
+    .expected = "a number from 0 to 1e4",
+    .low = 0,
+    .high = 1e4};
 inline constexpr Limits kGamma{.expected = "a number from 1.2 to 3", .low = 1.2, .high = 3};
 inline constexpr Limits kShutterAngle{.expected = "degrees from 0 to 360", .low = 0, .high = 360};
 inline constexpr Limits kExposureTime{.expected = "seconds from 0 to 1", .low = 0, .high = 1};

@@ -8,11 +8,12 @@
 
 namespace airtruth::scene {
 
-// The [[intruder]] tables of the file. Ids that the file does not state are intruder-1, intruder-2,
-// ...
+// The [[intruder]] tables of the file. An intruder without an id gets its number: intruder-1,
+// intruder-2 and so on.
 std::vector<Intruder> intruders_from(const TableReader& root);
 
-// Is it the path of a model (by its ending), not a name of the catalogue?
+// True where the text is the path of a model file (its ending says so); false where it is a name of
+// the catalogue.
 bool names_model_file(const std::string& aircraft);
 
 }  // namespace airtruth::scene

@@ -12,15 +12,32 @@
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 
-// A scene file as a value: what the user wrote, checked for shape and range, and nothing loaded
-// yet. Each struct is a table of the file and each field a key of the same name;
+// A scene file as a value: what the user wrote, with types and ranges checked, and before any other
+// file is loaded. Each struct is a table of the file and each field is a key of the same name;
 // docs/formats/scene.md describes them. Paths are already resolved against the scene file's folder.
-// `where` is where a table stands in the file, for errors that show only later (an unknown
-// aircraft, a path that never increases).
+// `where` is the table's place in the file, for errors that only appear later (an unknown aircraft,
+// a path whose times do not increase).
+//
+// Example: a scene of one intruder that crosses from left to right, 800 m ahead
+//
+//   [background]
+//   video = "clip.mp4"
+//   [lens]
+//   vertical_fov_deg = 75
+//   [[intruder]]
+//   aircraft = "738/738-Ryanair"
+//   waypoints_ned_m = [[800, -40, -150], [800, 40, -150]]
+//   speed_mps = 40
+//
+// On a clip of 1280 x 960 pixels without shake the lens has a focal length of 480 / tan(37.5 deg) =
+// 625.5 px. The camera has its default pose: 150 m above the origin, looking north. The intruder
+// starts at the pixel (640 - 625.5 * 40 / 800, 480) = (608.7, 480), reaches the image's centre
+// after 1 s and ends after 2 s.
 namespace airtruth::scene {
 
 namespace fs = std::filesystem;
 
+// [background]: the onboard video and the range of its frames that is rendered.
 struct Background {
   fs::path video;
   std::optional<fs::path> mask;
@@ -29,6 +46,7 @@ struct Background {
   Where where;
 };
 
+// [lens]: a model with its parameters, or a calibration file.
 struct Lens {
   std::string model = "pinhole";  // pinhole | brown_conrady | fisheye
   std::optional<double> vertical_fov_deg;
@@ -39,6 +57,7 @@ struct Lens {
   Where where;
 };
 
+// [camera]: the nominal, unshaken pose of the camera, as uniform motion or as a path file.
 struct Camera {
   Vector3 position_ned_m{0, 0, -150};
   Vector3 velocity_ned_mps{0, 0, 0};
@@ -47,94 +66,129 @@ struct Camera {
   Where where;
 };
 
+// [motion]: how the camera's shake is measured.
 struct Motion {
-  // auto: rotation, but homography for the method chroma-key
+  // "auto" means rotation, and homography for the compositing method chroma-key.
   std::string model = "auto";             // auto | rotation | homography | none
   std::string reference = "first_frame";  // first_frame | smoothed
   double smoothing_s = 1.0;
   Where where;
 };
 
+// [light]: the sun and the light from sky and ground.
 struct Light {
-  double sun_azimuth_deg = 180;  // from north towards east
+  // Measured from north towards east.
+  double sun_azimuth_deg = 180;
   double sun_elevation_deg = 45;
-  bool sun_is_stated = false;      // else a camera file may know better
-  std::optional<double> exposure;  // factor on the sun's light; else from the background
-  std::optional<std::array<double, 3>>
-      sky_colour;  // linear RGB of the light from above; else from the background
+  // True where the scene states the sun's direction. Otherwise a camera file's direction takes
+  // precedence.
+  bool sun_is_stated = false;
+  // Factor on the sun's light; empty: estimated from the background.
+  std::optional<double> exposure;
+  // Linear RGB of the light from above and from below; empty: estimated from the background.
+  std::optional<std::array<double, 3>> sky_colour;
   std::optional<std::array<double, 3>> ground_colour;
-  // Share of the light of sun and sky that a level ground gives back, 0..1; else the ground in the
-  // background, and where none is seen that of fields and roads (sequence/sequence/ambient.h).
+  // Share of the light of sun and sky that level ground reflects, 0..1. Empty: that of the ground
+  // in the background, and where no ground is seen that of fields and roads
+  // (sequence/sequence/ambient.h).
   std::optional<double> ground_albedo;
   Where where;
 };
 
-// What light meets on its way to the sample, and when; the tables [shutter], [air], [optics] and
-// [sensor]. Empty: not stated. Used by scenes and by camera.toml, which `airtruth calibrate`
-// writes.
+// The camera between the light of the scene and the stored sample; the tables [shutter], [air],
+// [optics] and [sensor]. An empty field is not stated. Scenes use this struct, and so does
+// camera.toml, which `airtruth calibrate` writes.
 struct CameraModel {
   // [shutter]
   std::optional<double> exposure_s;
-  std::optional<double> angle_deg;  // of 360 for a whole frame interval; in place of exposure_s
+  // Shutter angle; 360 degrees expose for a whole frame interval. Excludes exposure_s.
+  std::optional<double> angle_deg;
   std::optional<double> readout_s;
-  std::optional<std::string> readout;  // down | up | right | left
+  // Direction in which the rows are read: down | up | right | left.
+  std::optional<std::string> readout;
   // [air]
-  std::optional<std::array<double, 3>> extinction_per_km;  // red, green, blue
-  std::optional<std::array<double, 3>> airlight;           // linear; else the background's
+  // For red, green and blue.
+  std::optional<std::array<double, 3>> extinction_per_km;
+  // Linear RGB; empty: estimated from the background.
+  std::optional<std::array<double, 3>> airlight;
   // [optics]
-  std::optional<double> point_spread_px;  // standard deviation of a Gaussian
-  std::optional<double> sharpening;       // amount of an unsharp mask
-  std::optional<double> sharpening_px;    // standard deviation of its Gaussian
+  // Standard deviation of a Gaussian.
+  std::optional<double> point_spread_px;
+  // Amount of an unsharp mask.
+  std::optional<double> sharpening;
+  // Standard deviation of the unsharp mask's Gaussian.
+  std::optional<double> sharpening_px;
   // [sensor]
-  std::optional<double> noise_gain;   // variance of linear light is noise_gain * light
-  std::optional<double> noise_floor;  // + noise_floor
+  // The noise's variance at linear light x is noise_gain * x + noise_floor.
+  std::optional<double> noise_gain;
+  std::optional<double> noise_floor;
   std::optional<double> noise_correlation_px;
-  std::optional<double> chroma_spread_px;  // standard deviation, beyond luma's
-  std::optional<double> codec_step;        // of the quantiser, in luma code values
-  std::optional<double> gamma;             // exponent of the tone curve; else sRGB's curve
-  // Keys that said "auto", as "air.airlight".
+  // Standard deviation of the blur of chroma beyond that of luma.
+  std::optional<double> chroma_spread_px;
+  // Step of the codec's quantiser, in luma code values.
+  std::optional<double> codec_step;
+  // Exponent of the tone curve; empty: sRGB's curve.
+  std::optional<double> gamma;
+  // Keys whose value is "auto", for example "air.airlight".
   std::vector<std::string> automatic;
 };
 
+// [realism]: where the camera model's values come from when the scene does not state them.
 struct Realism {
-  std::optional<fs::path> file;        // a camera.toml: values for what the scene does not state
-  bool automatic = false;              // what neither states is measured from the clip
-  std::optional<std::string> profile;  // of a known camera: for what the clip cannot tell
-  bool fallback = false;               // what cannot be measured is left out, with a warning
+  // A camera.toml, whose values fill in for keys that the scene does not state.
+  std::optional<fs::path> file;
+  // True: keys that neither the scene nor the file states are measured from the clip.
+  bool automatic = false;
+  // Name of a known camera, whose values fill in for keys that the clip cannot give.
+  std::optional<std::string> profile;
+  // True: a quantity that cannot be measured is left out with a warning.
+  bool fallback = false;
   Where where;
 };
 
+// [[intruder]]: an aircraft and its path. A path comes from waypoints with a speed or with times,
+// or from a file.
 struct Intruder {
   std::string id;
   std::string aircraft;
-  std::optional<std::string>
-      model_forward;                    // for a bare model file: which of its axes is the nose ...
-  std::optional<std::string> model_up;  // ... and which is up
-  std::optional<double> catalogue_scale;  // of a catalogue's model; empty: to its published size
-  std::optional<double> model_scale;      // metres per unit
+  // For a bare model file: the axes of the model that point to the nose and upwards.
+  std::optional<std::string> model_forward;
+  std::optional<std::string> model_up;
+  // Scale of a catalogue's model; empty: the model is scaled to the aircraft's published size.
+  std::optional<double> catalogue_scale;
+  // Scale of a model file, in metres per unit.
+  std::optional<double> model_scale;
   std::vector<Vector3> waypoints_ned_m;
   std::optional<double> speed_mps;
   std::vector<double> times_s;
   std::optional<fs::path> path_file;
-  double start_s = 0;                                  // when the path begins, on the clip's clock
-  std::optional<double> yaw_deg, pitch_deg, roll_deg;  // in place of the path's own
+  // The time at which the path begins, in seconds of the clip.
+  double start_s = 0;
+  // Each angle replaces that of the path.
+  std::optional<double> yaw_deg, pitch_deg, roll_deg;
   Where where;
 };
 
+// [render]: the quality of the rendering.
 struct Render {
-  int quality = 3;  // 1 (draft) .. 5 (oracle); 3 holds alpha within 1/64
+  // From 1 (draft) to 5 (the reference of the tests); 3 holds alpha within 1/64.
+  int quality = 3;
 };
 
+// [composite]: how the rendered aircraft is put into the frame.
 struct Composite {
   std::string method = "matte";  // matte | chroma-key
 };
 
+// [output]: the files that are written.
 struct Output {
   std::string video = "mp4";  // mp4 | mkv | avi | png
   int quality = 18;
-  bool masks = false;  // also each intruder's alpha, frame by frame
+  // True: each intruder's alpha is written as well, frame by frame.
+  bool masks = false;
 };
 
+// A whole scene file.
 struct Scene {
   std::string name;
   std::uint64_t seed = 1;
@@ -152,20 +206,21 @@ struct Scene {
   fs::path file;
 };
 
-// Throws Error with line and column: not TOML, not UTF-8, larger than 16 MiB, an unknown key
-// (nearest valid spelling), a wrong type, a value out of range, keys that exclude each other, a
-// missing required key.
+// Reads a scene. Throws Error with line and column where the text is not TOML, not UTF-8 or larger
+// than 16 MiB, and for an unknown key (the message offers the nearest spelling), a wrong type, a
+// value out of range, keys that exclude each other and a missing required key.
 Scene read_scene(const fs::path& file);
 Scene parse_scene(std::string_view text, const fs::path& file);
 
-// camera.toml (docs/formats/camera.md): the tables of CameraModel, with what they were measured on.
+// camera.toml (docs/formats/camera.md): the tables of CameraModel and what they were measured on.
 struct CameraFile {
   CameraModel model;
   int width = 0;
   int height = 0;
-  std::string
-      lens;  // "" where none was given; else name and focal length, as lens_words() has them
-  std::optional<double> gamma;  // of the tone curve that was measured under
+  // Name and focal length in the form of lens_words(); "" where no lens was given.
+  std::string lens;
+  // Exponent of the tone curve that the measurement assumed.
+  std::optional<double> gamma;
   std::optional<double> sun_azimuth_deg;
   std::optional<double> sun_elevation_deg;
 };
@@ -173,8 +228,8 @@ std::string toml_from_camera_model(const CameraModel& model);
 CameraFile read_camera_file(const fs::path& file);
 CameraFile parse_camera_file(std::string_view text, const fs::path& file);
 
-// The effective scene as TOML, every key written out, paths absolute; parse_scene of it gives the
-// same value.
+// The effective scene as TOML: every key is written out and every path is absolute. parse_scene()
+// of the text gives the same value.
 std::string toml_from_scene(const Scene& scene);
 
 }  // namespace airtruth::scene

@@ -9,7 +9,7 @@
 namespace airtruth::scene {
 namespace {
 
-// A good scene, one part of which each case replaces. The parts stand at known lines: the top at 1,
+// A valid scene whose parts each case replaces. The parts start at known lines: the top at 1,
 // [background] at 2, [lens] at 4, [[intruder]] at 6.
 struct Parts {
   std::string top = "seed = 1\n";

@@ -11,7 +11,7 @@
 namespace airtruth::scene {
 namespace {
 
-// The scene of the paper's sequence 1LRB737, as a user would write it.
+// The scene of the E-Vision paper's sequence 1LRB737, as a user writes it.
 constexpr std::string_view kPaper = R"(
 name = "1LRB737"
 seed = 7
@@ -136,7 +136,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   EXPECT_EQ(toml_from_scene(again), toml_from_scene(scene));
 }
 
-// The examples that ship are scenes, and the first names every key that there is.
+// The shipped examples are valid scenes, and the first names every key that exists.
 TEST(Scene, ExamplesAreGood) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(AIRTRUTH_SOURCE_DIR) / "examples")) {

@@ -41,7 +41,7 @@ const char* words_of(toml::node_type type) {
   throw Error(fmt::format("{} is {}; expected {}", name, found, expected), where);
 }
 
-// "a, b or c"
+// Joins words as "a, b or c".
 std::string listed(const std::vector<std::string>& words) {
   std::string result;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -51,7 +51,7 @@ std::string listed(const std::vector<std::string>& words) {
   return result;
 }
 
-// What the user wrote, short enough for one line and without control characters.
+// The user's text in quotes, shortened to fit one line and without control characters.
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text.substr(0, 60)) {
@@ -163,11 +163,12 @@ double TableReader::checked_number(const toml::node& node,
                                    const std::string& name,
                                    const Limits& limits) const {
   if (!node.is_number()) fail_at(place(node), name, words_of(node.type()), limits.expected);
-  // toml++ gives no double for an integer that none equals.
+  // toml++ returns no double for an integer that a double cannot represent exactly.
   const double value =
       node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
   if (!limits.holds(value)) fail_at(place(node), name, shown(value), limits.expected);
-  return value + 0.0;  // -0 is 0
+  // Adding 0 turns -0 into 0.
+  return value + 0.0;
 }
 
 std::optional<double> TableReader::number(std::string_view key, const Limits& limits) const {
@@ -260,7 +261,7 @@ std::optional<std::filesystem::path> TableReader::path(std::string_view key) con
   const auto name = text(key);
   if (!name) return std::nullopt;
   auto path = (std::filesystem::path(file_).parent_path() / *name).lexically_normal();
-  // The record of a sequence names it in full.
+  // The record of a sequence contains the full path.
   require_utf8(std::filesystem::absolute(path));
   return path;
 }

@@ -16,18 +16,18 @@
 #include "foundation/geometry/transform.h"
 #include "world/scene/limits.h"
 
-// Reads a table of a TOML file strictly: what is there must be known, of the right type and in
-// range, or an Error says so at its line and column. For the readers of TOML files; not installed.
+// Reads a table of a TOML file strictly: every key must be known, of the right type and in range.
+// Otherwise an Error names the line and column. Only readers of TOML files use this header; it is
+// not installed.
 namespace airtruth::scene {
 
 class TableReader {
  public:
   using Keys = std::initializer_list<std::string_view>;
 
-  // `title` is how messages call the table: "[lens]". Throws where the table holds a key that is
-  // not in `keys`.
-  // `path` is the table's place in the file as a KeyLog has it: "background[0].lens", "" at the
-  // top.
+  // Throws where the table holds a key that is not in `keys`. `title` is the table's name in
+  // messages: "[lens]". `path` is the table's place in the file, as KeyLog uses it:
+  // "background[0].lens", "" at the top.
   TableReader(const toml::table& table,
               std::string title,
               const std::string& file,
@@ -35,37 +35,43 @@ class TableReader {
               std::string path = "");
 
   bool has(std::string_view key) const;
-  bool says(std::string_view key, std::string_view word) const;  // is the value this very string?
-  bool is_array(std::string_view key) const;                     // is the value an array?
-  Where where() const;                      // the table's; no line where the file lacks the table
-  Where where(std::string_view key) const;  // the value's
+  // True where the value is exactly this string.
+  bool says(std::string_view key, std::string_view word) const;
+  // True where the value is an array.
+  bool is_array(std::string_view key) const;
+  // The place of the table; without a line where the file lacks the table.
+  Where where() const;
+  // The place of the value.
+  Where where(std::string_view key) const;
 
-  // Each is empty where the key is absent.
+  // Each of the following readers returns empty where the key is absent.
   std::optional<double> number(std::string_view key, const Limits& limits) const;
   std::optional<std::int64_t> whole(std::string_view key,
                                     std::int64_t low,
                                     std::int64_t high) const;
   std::optional<bool> truth(std::string_view key) const;
-  std::optional<std::string> text(std::string_view key) const;  // not empty, no control characters
-  // An array of at least one such text.
+  // A string that is not empty and holds no control characters.
+  std::optional<std::string> text(std::string_view key) const;
+  // An array of at least one such string.
   std::optional<std::vector<std::string>> texts(std::string_view key) const;
-  std::optional<std::string> file_name(std::string_view key) const;  // a text with no folder in it
+  // A string without a folder in it.
+  std::optional<std::string> file_name(std::string_view key) const;
   std::optional<std::string> choice(std::string_view key, Keys choices) const;
-  // Relative paths are taken from the folder of the scene file.
+  // A file path. A relative path is resolved against the folder of the scene file.
   std::optional<std::filesystem::path> path(std::string_view key) const;
   std::optional<std::vector<double>> numbers(std::string_view key, const Limits& each) const;
-  // One limit for each number: exactly so many are expected.
+  // An array of exactly one number for each element of `limits`.
   std::optional<std::vector<double>> tuple(std::string_view key,
                                            const std::vector<Limits>& limits) const;
   std::optional<Vector3> vector(std::string_view key, const Limits& each) const;
   std::optional<std::vector<Vector3>> points(std::string_view key, const Limits& each) const;
 
-  // A table inside; an empty one where absent.
+  // The table at `key`; an empty table where it is absent.
   TableReader table(std::string_view key, Keys keys) const;
-  // The tables of [[key]].
+  // The tables of the array [[key]].
   std::vector<TableReader> tables(std::string_view key, Keys keys) const;
 
-  // Throws where `key` and any of `others` are both there.
+  // Throws where the table holds both `key` and any of `others`.
   void exclude(std::string_view key, Keys others) const;
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
   // The place of element i of the array at `key`.
@@ -91,11 +97,11 @@ class TableReader {
   std::vector<std::string> keys_;
 };
 
-// Is it a name that a file in any folder could have? Not empty, no slash, no control character, not
-// "." or "..".
+// True where a file in any folder could have this name: it is not empty, not "." and not "..", and
+// holds no slash and no control character.
 bool is_plain_file_name(std::string_view name);
 
-// A number as a message shows it: the shortest text that gives it back.
+// The number as messages show it: the shortest text that parses to the same number.
 std::string shown(double number);
 
 }  // namespace airtruth::scene

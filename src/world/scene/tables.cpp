@@ -117,7 +117,7 @@ Motion motion_in(const TableReader& parent) {
 
 namespace {
 
-// Reads a key that may say "auto" in place of a value; those are listed.
+// Reads keys that accept "auto" in place of a value, and lists the keys that hold it.
 class AutoReader {
  public:
   AutoReader(const TableReader& table, std::string name, std::vector<std::string>& automatic)

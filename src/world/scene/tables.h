@@ -8,13 +8,15 @@
 #include "world/scene/scene.h"
 #include "world/scene/table_reader.h"
 
-// The tables that a scene shares with a catalogue of scenes. Each reads the table of its name
-// inside `parent`, with every default where the file has none.
+// Readers of the tables that a scene shares with a catalogue of scenes. Each function reads the
+// table of its name inside `parent`. A key that the file lacks gets its default.
 namespace airtruth::scene {
 
+// Largest TOML file, in bytes: 16 MiB.
 constexpr std::size_t kLargestToml = std::size_t{16} << 20;
 
-// Error with line and column: too long, not UTF-8, nested too deep, not TOML.
+// Parses the text. Throws Error with line and column where it is too long, not UTF-8, nested too
+// deep or not TOML.
 toml::table parsed_toml(std::string_view text, const std::string& file);
 
 Lens lens_in(const TableReader& parent);
@@ -27,8 +29,8 @@ Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);
 Composite composite_in(const TableReader& parent);
 
-// The key `aircraft` of a table: a name of the aircraft list as it stands, or the path of a model
-// file, taken from the folder of the file that is read.
+// The key `aircraft` of a table: an unchanged name from the aircraft list, or the path of a model
+// file, resolved against the folder of the file that is read.
 std::string aircraft_in(const TableReader& table);
 
 }  // namespace airtruth::scene

@@ -9,8 +9,8 @@ namespace {
 constexpr int kDeepestBrackets = 32;
 constexpr int kMostDots = 16;
 
-// Walks over TOML as its lexer would: strings and comments count for nothing. Where the text is not
-// TOML the two may part ways, but only after the place at which the parser stops.
+// Scans TOML as its lexer does: it skips strings and comments. On text that is not TOML the scan
+// and the parser may disagree, but only after the place where the parser stops.
 class Walk {
  public:
   Walk(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -62,7 +62,7 @@ class Walk {
                  : 1;
     }
     at_ += end.size();
-    // A multi-line string may end in one or two quotes of its own.
+    // A multi-line string may end in one or two quotes that belong to its text.
     while (multiline && at_ < text_.size() && text_[at_] == quote) ++at_;
   }
 

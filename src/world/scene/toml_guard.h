@@ -6,9 +6,9 @@
 
 namespace airtruth::scene {
 
-// Throws Error where the text nests deeper than a scene ever does: arrays in arrays, or
-// a.long.dotted.key. The TOML parser and the destructors of what it returns recurse, so a hostile
-// file could exhaust the stack.
+// Throws Error where the text nests deeper than any scene does: arrays in arrays, or
+// a.long.dotted.key. The TOML parser and the destructors of its result are recursive, so a hostile
+// file could otherwise exhaust the stack.
 void refuse_deep_nesting(std::string_view text, const std::string& file);
 
 }  // namespace airtruth::scene

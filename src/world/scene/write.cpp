@@ -13,7 +13,7 @@
 namespace airtruth::scene {
 namespace {
 
-// TOML text, key by key. Keys without a value are left out.
+// Builds TOML text key by key. A key without a value is left out.
 class Text {
  public:
   void heading(std::string_view title) { text_ += fmt::format("\n{}\n", title); }
@@ -31,7 +31,8 @@ class Text {
 
  private:
   static std::string toml(double value) {
-    if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" is a whole number without a sign
+    // TOML reads "-0" as an integer, which has no negative zero.
+    if (value == 0 && std::signbit(value)) return "-0.0";
     return fmt::format("{}", value);
   }
   static std::string toml(bool value) { return value ? "true" : "false"; }
@@ -100,7 +101,7 @@ void add_light(Text& text, const Light& light) {
   text.add("ground_albedo", light.ground_albedo);
 }
 
-// A stated value, or "auto".
+// Writes the stated value, or "auto".
 template <typename T>
 void add_or_auto(Text& text,
                  const CameraModel& model,

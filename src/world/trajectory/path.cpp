@@ -15,9 +15,11 @@ namespace airtruth::trajectory {
 namespace {
 
 constexpr double kGravityMps2 = 9.80665;
-constexpr double kHorizontalMps = 1e-6;  // below it a heading means nothing
+// Below this horizontal speed, in metres a second, the velocity defines no heading.
+constexpr double kHorizontalMps = 1e-6;
 constexpr double kSamePointM = 1e-6;
-constexpr double kFarthestM = 1e9;  // squares and lengths stay far from overflow
+// Largest coordinate, in metres. It keeps squares and lengths far from overflow.
+constexpr double kFarthestM = 1e9;
 
 std::string text_of(const Vector3& p) {
   char text[96];
@@ -35,8 +37,8 @@ bool has_heading(const Vector3& v) {
   return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
 }
 
-// The heading to keep where the path goes straight up or down or stands still: the last one before
-// u, else the first one after it.
+// The heading to keep where the path goes straight up or down or the object stands still: the last
+// defined heading before u, else the first one after it.
 double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
   constexpr int kSteps = 1024;
   const double step = (spline.end() - spline.begin()) / kSteps;
@@ -53,8 +55,8 @@ double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
   return 0;
 }
 
-// Heading and climb from the velocity, bank from a coordinated turn: tan(bank) = v_h * turn rate /
-// g.
+// Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
+// turn rate / g.
 YawPitchRoll attitude_along(const Vector3& velocity,
                             const Vector3& acceleration,
                             double kept_yaw_deg) {
@@ -99,8 +101,8 @@ class AtTimes : public Path::Impl {
   AttitudeOverride stated_;
 };
 
-// Arc length by Gauss-Legendre quadrature of five points on equal parts of each span (Abramowitz
-// and Stegun 25.4.30).
+// A path at constant speed. The arc length comes from five-point Gauss-Legendre quadrature on equal
+// parts of each span (Abramowitz and Stegun, eq. 25.4.30).
 class AtSpeed : public Path::Impl {
  public:
   AtSpeed(std::vector<double> knots,
@@ -131,7 +133,8 @@ class AtSpeed : public Path::Impl {
       return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, spline_, u);
     const Vector3 tangent = slope / rate;
     const Vector3 curvature =
-        (bend - tangent * tangent.dot(bend)) / (rate * rate);  // d tangent / d arc length
+        // The derivative of the unit tangent by arc length.
+        (bend - tangent * tangent.dot(bend)) / (rate * rate);
     return state_along(
         spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, spline_, u);
   }
@@ -148,7 +151,8 @@ class AtSpeed : public Path::Impl {
                            spline_.at(middle + half * kNode[i], 1).norm());
     return half * sum;
   }
-  // The spline's parameter at an arc length: table, then Newton.
+  // The spline's parameter at an arc length: the table gives the first guess and Newton's method
+  // refines it.
   double parameter(double length) const {
     const auto after = std::upper_bound(length_.begin() + 1, length_.end() - 1, length);
     const auto i = static_cast<std::size_t>(after - length_.begin()) - 1;
@@ -216,7 +220,8 @@ void check_waypoints(std::span<const Vector3> points) {
 }  // namespace
 
 std::optional<State> Path::at(double time_s) const {
-  // A frame's time is rounded to the stream's clock; the ends belong to the path.
+  // Slack at both ends, in seconds. A frame's time is rounded to the clock of its stream, and the
+  // ends belong to the path.
   constexpr double kClock = 1e-9;
   if (!std::isfinite(time_s)) return std::nullopt;
   if (!(time_s >= start_s() - kClock && time_s <= end_s() + kClock)) return std::nullopt;
@@ -231,7 +236,8 @@ Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
   check_waypoints(waypoints_ned_m);
   if (!std::isfinite(speed_mps) || speed_mps <= 0)
     throw Error("speed_mps is " + text_of(speed_mps) + "; expected a positive number");
-  std::vector<double> knots = {0};  // chord lengths
+  // The knots are the cumulative chord lengths.
+  std::vector<double> knots = {0};
   for (std::size_t i = 1; i < waypoints_ned_m.size(); ++i)
     knots.push_back(knots.back() + (waypoints_ned_m[i] - waypoints_ned_m[i - 1]).norm());
   return Path(std::make_shared<AtSpeed>(

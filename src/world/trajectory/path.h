@@ -10,9 +10,15 @@
 
 #include "foundation/geometry/transform.h"
 
-// Where something is at each time. World is north-east-down in metres; docs/conventions.md.
+// Paths: the position, the velocity and the attitude of an object as functions of time. The world
+// frame is north-east-down in metres; docs/conventions.md.
+//
+// Example: spline_at_speed({(0, 0, -150), (300, 0, -150)}, 30) flies 300 m north at 30 m/s and 150
+// m above the origin. It starts at 0 s and ends at 10 s; at(4) has the position (120, 0, -150), the
+// velocity (30, 0, 0) and a yaw, pitch and roll of 0; at(11) is empty.
 namespace airtruth::trajectory {
 
+// Position, velocity and attitude at one time.
 struct State {
   Vector3 position_in_world = Vector3::Zero();
   Vector3 velocity_in_world_mps = Vector3::Zero();
@@ -21,23 +27,27 @@ struct State {
   Rigid world_from_body_rigid() const { return {world_from_body, position_in_world}; }
 };
 
-// Parts of the attitude that are stated rather than taken from the path.
+// Angles of the attitude that the user states. A stated angle replaces the one that follows from
+// the path; an empty one leaves it.
 struct AttitudeOverride {
   std::optional<double> yaw_deg;
   std::optional<double> pitch_deg;
   std::optional<double> roll_deg;
 };
 
-// Times that increase by less count as equal.
+// Shortest difference between two times, in seconds. Times that differ by less count as equal.
 constexpr double kShortestStep_s = 1e-6;
 
-// A path over [0, duration_s]; before and after it there is nothing. Immutable, cheap to copy.
+// A path over the times [start_s, end_s]. The object does not exist outside of them. Paths are
+// immutable and cheap to copy.
 class Path {
  public:
-  // Empty before start and after the end.
+  // The state at a time. The result is empty before the start, after the end, and for a time that
+  // is not finite.
   std::optional<State> at(double time_s) const;
   double start_s() const;
-  double end_s() const;  // +infinity for a uniform path
+  // The last time of the path; +infinity for a uniform path.
+  double end_s() const;
 
   struct Impl;
   explicit Path(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
@@ -46,33 +56,39 @@ class Path {
   std::shared_ptr<const Impl> impl_;
 };
 
-// A C2 cubic spline through the waypoints, flown at constant speed along the curve (arc length by
-// Gauss-Legendre quadrature). Attitude: heading and climb from the tangent, bank from a coordinated
-// turn, tan(bank) = (lateral acceleration) / g, each replaced where `attitude` states it. Errors
-// (std::string_view of the scene's line is added by the caller): fewer than two waypoints, two
-// equal neighbours, a number that is not finite, a speed that is not positive.
+// A cubic spline (C2) through the waypoints, flown from time 0 at constant speed along the curve.
+// The arc length is integrated by Gauss-Legendre quadrature (Abramowitz and Stegun, eq. 25.4.30).
+// The heading and the climb angle follow from the tangent and the bank angle from a coordinated
+// turn, tan(bank) = (lateral acceleration) / g; each angle that `attitude` states replaces the
+// computed one.
+//
+// An Error is thrown for fewer than two waypoints, two equal neighbours, a number that is not
+// finite, and a speed that is not positive. The Error names no file: the caller adds the line of
+// the scene.
 Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
                      double speed_mps,
                      const AttitudeOverride& attitude = {});
 
-// The same through the waypoints at stated, strictly increasing times.
+// The same spline, flown through the waypoints at the stated, strictly increasing times.
 Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
                      std::span<const double> times_s,
                      const AttitudeOverride& attitude = {});
 
-// The same path, `start_s` later.
+// The same path, delayed by `start_s` seconds.
 Path shifted(const Path& path, double start_s);
 
-// Straight at constant velocity and attitude, for ever in both directions of time.
+// Straight flight at constant velocity and attitude. The path has neither start nor end.
 Path uniform(const Vector3& position_ned_m,
              const Vector3& velocity_ned_mps,
              const YawPitchRoll& attitude);
 
-// A sampled path: CSV with a header, columns
-// time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. Positions by the C2
-// spline through the samples; angles, where given, by unwrapped spline, else from the path as
-// above. Errors carry file and line: missing or unknown column (nearest spelling), a cell that is
-// no number, times that do not increase, fewer than two rows.
+// Reads a sampled path: CSV with a header and the columns
+// time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. The position follows the
+// C2 spline through the samples. An angle that the file states follows a spline through its
+// unwrapped samples; any other angle follows from the path as above.
+//
+// Errors carry file and line: a missing or unknown column (the message offers the nearest
+// spelling), a cell that is not a number, times that do not increase, fewer than two rows.
 Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude = {});
 Path parse_path_csv(std::string_view text,
                     const std::filesystem::path& name,

@@ -21,9 +21,10 @@ constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 const std::vector<std::string> kColumns = {
     "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
 constexpr std::size_t kRequired = 4;
-constexpr double kLargest = 1e9;  // metres, seconds or degrees: squares stay far from overflow
+// Largest number of a path file, in metres, seconds or degrees. Its square stays far from overflow.
+constexpr double kLargest = 1e9;
 
-// Which cell holds each known column; npos where a column is not given.
+// The cell of each known column; npos where the header lacks the column.
 std::array<std::size_t, 7> columns_of(const std::string& header, const std::string& file) {
   std::array<std::size_t, 7> place;
   place.fill(std::string::npos);
@@ -63,7 +64,8 @@ struct Samples {
   std::vector<double> times;
   std::vector<Vector3> positions;
   std::vector<Vector3> angles;  // yaw, pitch, roll in degrees, unwrapped
-  std::array<bool, 3> given{};  // which of them the file states
+  // The angles that the file states.
+  std::array<bool, 3> given{};
 };
 
 double unwrapped(double angle_deg, double before_deg) {
@@ -104,7 +106,7 @@ Samples read_samples(std::string_view text, const std::string& file) {
     if (!samples.angles.empty())
       for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
     samples.times.push_back(time);
-    // Named in turn, so that the first that is missing is the one that is told.
+    // The values are read in this order, so that an error names the first bad column.
     const double north = value(1);
     const double east = value(2);
     const double down = value(3);
@@ -117,8 +119,8 @@ Samples read_samples(std::string_view text, const std::string& file) {
   return samples;
 }
 
-// Position and its derivatives from the samples; angles from the file where it states them, else
-// along the path.
+// Position and its derivatives follow the samples. Angles follow the file where it states them and
+// the path elsewhere.
 class Sampled : public Path::Impl {
  public:
   Sampled(const Samples& samples, const AttitudeOverride& stated)

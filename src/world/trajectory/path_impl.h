@@ -5,7 +5,7 @@
 
 namespace airtruth::trajectory {
 
-// What every kind of path knows; Path asks only for times between start_s() and end_s().
+// The interface of every kind of path. Path calls at() only with times from start_s() to end_s().
 struct Path::Impl {
   virtual ~Impl() = default;
   virtual double start_s() const = 0;
@@ -13,8 +13,8 @@ struct Path::Impl {
   virtual State at(double time_s) const = 0;
 };
 
-// The spline through samples, which may stand still (equal neighbours), at strictly increasing
-// times.
+// The spline through samples at strictly increasing times. Neighbouring samples may be equal: the
+// object then stands still.
 std::shared_ptr<const Path::Impl> path_through(std::vector<double> times_s,
                                                std::vector<Vector3> positions,
                                                const AttitudeOverride& attitude);

@@ -43,14 +43,18 @@ TEST(AtSpeed, ClimbsNoseUp) {
   EXPECT_NEAR(yaw_pitch_roll(path.at(1)->world_from_body).pitch_deg, 45, 1e-9);
 }
 
-// A circle of radius R flown at v banks by atan(v^2 / (R g)), right wing down in a right turn.
+// An aircraft on a circle of radius R at speed v banks by atan(v^2 / (R g)), with the right wing
+// down in a right turn.
 TEST(AtSpeed, BanksAsACoordinatedTurn) {
   Points circle;
   const double radius = 1000;
   for (int i = 0; i <= 72; ++i) {
     const double angle = radians(5.0 * i);
     circle.emplace_back(
-        radius * std::sin(angle), radius * (1 - std::cos(angle)), -300);  // turns right from north
+        // The circle turns right from north.
+        radius * std::sin(angle),
+        radius * (1 - std::cos(angle)),
+        -300);
   }
   const Path path = spline_at_speed(circle, 100);
   for (double t = 15; t < 45; t += 0.37) {
@@ -78,7 +82,8 @@ TEST(AtTimes, PassesThroughItsWaypointsAndIsSmooth) {
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_LT((path.at(times[i])->position_in_world - points[i]).norm(), 1e-12);
   const double h = 1e-5;
-  for (double knot : {1.0, 2.5}) {  // velocity, and its own slope, agree from both sides
+  // Velocity and acceleration agree from both sides of a knot.
+  for (double knot : {1.0, 2.5}) {
     const Vector3 before = path.at(knot - h)->velocity_in_world_mps;
     const Vector3 at = path.at(knot)->velocity_in_world_mps;
     const Vector3 after = path.at(knot + h)->velocity_in_world_mps;
@@ -99,8 +104,8 @@ TEST(AtTimes, VelocityIsTheDerivativeOfPosition) {
 }
 
 TEST(AtTimes, KeepsTheLastHeadingWhereItFliesStraightUp) {
-  // A quarter circle from north to east in closed form would need many samples; three straight
-  // legs do: north, east, then up for ever. Along the last leg the horizontal speed dies out.
+  // The path has three straight legs: north, east, then straight up. Along the last leg the
+  // horizontal speed decays to 0.
   Points points;
   std::vector<double> times;
   const auto add = [&](double north, double east, double up) {
@@ -114,7 +119,8 @@ TEST(AtTimes, KeepsTheLastHeadingWhereItFliesStraightUp) {
   const State state = *path.at(path.end_s() - 0.5);
   ASSERT_LT(state.velocity_in_world_mps.head<2>().norm(), 1e-6);
   const Vector3 right_wing = state.world_from_body * Vector3(0, 1, 0);
-  EXPECT_GT(std::abs(right_wing.x()), 0.999);  // across east, as before the climb, not across north
+  // The right wing stays across east, as before the climb, and does not jump to north.
+  EXPECT_GT(std::abs(right_wing.x()), 0.999);
   const Vector3 nose = state.world_from_body * Vector3(1, 0, 0);
   EXPECT_NEAR(nose.z(), -1, 1e-9);
 }
@@ -174,7 +180,8 @@ TEST(PathFile, ReadsPositionsAndAnglesInAnyOrder) {
   const auto state = path.at(0.5);
   ASSERT_TRUE(state);
   EXPECT_TRUE(state->position_in_world.isApprox(Vector3(5, 0, -10)));
-  EXPECT_NEAR(yaw_pitch_roll(state->world_from_body).yaw_deg, 0, 1e-9);  // the short way round
+  // The interpolation takes the short way round.
+  EXPECT_NEAR(yaw_pitch_roll(state->world_from_body).yaw_deg, 0, 1e-9);
 }
 
 TEST(PathFile, PointsAtTheLineThatIsWrong) {

@@ -6,7 +6,7 @@
 namespace airtruth::trajectory {
 namespace {
 
-// Second derivatives at the knots: the tridiagonal system of continuity of slope, by Thomas's
+// Second derivatives at the knots: the tridiagonal system of a continuous slope, solved by Thomas's
 // algorithm.
 template <typename Point>
 std::vector<Point> second_derivatives(const std::vector<double>& t, const std::vector<Point>& p) {

@@ -8,14 +8,15 @@
 
 namespace airtruth::trajectory {
 
-// A natural cubic spline (second derivative 0 at both ends) through points at strictly increasing
-// knots; C2. Two points make a straight line. De Boor (1978), chapter IV.
+// A natural cubic spline (C2, second derivative 0 at both ends) through points at strictly
+// increasing knots. Two points make a straight line. Source: de Boor (1978), chapter IV.
 template <typename Point>
 class CubicSpline {
  public:
   CubicSpline(std::vector<double> knots, std::vector<Point> points);
 
-  // Derivative 0, 1 or 2 at u, which is clamped to the knots' range.
+  // The value (derivative 0) or the derivative 1 or 2 at u. A u outside the knots' range is clamped
+  // to it.
   Point at(double u, int derivative) const;
   double begin() const { return knots_.front(); }
   double end() const { return knots_.back(); }
@@ -24,7 +25,8 @@ class CubicSpline {
  private:
   std::vector<double> knots_;
   std::vector<Point> points_;
-  std::vector<Point> curvature_;  // second derivatives at the knots
+  // Second derivatives at the knots.
+  std::vector<Point> curvature_;
 };
 
 extern template class CubicSpline<Vector3>;
