@@ -9,39 +9,41 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/layer.h"
 
-// What an intruder itself covers of a frame: its coverage after nearer intruders, exposure and
-// point spread, and behind no part of the own aircraft. What sharpening, noise and the codec do to
-// the samples around it is not in it.
+// The pixels of a frame that an intruder itself covers: its coverage after nearer intruders,
+// exposure, point spread and the own aircraft. The effects of sharpening, noise and the codec on
+// the samples around it do not count.
 namespace airtruth::composite {
 
-// A pixel is covered where the coverage, rounded to 8 bits, is this much of 255: an alpha of 0.08.
-// docs/formats/truth.md tells what other values would give.
+// Least coverage of a covered pixel, in 1/255 after rounding to 8 bits: an alpha of 0.08.
+// docs/formats/truth.md compares other values.
 inline constexpr std::uint8_t kCoveredAlpha = 20;
 
-// Coverage 0..1 as 8 bits, rounded.
+// The coverage 0..1 rounded to 8 bits.
 std::uint8_t alpha_code(float coverage);
 
-// An intruder's alpha on the layer's patch, in 8 bits. Empty: none reaches 1 of 255.
+// An intruder's alpha on the layer's patch, in 8 bits. Empty where no pixel reaches 1/255.
 struct AlphaMask {
-  PixelBox patch{};                 // where in the frame
-  std::vector<std::uint8_t> alpha;  // patch.height rows of patch.width
+  // Position in the frame.
+  PixelBox patch{};
+  // patch.height rows of patch.width.
+  std::vector<std::uint8_t> alpha;
 
   bool empty() const { return alpha.empty(); }
 };
 
-// `own_aircraft` may be null. The intruder is one of the layer's.
+// `own_aircraft` may be null. `intruder` is an index of the layer's intruders.
 AlphaMask alpha_mask(const image::Layer& layer,
                      std::size_t intruder,
                      const image::Mask* own_aircraft);
 
-// The bounds of its pixels of kCoveredAlpha or more; empty where there is none.
+// The bounds of the pixels with kCoveredAlpha or more; empty where there are none.
 std::optional<PixelBox> covered_box(const AlphaMask& mask);
 std::optional<PixelBox> covered_box(const image::Layer& layer,
                                     std::size_t intruder,
                                     const image::Mask* own_aircraft);
 
-// Takes what lies behind the own aircraft out of layer.area_free_px. For a layer before its point
-// spread.
+// Removes the area behind the own aircraft from layer.area_free_px. Call it before the layer's
+// point spread.
 void find_free_area(image::Layer& layer, const image::Mask& own_aircraft);
 
 }  // namespace airtruth::composite

@@ -10,32 +10,41 @@
 #include "foundation/image/picture.h"
 #include "picture/composite/sensor.h"
 
-// Puts a layer over a frame in the frame's own samples (Porter and Duff 1984, "over", in linear
-// light).
+// Composites a layer over a frame in the frame's own samples (Porter and Duff 1984, "over", in
+// linear light).
 //
-// Each luma sample Y under alpha > 0 becomes Y + (Y'(blend) - Y'(background)), both taken through
-// the same conversion, so that the change is exactly what the layer adds and alpha = 0 changes
-// nothing. A subsampled chroma sample moves by the mean of its pixels' changes, weighted by where
-// the sample sits, and only where one of the pixels of its own block is under the layer. Every
-// other sample keeps its bits. A sensor's sharpening, noise and soft chroma change those changes; a
-// codec changes the samples that come of it (codec_blocks.h).
+// Each luma sample Y under alpha > 0 becomes Y + (Y'(blend) - Y'(background)). Both terms go
+// through the same conversion, so that the change is exactly what the layer adds and alpha = 0
+// changes nothing. A subsampled chroma sample changes by the mean of its pixels' changes, weighted
+// by the sample's position, and only where a pixel of its own block is under the layer. Every other
+// sample keeps its bits. The sensor's sharpening, noise and chroma blur act on these changes; a
+// codec acts on the resulting samples (codec_blocks.h).
+//
+// Example: a full-range grey sample of 128 under a black layer with an alpha of 0.5 and sRGB's
+// curve. Its linear light of 0.2159 becomes 0.1079, which is coded as 92. A blend of the coded
+// values would give 64.
 namespace airtruth::composite {
 
-// What one intruder did to the frame. A pixel counts as changed when alpha > 0 there and its luma
-// sample, or the chroma sample of its block, now differs from the input.
+// The effect of one intruder on the frame. A pixel counts as changed where alpha > 0 and its luma
+// sample, or the chroma sample of its block, differs from the input.
 struct Visible {
-  std::optional<PixelBox> covered;  // bounds of the pixels that it covers (cover.h); empty: none
-  std::optional<PixelBox>
-      box;                  // bounds of the changed pixels that this intruder covers; empty: none
-  std::int64_t pixels = 0;  // how many
-  double alpha_sum_px = 0;  // coverage that is seen: after the own aircraft and nearer intruders
-  double alpha_before_mask_px = 0;  // the same before the own aircraft's mask
-  std::optional<Pixel> centroid;    // of the coverage that is seen; empty: none is
+  // Bounds of the pixels that it covers (cover.h); empty: none.
+  std::optional<PixelBox> covered;
+  // Bounds of the changed pixels that this intruder covers; empty: none.
+  std::optional<PixelBox> box;
+  // The number of those changed pixels.
+  std::int64_t pixels = 0;
+  // Sum of the visible coverage, in pixels: after the own aircraft and nearer intruders.
+  double alpha_sum_px = 0;
+  // The same sum before the own aircraft's mask.
+  double alpha_before_mask_px = 0;
+  // Centroid of the visible coverage; empty where there is none.
+  std::optional<Pixel> centroid;
 };
 
-// What a codec makes of a part of the frame, `box`: of the picture with the layer in it, and of the
-// background alone. Coding both tells what the codec loses of the intruder from what it loses of
-// the background a second time.
+// The result of a codec on a part of the frame, `box`: for the picture with the layer, and for the
+// background alone. The difference separates the codec's loss on the intruder from its second loss
+// on the background.
 struct Coded {
   image::Picture with_layer;
   image::Picture background;
@@ -48,20 +57,24 @@ class PatchCoder {
                      const image::Picture& background) = 0;
 };
 
+// Options of the matte.
 struct MatteOptions {
-  const image::Mask* own_aircraft = nullptr;  // where not free, nothing is drawn
-  // What the camera does to the samples. Sharpening and soft chroma reach beyond the layer, inside
-  // its patch: spread() makes room. Each pixel's own noise makes way for as much as the light that
-  // is there now would have.
+  // Nothing is drawn where this mask is not free; null: everywhere is free.
+  const image::Mask* own_aircraft = nullptr;
+  // The camera's effect on the samples. Sharpening and chroma blur reach beyond the layer but stay
+  // inside its patch: spread() enlarges the patch for them. Each pixel's own noise is scaled to the
+  // level of the light that is there after the blend.
   Sensor sensor;
-  std::uint64_t seed = 1;  // of the noise ...
-  std::int64_t frame = 0;  // ... which is another in each frame
-  // Where one is given, the samples of the blocks of 8 x 8 pixels that the layer reaches become
-  // what it makes of them.
+  // Seed of the noise.
+  std::uint64_t seed = 1;
+  // Number of the frame; each frame has different noise.
+  std::int64_t frame = 0;
+  // Where a coder is given, it replaces the samples of the blocks of 8 x 8 pixels that the layer
+  // reaches.
   PatchCoder* coder = nullptr;
 };
 
-// One entry per intruder of the layer.
+// Returns one entry for each intruder of the layer.
 std::vector<Visible> composite_matte(image::Picture& picture,
                                      const image::Layer& layer,
                                      const MatteOptions& options);

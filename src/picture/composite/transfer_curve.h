@@ -9,10 +9,10 @@
 
 namespace airtruth::composite {
 
-// A tone curve by tables, continued beyond [0, 1]: f(-x) = -f(x), and the same power law above 1.
+// A tone curve in tables, continued beyond [0, 1]: f(-x) = -f(x), and the same power law above 1.
 // Video can hold such values (blacker than black, colours outside of the RGB cube), and they must
-// survive a blend unclamped. sRGB's is within 2e-5 of the exact curve, which is 1/200 of a code
-// value.
+// survive a blend unclamped. The table of sRGB is within 2e-5 of the exact curve, which is 1/200 of
+// a code value.
 class TransferCurve {
  public:
   explicit TransferCurve(const image::ToneCurve& tone);
@@ -23,7 +23,8 @@ class TransferCurve {
 
  private:
   struct Table {
-    float scale = 0;  // entries per unit
+    // Entries per unit.
+    float scale = 0;
     std::vector<float> values;
   };
   template <typename Function>

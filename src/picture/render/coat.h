@@ -5,22 +5,26 @@
 
 #include "picture/render/shade.h"
 
-// What a smooth surface mirrors: a clear coat, glass, metal.
+// Specular reflection of a smooth surface: a clear coat, glass or metal.
 namespace airtruth::render {
 
-// How a surface deals with light, by its finish.
+// The reflection of a surface, by its finish.
 struct Coat {
-  std::array<float, 3> at_normal{};  // mirrored of what comes along the normal
-  float roughness = 0.1f;            // GGX's alpha
+  // Mirrored share of the light that arrives along the normal.
+  std::array<float, 3> at_normal{};
+  float roughness = 0.1f;  // GGX's alpha
+  // True where the surface has a specular reflection.
   bool mirrors = true;
-  float cover = 1;                   // where there is something that mirrors, 0..1
-  std::array<float, 3> scattered{};  // of what is not mirrored; premultiplied by opacity
+  // Share of the surface that mirrors, 0..1.
+  float cover = 1;
+  // Colour of the light that is scattered and not mirrored; premultiplied by opacity.
+  std::array<float, 3> scattered{};
 };
-// texel: of its texture, premultiplied; white where there is none.
+// `texel`: the texture's value there, premultiplied; white for a material without a texture.
 Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& texel);
 
-// Share of the light that is mirrored, by the cosine between the view (or the light) and the
-// mirror's normal (Schlick 1994). `at_normal`: along the normal.
+// Mirrored share of the light by the cosine between the view (or the light) and the mirror's normal
+// (Schlick 1994). `at_normal`: the share along the normal.
 inline float mirror_share(float at_normal, float cosine) {
   const float off = 1 - cosine;
   const float squared = off * off;
@@ -28,9 +32,10 @@ inline float mirror_share(float at_normal, float cosine) {
 }
 
 // The sun's glint on microfacets (Walter et al. 2007, eq. 20 and 33, with the shadowing of Hammon
-// 2017): what of the sun's irradiance over pi on a surface square to it comes back as radiance if
-// all of it were mirrored, and the cosine that mirror_share() wants. `view` comes from the camera.
-// 0 where the sun or the camera is behind the surface. roughness: GGX's alpha, above 0 to 1.
+// 2017). `strength`: the radiance that comes back if the surface mirrors all light, as a multiple
+// of the sun's irradiance over pi on a surface that faces it. `cosine`: the argument for
+// mirror_share(). `view` points from the camera to the surface. The strength is 0 where the sun or
+// the camera is behind the surface. roughness: GGX's alpha, above 0 and up to 1.
 struct Glint {
   float strength = 0;
   float cosine = 1;

@@ -7,12 +7,12 @@
 #include "picture/render/ray_grid.h"
 #include "picture/render/samples.h"
 
-// The inner loops of silhouette.h: which samples of a pixel lie on the inner side of all sides of a
-// triangle that cross it. An answer is -1 in `covered`; marking returns whether every sample is
-// covered by now.
+// The inner loops of silhouette.h: they mark the samples of a pixel that lie on the inner side of
+// all sides of a triangle that cross the pixel. `covered` becomes -1 for such a sample. mark()
+// returns true once every sample is covered.
 namespace airtruth::render {
 
-// Where a pixel's samples are, and when: 0 to 1.
+// Position of a pixel's samples (x, y) and their time in the exposure (t), each from 0 to 1.
 struct Places {
   alignas(32) std::array<float, PixelSamples::kMost> x;
   alignas(32) std::array<float, PixelSamples::kMost> y;
@@ -26,14 +26,15 @@ struct Bilinear {
 };
 Bilinear bilinear_of(const std::array<double, 4>& corner);
 
-// A side's product over a pixel and its exposure: steady + u (first + u second), u from -1 to 1.
+// A side's product over a pixel and its exposure: steady + u (first + u second), with u from -1 to
+// 1.
 struct Swept {
   Bilinear steady, first, second;
 };
-// At the beginning, the middle and the end.
+// `corner`: the products at the beginning, the middle and the end of the exposure.
 Swept swept_of(const Thrice<std::array<double, 4>>& corner);
 
-// The first `crossing` of the sides cross the pixel, 1 to 3.
+// `crossing`: how many of the sides cross the pixel, 1 to 3; they come first in `sides`.
 bool mark(const std::array<Bilinear, 3>& sides,
           int crossing,
           const Places& places,

@@ -12,7 +12,7 @@
 #include "aircraft/model/mesh.h"
 #include "picture/render/renderer.h"
 
-// Embree stays in this module's sources.
+// Only this module's sources include Embree.
 namespace airtruth::render {
 
 struct ReleaseDevice {
@@ -22,20 +22,21 @@ struct ReleaseScene {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
 
-// See openness.h.
+// The open share of the directions above a point; model_openness() in openness.h computes it.
 struct Openness {
   float share = 1;  // 0..1
-  // The sum of the open unit directions as a share of all, by cosine: 2/3 of the normal where
-  // nothing is hidden.
+  // The cosine-weighted sum of the open unit directions as a share of all directions: 2/3 of the
+  // normal where nothing is hidden.
   Eigen::Vector3f towards{0, 0, 0};
-  // What hides the rest gives light back: this share (its length) of the irradiance on a surface
-  // that faces this way.
+  // Light that the hiding parts reflect: the length is the share of the irradiance on a surface
+  // whose normal is this direction.
   Eigen::Vector3f given_back{0, 0, 0};
 };
 struct SideOpenness {
   std::array<Openness, 3> corner;
 
-  Openness at(float u, float v) const {  // barycentric, as of Hit
+  // Barycentric coordinates, as in Hit.
+  Openness at(float u, float v) const {
     const auto mean = [&](const auto& of) {
       return (1 - u - v) * of(corner[0]) + u * of(corner[1]) + v * of(corner[2]);
     };
@@ -45,24 +46,28 @@ struct SideOpenness {
   }
 };
 struct TriangleOpenness {
-  SideOpenness front;  // the side that the triangle's own normal is on
+  // The side to which the triangle's own normal points.
+  SideOpenness front;
   SideOpenness back;
 };
 
 struct Model::Impl {
   aircraft::Mesh mesh;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
-  // One BVH per part, in the part's own coordinates; primitive k is parts[i].triangles[k].
+  // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
-  std::vector<std::vector<float>> texels_per_m;  // [part][triangle], 0 without a texture
-  std::vector<std::vector<std::uint8_t>>
-      opaque;  // [part][triangle]: 1 where nothing shines through
+  // By [part][triangle]; 0 without a texture.
+  std::vector<std::vector<float>> texels_per_m;
+  // By [part][triangle]; 1 where the whole triangle is opaque.
+  std::vector<std::vector<std::uint8_t>> opaque;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
   Eigen::Vector3d centre_in_body{0, 0, 0};
-  double radius_m = 0;  // of a sphere about the centre that holds every part at any turn
+  // Radius of a sphere about the centre that contains every part at any angle.
+  double radius_m = 0;
 };
 
-// Where a ray meets a part.
+// The point where a ray meets a part. `t` is the distance along the ray; u and v are barycentric
+// coordinates.
 struct Hit {
   float t = 0;
   int part = 0;
@@ -71,14 +76,15 @@ struct Hit {
   float v = 0;
 };
 
-// Does anything of the aircraft stand in the way from there, within that reach? In body
-// coordinates. What spins is left out: a propeller's disc is mostly air.
+// True where a part of the aircraft blocks the ray within `reach_m`. The ray is in body
+// coordinates. Spinning parts do not block: most of a propeller's disc is air.
 bool is_blocked(const Model::Impl& model,
                 const Eigen::Vector3f& origin,
                 const Eigen::Vector3f& direction,
                 float reach_m = INFINITY);
 
-// The nearest thing that is_blocked() counts, by its distance from the origin, if any.
+// The nearest hit that is_blocked() counts, by its distance from the origin; empty where nothing
+// blocks the ray.
 std::optional<Hit> nearest_blocker(const Model::Impl& model,
                                    const Eigen::Vector3f& origin,
                                    const Eigen::Vector3f& direction,

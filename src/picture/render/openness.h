@@ -8,15 +8,16 @@
 
 namespace airtruth::render {
 
-// How much of the light from all around the aircraft leaves to each of its triangles: the share, by
-// cosine, of the directions above it in which nothing of the aircraft stands (ambient occlusion:
-// Zhukov et al. 1998), and about which direction they lie (Landis 2002); and how much of the light
-// from about which direction what stands there gives back, once. For either side of each triangle,
-// as [part][triangle]; what spins shadows nothing and is open itself. The same numbers for any
-// number of threads.
+// Ambient occlusion of an aircraft by itself, for either side of each triangle, as
+// [part][triangle]. Three values are computed: the cosine-weighted share of the directions above
+// the triangle in which no part of the aircraft stands (Zhukov et al. 1998); the mean direction of
+// the open ones (Landis 2002); and the light that the hiding parts reflect after one bounce, with
+// its mean direction. Spinning parts cast no shadow and count as fully open. The result is the same
+// for any number of threads.
 //
-// Shares are taken inside the triangle and not at its vertices: those of a wing's root lie within
-// the fuselage, and triangles that reach from there to the tip would be dark all along.
+// Shares are computed inside the triangle and not at its vertices: the vertices of a wing's root
+// lie within the fuselage, and triangles from there to the tip would be dark over their whole
+// length.
 using ModelOpenness = std::vector<std::vector<TriangleOpenness>>;
 ModelOpenness model_openness(const Model::Impl& model);
 

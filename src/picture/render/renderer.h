@@ -15,48 +15,62 @@
 #include "foundation/image/layer.h"
 #include "picture/render/environment.h"
 
-// Rays over exactly the pixels that an intruder can touch (design: docs/architecture.md):
+// Traces rays through exactly the pixels that an intruder can touch (design: docs/architecture.md):
 //
 //   ray_in_world(pixel) = world_from_cam * lens.ray_from_pixel(nominal_from_frame * pixel)
 //
-// carried into each aircraft's own frame, where its BVH (Embree) never moves. With a shutter every
-// sample has its own time: that of its row plus its own place in the exposure; camera, aircraft and
-// propellers stand where they are then.
+// Each ray is transformed into the aircraft's own frame, where its BVH (Embree) never moves. With a
+// shutter each sample has its own time: the time of its row plus the sample's place in the
+// exposure. Camera, aircraft and propellers take their poses of that time.
+//
+// Example: in a frame of 1280 x 960 pixels a pinhole with a vertical view of 75 degrees has a focal
+// length of 480 / tan(37.5 deg) = 625.5 px, and a wing of 11 m, seen square-on from 500 m, spans
+// 625.5 * 11 / 500 = 13.8 px. For a sun in the east, 30 degrees high, to_sun(90, 30) is (0, 0.866,
+// -0.5).
 namespace airtruth::render {
 
+// The light of a scene. All colours are linear RGB.
 struct Light {
-  Vector3 to_sun_in_world{0, 0, -1};     // unit
-  std::array<float, 3> sun = {1, 1, 1};  // linear; irradiance/pi on a surface facing the sun
-  std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};     // linear; from straight above
-  std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};  // linear; from straight below
-  // In place of sky and ground: light by direction, of which the aircraft hides a part from itself,
-  // and paint with a clear coat that mirrors it. Empty: sky and ground as the OpenGL of `backdrop`
-  // has them.
+  // Unit vector towards the sun.
+  Vector3 to_sun_in_world{0, 0, -1};
+  // Irradiance over pi on a surface that faces the sun.
+  std::array<float, 3> sun = {1, 1, 1};
+  // From straight above.
+  std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};
+  // From straight below.
+  std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};
+  // Replaces sky and ground: the light by direction. The aircraft hides a part of it from itself,
+  // and paint with a clear coat mirrors it. Empty: the hemisphere of sky and ground, as in the
+  // OpenGL renderer of `backdrop`.
   std::optional<Environment> surroundings = {};
 };
 
-// to_sun_in_world from azimuth (north towards east) and elevation.
+// The unit vector to_sun_in_world for an azimuth (from north towards east) and an elevation.
 Vector3 to_sun(double azimuth_deg, double elevation_deg);
 
+// The camera of one frame.
 struct View {
   const lens::Lens* lens = nullptr;
   Rigid world_from_cam;
   Homography nominal_from_frame = Homography::Identity();
   int width = 0;  // of the frame
   int height = 0;
-  // What goes on within the frame (foundation/geometry/within_frame.h).
+  // Motion within the frame (foundation/geometry/within_frame.h).
   Shutter shutter;
-  Twist camera;  // of world_from_cam
+  // The motion of world_from_cam.
+  Twist camera;
   Homography frame_from_nominal_per_s = Homography::Zero();
 
-  View at(double dt_s) const;  // the same, dt_s from the frame's time
+  // The same view, dt_s after the frame's time.
+  View at(double dt_s) const;
 };
 
-// One aircraft ready to be hit: its BVH, in body coordinates. Immutable; share one among intruders
-// of one type.
+// An aircraft prepared for rays: its BVH in body coordinates. A Model is immutable; intruders of
+// one type share one.
 class Model {
  public:
-  explicit Model(const aircraft::Mesh& mesh);  // copies what it needs
+  // Copies what it needs from the mesh.
+  explicit Model(const aircraft::Mesh& mesh);
   ~Model();
   Model(Model&&) noexcept;
   struct Impl;
@@ -66,24 +80,30 @@ class Model {
   std::unique_ptr<Impl> impl_;
 };
 
+// One aircraft in a frame.
 struct Instance {
   const Model* model = nullptr;
   Rigid world_from_body;
-  double time_s = 0;  // turns the propellers
-  Twist twist;        // how the body goes on within the frame
+  // The time that sets the propellers' angles.
+  double time_s = 0;
+  // The motion of the body within the frame.
+  Twist twist;
 };
 
 struct Options {
-  // Samples: 1 draft, 2, 3 (default: alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px
-  // of size, 1/40 above), 4, 5 (the oracle: 4,096 rays a pixel everywhere).
+  // The number of samples, from 1 (draft) to 5 (4,096 rays for every pixel, the reference of the
+  // tests). The default 3 holds alpha within 1/64 of 4,096 rays in the worst pixel up to 50 px of
+  // size and within 1/40 above. Error outside 1..5.
   int quality = 3;
-  // Once asked to stop, render returns soon; what it returns is then unfinished and to be dropped.
+  // After a stop request render() returns soon. Its result is then unfinished and must be dropped.
   std::stop_token stop = {};
 };
 
-// `search` boxes (one per instance, in frame pixels, not clipped; empty: not in view) say where an
-// instance can be: from projected geometry with a margin. Pixels outside every box are never
-// touched. Same bytes for any number of threads (rows of tiles run on oneTBB).
+// Renders the instances into a layer. `search` holds one box for each instance, in frame pixels and
+// not clipped, which contains every pixel that the instance can touch: it comes from projected
+// geometry with a margin. An empty box means that the instance is not in view. Pixels outside every
+// box are never touched. The result has the same bytes for any number of threads (rows of tiles run
+// on oneTBB).
 image::Layer render(const View& view,
                     const Light& light,
                     const std::vector<Instance>& instances,

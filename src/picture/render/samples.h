@@ -6,18 +6,20 @@
 
 namespace airtruth::render {
 
-// Where a pixel is sampled, in units of its sides from its top left corner: the two-dimensional
+// The sample points of a pixel, in units of its sides from its top left corner: the two-dimensional
 // Sobol sequence (Sobol 1967), xor-scrambled by the pixel (Kollig and Keller 2002). Any power of
-// two of its points is a (0, 2)-net, which is what keeps the error of an edge small at every slope.
+// two of its points is a (0, 2)-net, which keeps the error at an edge small for every slope.
 class PixelSamples {
  public:
+  // Largest number of samples of a pixel.
   static constexpr int kMost = 4096;
 
   PixelSamples(int x, int y);
-  std::array<double, 2> at(int i) const;  // i in [0, kMost); in (0, 1)
-  // The first n of them, to 2^-23.
+  // i lies in [0, kMost); the coordinates lie in (0, 1).
+  std::array<double, 2> at(int i) const;
+  // The first n points, accurate to 2^-23.
   void fill(int n, float* x, float* y) const;
-  // When in the exposure a sample is taken, in (0, 1): the sequence's third dimension.
+  // The time of a sample within the exposure, in (0, 1): the third dimension of the sequence.
   double time(int i) const;
   void fill_times(int n, float* t) const;
 
@@ -27,13 +29,16 @@ class PixelSamples {
   std::uint32_t scramble_t_;
 };
 
-// How many samples a pixel takes; powers of two.
+// The numbers of samples of a pixel; powers of two.
 struct SampleCounts {
-  int base = 16;       // of every pixel that an aircraft may touch
-  int edge = 512;      // of one that an outline crosses, by rays
-  int outline = 1024;  // of one that an outline crosses, by Silhouette
-  // Hits whose light is computed (the others only count): so many, or, where those are much alike,
-  // so few.
+  // For every pixel that an aircraft may touch.
+  int base = 16;
+  // For a pixel that an outline crosses, by rays.
+  int edge = 512;
+  // For a pixel that an outline crosses, by Silhouette.
+  int outline = 1024;
+  // Hits whose light is computed; the other hits only count as coverage. `shaded_alike` applies
+  // where the computed colours are nearly equal.
   int shaded = 16;
   int shaded_alike = 8;
 };

@@ -7,14 +7,13 @@
 
 namespace airtruth::render {
 
-// A ray in body coordinates that begins near the aircraft; what it says of distance is from that
-// beginning.
+// A ray in body coordinates that starts near the aircraft. Its distances count from that start.
 struct BodyRay {
   Eigen::Vector3f origin;
   Eigen::Vector3f direction;  // unit
 };
 
-// An instance as rays meet it.
+// An instance with the transforms that ray queries need.
 struct Placed {
   const Model::Impl* model = nullptr;
   Eigen::Vector3f to_sun_in_body{0, 0, -1};
@@ -25,16 +24,17 @@ struct Placed {
   std::vector<Eigen::Affine3f> body_from_part;
 };
 
-// Opacity of the surface at a hit, texture included. `footprint_m`: the width that a sample stands
-// for, there.
+// Opacity of the surface at a hit, texture included. `footprint_m`: the width on the surface that
+// the sample represents.
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
 
-// Linear light, premultiplied by opacity: Lambert for the sun (with the aircraft's own shadow) and
-// for what comes from all around, Blinn-Phong (Blinn 1977) for the sun's glint. Two-sided.
+// The light of a surface at a hit: linear, premultiplied by opacity. Lambert's law gives the
+// diffuse light of the sun (with the aircraft's own shadow) and of the surroundings; Blinn-Phong
+// (Blinn 1977) gives the sun's glint. Both sides of a surface are lit.
 //
-// What comes from all around is light.surroundings, less what the aircraft itself hides
-// (openness.h), with a clear coat that mirrors it (Fresnel, by Schlick 1994); else a sky that goes
-// evenly from ground to zenith colour (hemisphere lighting).
+// The surroundings are light.surroundings, less the part that the aircraft hides from itself
+// (openness.h), with a clear coat that mirrors them (Fresnel, by Schlick 1994). Without
+// light.surroundings they are a hemisphere whose colour changes linearly from ground to sky.
 std::array<float, 3> shade(const Placed& placed,
                            const BodyRay& ray,
                            const Hit& hit,

@@ -8,65 +8,73 @@
 
 #include "picture/render/tracer.h"
 
-// An opaque aircraft's outline without rays. Seen from the eye, a direction d lies within triangle
-// (a, b, c) where it is on the inner side of the three planes through the eye and one side each:
-// d . (a x b) >= 0 and so on (Olano and Greer 1997, "Triangle scan conversion using 2D homogeneous
-// coordinates", eq. 1 to 4; any lens, since d is a sample's own ray). Inside a pixel d is bilinear
-// in the sample's place, and so is each product: four corners give it for every sample. A sample is
-// covered where any triangle covers it, so nothing needs to be sorted by depth.
+// Finds the outline of an opaque aircraft without rays. Seen from the eye, a direction d lies
+// within the triangle (a, b, c) where it is on the inner side of three planes, each of which
+// contains the eye and one side: d . (a x b) >= 0 and so on (Olano and Greer 1997, "Triangle scan
+// conversion using 2D homogeneous coordinates", eq. 1 to 4). The test holds for any lens, because d
+// is the sample's own ray. Inside a pixel d is bilinear in the sample's place, and so is each
+// product: the values at the four corners give it for every sample. A sample is covered where any
+// triangle covers it, so no sorting by depth is needed.
 //
-// The samples, and what covers them, are those of the rays (Tracer::sample); this is some fifty
-// times faster where a pixel needs many.
+// The samples and their coverage equal those of the rays (Tracer::sample). This method is about
+// fifty times faster for a pixel with many samples.
 //
-// While the shutter works, eye and aircraft move, and each sample has its own time. In the
-// aircraft's own frame the side from a to b stays, and the test becomes the product of two lines
-// (Pluecker 1865): with the sample's ray through the eye e along d,
+// During an exposure the eye and the aircraft move, and each sample has its own time. In the
+// aircraft's own frame the side from a to b does not move, and the test becomes the product of two
+// lines (Pluecker 1865), with the sample's ray through the eye e along d:
 //
 //   d . (a x b) + (b - a) . (e x d) >= 0
 //
-// which is exact at every time. d and e x d go along parabolas over a pixel's exposure, and so do
-// the products.
+// This test is exact at every time. Over a pixel's exposure parabolas approximate d, e x d and the
+// products.
 namespace airtruth::render {
 
-// Which of a pixel's first n samples an aircraft covers.
+// The samples, among a pixel's first n, that an aircraft covers.
 struct Cover {
   int covered = 0;
-  std::vector<std::int32_t> is_covered;  // 0 or -1, of each sample
+  // 0 or -1 for each sample.
+  std::vector<std::int32_t> is_covered;
 };
 
 class Silhouette {
  public:
   enum class Touch { kNone, kOpaque, kRays };
 
-  // Sorts the actor's triangles by the pixels of the patch that they can touch. `grid` is kept.
+  // Sorts the actor's triangles by the pixels of the patch that they can touch. The object keeps
+  // references to `actor` and `grid`.
   Silhouette(const Actor& actor, const View& view, const PixelBox& patch, const RayGrid& grid);
 
-  // What of the aircraft may be seen in a pixel: nothing; opaque triangles alone, few enough that
-  // cover() is the faster way; or anything else, which takes rays.
+  // The content of a pixel: kNone, no part of the aircraft; kOpaque, only opaque triangles, few
+  // enough for cover() to be faster than rays; kRays, anything else.
   Touch touch(int x, int y) const;
 
-  // For a pixel that opaque triangles touch. Nothing is covered where the lens has no direction for
-  // all of it. samples: 1 to PixelSamples::kMost.
+  // Covers the samples of a pixel of the kind kOpaque. No sample is covered where the lens lacks a
+  // direction for some part of the pixel. samples: 1 to PixelSamples::kMost.
   void cover(int x, int y, int samples, Cover& result) const;
 
  private:
   struct Triangle {
-    // At an instant: normals, in world, of the planes through the eye and a side; inwards. While
-    // things move: a x b of each side, and b - a, in body.
+    // At an instant `side` holds the inward normals, in world, of the planes through the eye and a
+    // side. During a motion `side` holds a x b and `edge` holds b - a for each side, in body.
     std::array<Vector3, 3> side;
     std::array<Vector3, 3> edge;
     bool opaque = true;
   };
-  struct Reach {  // pixels of the patch, [x0, x1) by [y0, y1)
+  // A range of the patch's pixels, [x0, x1) by [y0, y1).
+  struct Reach {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   };
   struct Seen {
-    Vector3 in_world;  // from the eye
-    Pixel pixel;       // in the frame; not finite where the lens has none
+    // The vector from the eye.
+    Vector3 in_world;
+    // The point in the frame; not finite where the lens has none.
+    Pixel pixel;
   };
 
-  struct Eye;     // of the view, as a point's picture needs it
-  struct Pencil;  // a pixel's rays, as the sides meet them
+  // The view, as the projection of a point uses it.
+  struct Eye;
+  // The rays of a pixel, as the sides use them.
+  struct Pencil;
   static BoxBounds bounds_before_plane(const std::array<const Seen*, 3>& corners,
                                        const Eye& eye,
                                        bool& all_have_pictures);
@@ -106,7 +114,8 @@ class Silhouette {
   const RayGrid& grid_;
   const Actor& actor_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> first_;  // of each pixel in by_pixel_; one more at the end
+  // The index in by_pixel_ of each pixel's first triangle; one more entry at the end.
+  std::vector<std::uint32_t> first_;
   std::vector<std::uint32_t> by_pixel_;
   std::vector<Touch> touch_;
 };

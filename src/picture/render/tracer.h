@@ -16,29 +16,33 @@ struct Actor {
   Placed placed;
   Matrix3 body_from_world;
   Vector3 eye_in_body;
-  // Rays begin here, just before the sphere about the aircraft, so that floats suffice.
+  // Rays start at this distance, just before the sphere about the aircraft, so that float precision
+  // suffices.
   double start_m = 0;
-  // Where the patch's span is no instant, `moves`, and the same holds at its three moments.
+  // True where the patch's span is not an instant. The next two fields then hold the poses at its
+  // three moments.
   bool moves = false;
   Thrice<Matrix3> body_from_world_at;
   Thrice<Vector3> eye_in_body_at;
-  std::optional<PixelBox> pixels;  // where it can be in the frame
+  // The pixels of the frame that it can touch.
+  std::optional<PixelBox> pixels;
 };
 
-// `span`: of the patch that holds all actors.
+// `span`: the span of the patch that contains all actors.
 Actor place(const Instance& instance,
             const View& view,
             const Light& light,
             const std::optional<Box>& search,
             const Span& span);
 
-// The pixels of the frame that a search box asks for.
+// The pixels of the frame that a search box covers; empty where there are none.
 std::optional<PixelBox> pixels_to_search(const std::optional<Box>& search, const View& view);
 
-// A sample: where it looks, and when.
+// A sample's direction and time.
 struct Shot {
-  Vector3 direction;  // in world, unit
-  double u = 0;       // in the patch's span; 0 where that is an instant
+  // The time within the patch's span, from -1 to 1; 0 where that is an instant.
+  Vector3 direction;
+  double u = 0;  // in the patch's span; 0 where that is an instant
   double dt_s = 0;
 };
 
@@ -46,7 +50,8 @@ struct Shot {
 class PixelShots {
  public:
   PixelShots(const RayGrid& grid, int x, int y);
-  bool known() const { return known_; }  // has the lens a direction for all of the pixel?
+  // True where the lens has a direction at all four corners of the pixel.
+  bool known() const { return known_; }
   double pixel_rad() const { return pixel_rad_; }
   Shot operator()(int sample) const;
 
@@ -61,18 +66,22 @@ class PixelShots {
   double pixel_rad_ = 0;
 };
 
-// Are all four a pixel's directions known?
+// True where all four directions of a pixel are known.
 bool finite(const std::array<Vector3, 4>& corners);
 
-// What a pixel's samples add up to.
+// The sums over a pixel's samples.
 struct Sum {
-  std::array<double, 3> opaque_rgb{};  // of the shaded opaque samples
+  // Sum over the shaded opaque samples.
+  std::array<double, 3> opaque_rgb{};
   int opaque_shaded = 0;
-  double opaque = 0;  // samples' alpha that opaque surfaces contribute, not yet coloured
+  // Sum of the samples' alpha that opaque surfaces contribute, not yet coloured.
+  double opaque = 0;
   std::array<double, 3> translucent_rgb{};
   double alpha = 0;
-  double depth = 0;  // alpha-weighted
-  double least = 1;  // smallest and largest opacity of the samples that hit
+  // Sum weighted by alpha.
+  double depth = 0;
+  // Smallest and largest opacity of the samples that hit.
+  double least = 1;
   double most = 0;
   int hits = 0;
   int count = 0;
@@ -86,7 +95,7 @@ struct Fragment {
   Hit hit;
 };
 
-// Shoots rays (Embree) and gathers what they meet.
+// Traces rays (Embree) and accumulates the surfaces that they meet.
 class Tracer {
  public:
   Tracer(const Light& light,
@@ -95,17 +104,20 @@ class Tracer {
          const SampleCounts& counts)
       : light_(light), actors_(actors), grid_(grid), counts_(counts) {}
 
-  // Adds samples [from, to) of a pixel. `coverage` and `alone`: per actor.
+  // Adds the samples [from, to) of a pixel to `sum`. `coverage` and `alone` hold one number for
+  // each actor.
   void sample(int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const;
 
-  // The share of a sample's light that one actor alone would stop; its surfaces are appended.
+  // Returns the share of a sample's light that this actor alone would stop, and appends its
+  // surfaces to `fragments`.
   double collect(int actor,
                  const Shot& shot,
                  double pixel_rad,
                  std::vector<Fragment>& fragments) const;
 
-  // Light and distance of a pixel by the samples that are known to meet one opaque actor (not 0 in
-  // `is_covered`): by rays through some of those. False where none of them hits.
+  // Computes the light and the distance of a pixel from the samples that are known to meet one
+  // opaque actor (`is_covered` is not 0), by tracing rays through some of them. Returns false where
+  // none of those rays hits.
   bool shade_covered(
       int x, int y, int actor, const std::vector<std::int32_t>& is_covered, Sum& sum) const;
 
