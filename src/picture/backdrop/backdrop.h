@@ -10,10 +10,10 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/image/picture.h"
 
-// The paper's virtual image (section II.B): OpenGL by OpenSceneGraph on EGL without a screen.
-// Intruders over a chroma key green backdrop, averaged normals, antialiasing, anisotropic
-// filtering, one directional light. A pinhole camera, whatever the scene's lens: OpenGL has no
-// other, and nor had the paper.
+// The virtual image of the E-Vision paper (section II.B), rendered by OpenSceneGraph in OpenGL on
+// EGL without a screen: the intruders over a chroma key green backdrop, with averaged normals,
+// antialiasing, anisotropic filtering and one directional light. The camera is a pinhole for every
+// lens of the scene, because OpenGL and the paper have no other.
 namespace airtruth::backdrop {
 
 struct Instance {
@@ -22,7 +22,8 @@ struct Instance {
   double time_s = 0;
 };
 
-struct Light {  // as render::Light
+// As render::Light.
+struct Light {
   Vector3 to_sun_in_world{0, 0, -1};
   std::array<float, 3> sun = {1, 1, 1};
   std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};
@@ -30,30 +31,34 @@ struct Light {  // as render::Light
 };
 
 struct Options {
-  int samples = 4;  // multisamples per pixel
+  // Number of multisamples for each pixel.
+  int samples = 4;
   float anisotropy = 16;
-  std::optional<int> gpu;  // EGL device; empty: the first GPU if there is one, else llvmpipe
-  bool software = false;   // --gpu none: llvmpipe
+  // Index of the EGL device; empty: the first GPU if there is one, else llvmpipe.
+  std::optional<int> gpu;
+  // True: llvmpipe (--gpu none).
+  bool software = false;
 };
 
-// One OpenGL context; use it from one thread at a time. A mesh that it has drawn stays on the
-// device and must outlive it unchanged.
+// One OpenGL context. One thread uses it at a time. A mesh that it has drawn stays on the device;
+// it must outlive the Backdrop unchanged.
 class Backdrop {
  public:
   // Throws Error where no EGL device can be opened.
   Backdrop(int width, int height, const Options& options);
   ~Backdrop();
 
-  // The virtual image: sRGB over pure green. focal and principal point in airtruth's pixels.
+  // The virtual image: sRGB over pure green. Focal length and principal point are in airtruth's
+  // pixels.
   image::Rgb8 render(const Pixel& focal_px,
                      const Pixel& principal_point_px,
                      const Rigid& cam_from_world,
                      const Light& light,
                      const std::vector<Instance>& instances);
 
-  // The same drawn `supersampling` times larger in each direction over transparent black and
-  // averaged: linear premultiplied colour and alpha, the independent answer that render's layer is
-  // tested against.
+  // The same picture, drawn `supersampling` times larger in each direction over transparent black
+  // and averaged: linear premultiplied colour and alpha. It is the independent result with which
+  // tests compare render's layer.
   std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
                                                  const Pixel& principal_point_px,
                                                  const Rigid& cam_from_world,
@@ -61,7 +66,7 @@ class Backdrop {
                                                  const std::vector<Instance>& instances,
                                                  int supersampling);
 
-  // "llvmpipe (LLVM 15.0.6, 256 bits)" or the GPU's name.
+  // For example "llvmpipe (LLVM 15.0.6, 256 bits)", or the GPU's name.
   std::string device_name() const;
 
  private:

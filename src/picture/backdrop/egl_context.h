@@ -9,12 +9,12 @@ namespace airtruth::backdrop {
 // An OpenGL context without a screen, on one of EGL's devices.
 class EglContext {
  public:
-  // gpu: the n-th device that is not software. Empty: the first that works, else llvmpipe. Throws
-  // Error.
+  // gpu: the index among the devices that are not software. Empty: the first that works, else
+  // llvmpipe. Throws Error.
   EglContext(std::optional<int> gpu, bool software);
   ~EglContext();
 
-  // Current on this thread for as long as it lives.
+  // Makes the context current on this thread during its own lifetime.
   class Current {
    public:
     explicit Current(const EglContext& context);

@@ -8,11 +8,11 @@
 
 namespace airtruth::backdrop {
 
-// Colour and depth to draw into, multisampled where samples > 1. All calls need the context to be
-// current.
+// A render target of colour and depth, multisampled where samples > 1. Every call needs the context
+// to be current.
 //
-// It is made with plain OpenGL: OpenSceneGraph's own multisampled camera asks Mesa for NVIDIA's
-// coverage samples and silently draws without antialiasing.
+// It uses plain OpenGL: OpenSceneGraph's own multisampled camera requests NVIDIA's coverage samples
+// from Mesa and silently draws without antialiasing.
 class FrameBuffer {
  public:
   FrameBuffer(osg::GLExtensions& gl, int width, int height, GLenum colour_format, int samples);
@@ -24,7 +24,7 @@ class FrameBuffer {
   int height() const { return height_; }
   GLuint id() const { return drawn_.frame; }
 
-  // The pixels after resolving the samples, bottom row first, as OpenGL has them.
+  // Reads the pixels after resolving the samples, bottom row first, as OpenGL stores them.
   void read(GLenum format, GLenum type, void* pixels);
 
  private:
@@ -41,7 +41,8 @@ class FrameBuffer {
   int width_;
   int height_;
   Buffers drawn_;
-  Buffers resolved_;  // none without multisampling
+  // Unused without multisampling.
+  Buffers resolved_;
 };
 
 }  // namespace airtruth::backdrop

@@ -7,17 +7,18 @@
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 
-// The one place that knows OpenSceneGraph's row vectors and OpenGL's upward y and backward z
-// ("eye").
+// The only place that uses OpenSceneGraph's row vectors and OpenGL's "eye" frame, whose y points
+// upwards and whose z points backwards.
 namespace airtruth::backdrop {
 
 osg::Matrixd osg_from_affine(const Eigen::Affine3d& b_from_a);
 osg::Matrixd eye_from_world(const Rigid& cam_from_world);
 osg::Vec3f eye_direction_from_world(const Rigid& cam_from_world, const Vector3& direction_in_world);
 
-// What part of the frame is drawn, and between which distances along the camera's axis.
+// The part of the frame that is drawn, and the range of distances along the camera's axis.
 struct Window {
-  Box in_frame;  // pixels
+  // In pixels.
+  Box in_frame;
   double near_m = 1;
   double far_m = 2;
 };

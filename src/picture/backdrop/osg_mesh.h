@@ -12,19 +12,20 @@
 
 namespace airtruth::backdrop {
 
-// The textures of one mesh, shared by all of its instances.
+// The textures of one mesh, which all its instances share.
 std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const aircraft::Mesh& mesh,
                                                        float anisotropy);
 
-// One aircraft in the scene graph: a transform for the body, one below it for each part.
+// One aircraft in the scene graph: a transform for the body and one below it for each part.
 class OsgMesh {
  public:
   OsgMesh(const aircraft::Mesh& mesh, const std::vector<osg::ref_ptr<osg::Texture2D>>& textures);
   osg::Node* node() const { return body_.get(); }
-  // Of a sphere about the body's origin that holds it, propellers at any angle.
+  // Radius of a sphere about the body's origin that contains the aircraft with its propellers at
+  // any angle.
   double radius_m() const { return radius_m_; }
 
-  // Puts body and propellers in place, and sorts translucent triangles back to front.
+  // Sets the poses of body and propellers, and sorts translucent triangles back to front.
   void place(const Instance& instance, const Rigid& cam_from_world);
 
  private:

@@ -9,11 +9,11 @@
 namespace airtruth::backdrop {
 
 enum class Encoding { kLinear, kSrgb };
-// A textured triangle can be opaque here and translucent there, so it is drawn twice: first what is
-// opaque, with depth, then what is not, blended.
+// A textured triangle can be partly opaque and partly translucent, so it is drawn twice: first its
+// opaque part, with depth, then its translucent part, blended.
 enum class Pass { kOpaque, kTranslucent };
 
-// The program, the light and how colour leaves it; for the root of a scene.
+// The shader program, the light and the output encoding, as the state of a scene's root.
 class Shading {
  public:
   Shading();

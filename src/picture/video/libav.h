@@ -19,7 +19,8 @@ extern "C" {
 #include "foundation/image/picture.h"
 #include "picture/video/reader.h"
 
-// libav's C objects as values, and its pixel formats as ours. Only this module includes it.
+// Ownership of libav's C objects, and the mapping of its pixel formats to this project's. Only this
+// module includes it.
 namespace airtruth::video {
 
 struct FreeInput {
@@ -39,43 +40,50 @@ using CodecPtr = std::unique_ptr<AVCodecContext, FreeCodec>;
 using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
 using PacketPtr = std::unique_ptr<AVPacket, FreePacket>;
 
-// libav's own word for an error code.
+// libav's own description of an error code.
 std::string reason(int error);
 
-// libav would print to standard error; the library never does.
+// Turns off libav's output to standard error: the library never prints.
 void keep_libav_quiet();
 
-// How a pixel format of libav becomes a Picture; empty for what cannot be held.
+// How a pixel format of libav becomes a Picture.
 struct Layout {
   image::Chroma chroma = image::Chroma::k420;
-  bool rgb = false;                 // packed or planar RGB -> planes G, B, R
-  bool full_range = false;          // yuvj*, RGB
-  bool interleaved_chroma = false;  // nv12, nv16, nv24
-  int shift = 0;                    // bits above 8, dropped with rounding
+  // Packed or planar RGB, stored as planes G, B, R.
+  bool rgb = false;
+  // True for yuvj* and RGB.
+  bool full_range = false;
+  // True for nv12, nv16 and nv24.
+  bool interleaved_chroma = false;
+  // Number of bits above 8; they are dropped with rounding.
+  int shift = 0;
 };
+// Empty for a format that a Picture cannot hold.
 std::optional<Layout> layout_of(AVPixelFormat format);
 
-// The nearest format that layout_of knows, for those that stills come in: palettes, 1 bit, 16-bit
-// grey and RGB (grey with alpha too). AV_PIX_FMT_NONE for others.
+// The nearest format that layout_of() supports, for formats that stills use: palettes, 1 bit,
+// 16-bit grey and RGB (grey with alpha too). AV_PIX_FMT_NONE for all others.
 AVPixelFormat plain_kin(AVPixelFormat format);
-// A frame in that format (libswscale, no dithering); alpha is dropped.
+// Converts a frame to that format (libswscale, no dithering). Alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
 
 image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed);
 AVColorSpace space_of(image::Matrix matrix);
 
-// Samples of a decoded frame as a Picture of that colour (which fits the layout).
+// The samples of a decoded frame as a Picture of that colour, which must fit the layout.
 image::Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour);
 
-// How a stored picture is to be shown: left and right exchanged first, then turned.
+// How a stored picture is shown: left and right are exchanged first, then the picture is rotated.
 struct Orientation {
   bool mirrored = false;
-  int clockwise_deg = 0;  // 0, 90, 180, 270: the nearest
+  // The nearest of 0, 90, 180 and 270.
+  int clockwise_deg = 0;
 };
-// From a display matrix of libav's (nine numbers, 16.16); as it is where the matrix is nonsense.
+// The orientation of a libav display matrix (nine numbers, 16.16 fixed point). An invalid matrix
+// gives the identity.
 Orientation orientation_of(const std::int32_t* display_matrix);
 
-// The picture so turned; every sample kept.
+// The picture with the orientation applied. Every sample keeps its value.
 image::Picture oriented(image::Picture picture, const Orientation& orientation);
 
 }  // namespace airtruth::video

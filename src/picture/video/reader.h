@@ -10,52 +10,74 @@
 #include "foundation/base/log.h"
 #include "picture/video/frame.h"
 
+// Reads videos frame by frame.
+//
+// Example: a clip of 322 frames at 30 frames/s, read from frame 300 on, gives 22 frames. The first
+// has the index 0 and the time 0 s; the last has the index 21 and the time 21 / 30 = 0.7 s.
+//
+//   Reader reader("clip.mp4", {.first_frame = 300});
+//   while (const std::optional<Frame> frame = reader.next()) ...
 namespace airtruth::video {
 
+// A fraction, as containers store rates and clocks.
 struct Rational {
   int num = 0;
   int den = 1;
   double value() const { return static_cast<double>(num) / den; }
 };
 
-// What a stream is. Sizes are after rotation.
+// Properties of a video stream. Sizes are those after rotation.
 struct StreamInfo {
   int width = 0;
   int height = 0;
   image::Colour colour;
-  bool matrix_guessed =
-      false;  // untagged: BT.601 below 720 lines, else BT.709 (the common rule of players)
-  bool range_guessed = false;  // untagged: limited, or full for JPEG kinds (yuvj*) and RGB
-  int primaries_tag =
-      2;  // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2 = unspecified
+  // True where the matrix is untagged: BT.601 is assumed below 720 lines, else BT.709 (the common
+  // rule of players).
+  bool matrix_guessed = false;
+  // True where the range is untagged: limited is assumed, or full for JPEG kinds (yuvj*) and RGB.
+  bool range_guessed = false;
+  // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2: unspecified.
+  int primaries_tag = 2;
   int transfer_tag = 2;
   Rational time_base{1, 30};
-  Rational frame_rate{30, 1};  // average
+  // Average rate, in frames a second.
+  Rational frame_rate{30, 1};
   bool variable_frame_rate = false;
   Rational sample_aspect{1, 1};
-  int rotation_deg = 0;                   // what was applied: 0, 90, 180, 270 clockwise
-  std::int64_t frame_count_estimate = 0;  // 0 = unknown
-  std::string codec;                      // "h264"
-  std::string pixel_format;               // "yuv420p"
+  // The rotation that the reader has applied, clockwise: 0, 90, 180 or 270 degrees.
+  int rotation_deg = 0;
+  // Number of frames as the container gives it; 0: unknown.
+  std::int64_t frame_count_estimate = 0;
+  // Name of the codec, for example "h264".
+  std::string codec;
+  // Name of the pixel format, for example "yuv420p".
+  std::string pixel_format;
 };
 
+// What the reader delivers.
 struct ReaderOptions {
-  std::int64_t first_frame = 0;             // frames before it are decoded and dropped
-  std::optional<std::int64_t> frame_count;  // else to the end
-  int threads = 0;                          // 0 = one per core
-  bool with_quantiser = false;              // Frame::quantiser, where the decoder tells it
-  // Frame::begins_shot. What comes after a frame says whether it begins a shot: two frames are held
-  // that are decoded and not handed out.
+  // The first frame that is handed out. Frames before it are decoded and dropped.
+  std::int64_t first_frame = 0;
+  // Largest number of frames; empty: to the end.
+  std::optional<std::int64_t> frame_count;
+  // Number of decoder threads; 0: one for each core.
+  int threads = 0;
+  // True: the reader fills Frame::quantiser where the decoder exports it.
+  bool with_quantiser = false;
+  // True: the reader fills Frame::begins_shot. The decision needs the following frames, so the
+  // reader holds two decoded frames back.
   bool with_cuts = false;
 };
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or
 // numbered images ("frames/%04d.png", or a folder of numbered images), 8-bit 4:2:0, 4:2:2, 4:4:0,
-// 4:4:4, grey or RGB. Deeper samples are taken to 8 bits with a warning; palettes and 1-bit stills
-// become RGB and grey; other layouts (Bayer, floating point) are an Error that says what to do. A
-// display matrix (rotation, mirror) is applied. The constructor opens the file and decodes up to
-// the first frame, so that what is wrong with it is said there: missing, empty, not a video, audio
-// only, no frame that decodes, first_frame past the end.
+// 4:4:4, grey or RGB. Deeper samples are reduced to 8 bits with a warning; palettes and 1-bit
+// stills become RGB and grey. Other layouts (Bayer, floating point) are an Error whose message
+// names a remedy. A display matrix (rotation, mirror) is applied.
+//
+// The constructor opens the file and decodes up to the first frame. It throws Error for a file that
+// is missing, empty, not a video, audio only or without a frame that decodes, and for a first_frame
+// past the end.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path,
@@ -66,11 +88,11 @@ class Reader {
   Reader& operator=(Reader&&) noexcept;
 
   const StreamInfo& info() const;
-  // The next frame in presentation order; empty at the end. Corrupt packets are passed over and the
-  // frames they touch are flagged `damaged`. Throws Error only where the file can no longer be read
-  // at all.
+  // The next frame in presentation order; empty at the end. Corrupt packets are skipped, and the
+  // frames that they affect are flagged `damaged`. Throws Error only where the rest of the file
+  // cannot be read at all.
   std::optional<Frame> next();
-  // After the end: how many packets could not be decoded, and whether the file ends early
+  // After the end: the number of packets that could not be decoded, and whether the file ends early
   // (truncated).
   std::int64_t corrupt_packets() const;
   bool ends_early() const;

@@ -12,28 +12,30 @@
 
 namespace airtruth::video {
 
-// A still image (png, jpg, bmp, tif, ...) as packed sRGB; an alpha channel is dropped. Throws
+// Reads a still image (png, jpg, bmp, tif, ...) as packed sRGB. An alpha channel is dropped. Throws
 // Error.
 image::Rgb8 read_still(const std::filesystem::path& path);
 
-// Error where write_still() would fail for a reason that is there before the picture is: the path's
-// ending, and what check_output_file() refuses. An empty path is no output and no error.
+// Throws Error where write_still() would fail for a reason that does not depend on the picture: the
+// path's ending, and what check_output_file() refuses. An empty path means no output and is no
+// error.
 void check_still_output(const std::filesystem::path& path, bool overwrite);
 
-// By extension: .png (lossless) or .jpg. Whole or not at all. Throws Error.
+// Writes .png (lossless) or .jpg, by the path's extension. The file is written whole or not at all.
+// Throws Error.
 void write_still(const std::filesystem::path& path,
                  const image::Rgb8& rgb,
                  Flush flush = Flush::kNow);
 
-// The same of a decoded picture; a .jpg keeps its halved chroma.
+// Writes a decoded picture in the same way; a .jpg keeps its halved chroma.
 void write_still(const std::filesystem::path& path,
                  const image::Picture& picture,
                  Flush flush = Flush::kNow);
 
-// The bytes of such a .jpg; quality from 1 (best) to 31.
+// The bytes of such a .jpg, with a quality from 1 (best) to 31.
 std::string jpeg_of(const image::Rgb8& rgb, int quality = 3);
 
-// Grey samples as a .png of 8 bits, and back. `samples`: height rows of width. Throws Error.
+// Grey samples as a .png of 8 bits, and the reverse. `samples`: height rows of width. Throws Error.
 struct Grey {
   int width = 0;
   int height = 0;
@@ -42,8 +44,8 @@ struct Grey {
 std::string png_of(const Grey& grey);
 Grey read_grey(const std::filesystem::path& path);
 
-// An own-aircraft mask: darker than middle grey = own aircraft. Error if its size is not width x
-// height, or if it is black all over.
+// Reads an own-aircraft mask: values darker than middle grey are the own aircraft. Error where its
+// size is not width x height, or where it is black all over.
 image::Mask read_mask(const std::filesystem::path& path, int width, int height);
 
 }  // namespace airtruth::video

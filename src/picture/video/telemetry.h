@@ -9,12 +9,14 @@ namespace airtruth::video {
 
 // A packet of a GoPro's telemetry track ("gpmd"), undecoded.
 struct TelemetryPacket {
-  double begin_s = 0;  // from the first frame of the video
+  // Seconds from the first frame of the video.
+  double begin_s = 0;
   double end_s = 0;
   std::vector<std::uint8_t> bytes;
 };
 
-// All of them; none where the file has no such track. Error where the file cannot be read.
+// All packets of the file, in their order; empty where the file has no such track. Error where the
+// file cannot be read.
 std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path);
 
 }  // namespace airtruth::video
