@@ -12,38 +12,45 @@
 
 namespace airtruth::annotation {
 
-// How a frame is seen: docs/architecture.md's ray in reverse, world to pixel.
+// The projection of the world into one frame: the ray of docs/architecture.md in reverse, from
+// world to pixel.
 struct Sight {
   const lens::Lens* lens = nullptr;
-  Rigid cam_from_world;  // at the frame's time, as are all that have no other
+  // At the frame's time, as are all fields without a time of their own.
+  Rigid cam_from_world;
   Homography frame_from_nominal = Homography::Identity();
-  // What goes on within the frame.
+  // Motion within the frame.
   Shutter shutter;
-  Twist camera;  // of world_from_cam
+  // The motion of world_from_cam.
+  Twist camera;
   Homography frame_from_nominal_per_s = Homography::Zero();
 
-  Sight at(double dt_s) const;  // the same, dt_s from the frame's time
+  // The same sight, dt_s after the frame's time.
+  Sight at(double dt_s) const;
 };
 
-// Where a point of the world is seen at the frame's time; empty behind the camera, beyond the
-// lens's field, or beyond H's horizon.
+// The pixel of a point of the world at the frame's time. Empty behind the camera, beyond the lens's
+// field, and beyond the horizon of the homography.
 std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world);
 
-// The silhouette points of a mesh, prepared once per aircraft.
+// The silhouette points of a mesh, computed once for each aircraft.
 struct Silhouette {
   const aircraft::Mesh* mesh = nullptr;
-  std::vector<std::vector<Eigen::Vector3f>> points;  // aircraft::silhouette_points(*mesh)
+  // The result of aircraft::silhouette_points(*mesh).
+  std::vector<std::vector<Eigen::Vector3f>> points;
 };
 
 struct ExactBox {
-  std::optional<Box> box;  // of the points that have a pixel; empty when none has
-  bool partly_unseen =
-      false;  // some points have no pixel (behind the camera or beyond the lens's field)
+  // Bounds of the points that have a pixel; empty when none has.
+  std::optional<Box> box;
+  // True where some points have no pixel (behind the camera or beyond the lens's field).
+  bool partly_unseen = false;
 };
 
-// Bounding box of the projected silhouette, in frame pixels, not clipped: of all that the shutter
-// lets it sweep, each row at its own time. `body`: how the aircraft goes on within the frame. Never
-// looks at rendered pixels: it is the other of the two independent answers for the box.
+// Bounding box of the projected silhouette, in frame pixels and not clipped: it contains everything
+// that the silhouette sweeps during the exposure, each row at its own time. `body`: the aircraft's
+// motion within the frame. The box comes from geometry alone and never from rendered pixels, so
+// that it is independent of the box that comes from the picture.
 ExactBox exact_box(const Sight& sight,
                    const Silhouette& silhouette,
                    const Rigid& world_from_body,

@@ -6,11 +6,11 @@
 
 namespace airtruth::annotation {
 
-// Does the intruder's reference point lie in the picture, by its position through the stated lens
-// and motion alone? No pixel and no box is looked at.
+// True where the intruder's reference point lies in the picture. The answer follows from its
+// position through the stated lens and motion alone, without any pixel or box.
 bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens);
 
-// It is in view, nothing hides it, and no box says where.
+// True where the intruder is in view, nothing hides it, and the truth holds no box for it.
 bool lacks_box(const Frame& frame, const Intruder& intruder, const lens::Lens& lens);
 
 }  // namespace airtruth::annotation

@@ -13,67 +13,90 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
 
-// The truth of a frame, and truth.jsonl (docs/formats/truth.md, docs/formats/truth.schema.json).
+// The truth of a frame, and its file truth.jsonl (docs/formats/truth.md,
+// docs/formats/truth.schema.json).
+//
+// Example: an intruder 800 m ahead of the camera and 40 m to its left, at the same height, that
+// flies to the right at 40 m/s past a camera at rest. position_in_cam_m = (-40, 0, 800), range_m =
+// 801.0, range_rate_mps = -40 * 40 / 801.0 = -2.0, azimuth_deg = atan2(-40, 800) = -2.86 and
+// elevation_deg = 0.
 namespace airtruth::annotation {
 
+// Where an intruder is in relation to the frame. kVisible: at least one pixel shows it. kHidden: it
+// is in the view, but no pixel shows it, because the own aircraft or another intruder hides it or
+// it is too faint. kOutside: it is in front of the camera, but outside the image or the lens's
+// valid field. kBehind: it is behind the camera. kEnded: its path has not begun or is over, so it
+// is not in the world.
 enum class State {
-  kVisible,  // at least one pixel of the frame shows it
-  kHidden,  // in the view, but not one pixel shows it: behind the own aircraft or another intruder,
-            // or too faint
-  kOutside,  // in front of the camera, outside the image (or outside the lens's valid field)
-  kBehind,   // behind the camera
-  kEnded,    // its path has not begun or is over: it is not in the world
+  kVisible,
+  kHidden,
+  kOutside,
+  kBehind,
+  kEnded,
 };
-const char* name(State state);  // "visible", ...
+// "visible" and so on.
+const char* name(State state);
 
+// The truth of one intruder in one frame.
 struct Intruder {
   std::string id;
-  std::string aircraft;  // catalogue name or file name of the model
+  // Name in the catalogue, or file name of the model.
+  std::string aircraft;
   State state = State::kEnded;
-  // All empty when the state is kEnded.
+  // The optional fields are all empty when the state is kEnded.
   std::optional<Vector3> position_ned_m;
   std::optional<Vector3> velocity_ned_mps;
   std::optional<YawPitchRoll> attitude_yaw_pitch_roll_deg;
-  // x right, y down, z forward; in the measured camera where motion is a rotation, else in the
-  // nominal one (a homography belongs to the picture: frame_from_reference then moves its pixel).
+  // x right, y down, z forward. The camera is the measured one where motion is a rotation, else the
+  // nominal one: a homography moves the picture and not the camera, and frame_from_reference then
+  // moves the pixel.
   std::optional<Vector3> position_in_cam_m;
   std::optional<double> range_m;
-  std::optional<double> range_rate_mps;  // negative: closing
-  // Of the reference point, in the camera as it really looked in this frame: the ray of the pixel
-  // where the point is drawn (bearing.h). Right and up are positive. Both or neither.
+  // Negative while the range decreases.
+  std::optional<double> range_rate_mps;
+  // Bearing of the reference point in the camera as it was in this frame: the direction of the ray
+  // through the pixel where the point is drawn (bearing.h). Right and up are positive. Both are
+  // present or neither.
   std::optional<double> azimuth_deg;
   std::optional<double> elevation_deg;
-  // The same from the boresight of the nominal, unshaken camera: no pixel lies there.
+  // The same bearing from the boresight of the nominal, unshaken camera. It corresponds to no
+  // pixel.
   std::optional<double> nominal_azimuth_deg;
   std::optional<double> nominal_elevation_deg;
-  // From projected geometry, not clipped by the frame; empty behind the camera or beyond the lens's
-  // field.
+  // Box of the projected geometry, not clipped by the frame; empty behind the camera or beyond the
+  // lens's field.
   std::optional<Box> exact_box_px;
-  // Bounds of the whole pixels that the intruder covers with at least composite::kCoveredAlpha:
-  // exposure and point spread count, what hides it is taken away, and what sharpening, noise and
-  // the codec do to the samples does not count. Only where the state is kVisible; empty where no
-  // pixel reaches that alpha.
+  // Bounds of the whole pixels that the intruder covers with at least composite::kCoveredAlpha.
+  // Exposure and point spread count, and whatever hides the intruder is subtracted; the effects of
+  // sharpening, noise and the codec on the samples do not count. Present only where the state is
+  // kVisible; empty where no pixel reaches that alpha.
   std::optional<PixelBox> covered_box_px;
-  // From the pixels that changed; present exactly when the state is kVisible.
+  // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
-  std::int64_t visible_area_px = 0;   // pixels that changed
-  double alpha_sum_px = 0;            // coverage seen, in pixels
-  std::optional<Pixel> centroid_px;   // of that coverage, over the exposure; empty: none is seen
-  double hidden_by_own_aircraft = 0;  // fractions of its silhouette, 0..1
+  // Number of pixels that changed.
+  std::int64_t visible_area_px = 0;
+  // Sum of the visible coverage, in pixels.
+  double alpha_sum_px = 0;
+  // Centroid of that coverage over the exposure; empty where there is none.
+  std::optional<Pixel> centroid_px;
+  // Shares of the intruder's silhouette, 0..1.
+  double hidden_by_own_aircraft = 0;
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
 };
 
-// Where to point at an intruder: its covered box, or the visible one where it covers no pixel far
-// enough to have one; empty where it is not visible.
+// The box that marks an intruder for a viewer: its covered box, or the visible box where no pixel
+// reaches the covered box's alpha. Empty where the intruder is not visible.
 inline std::optional<PixelBox> box_to_show(const Intruder& intruder) {
   return intruder.covered_box_px ? intruder.covered_box_px : intruder.visible_box_px;
 }
 
+// The truth of one frame.
 struct Frame {
   std::int64_t frame = 0;
   double time_s = 0;
-  bool damaged = false;  // the background's frame came from corrupt data
+  // True where the background's frame came from corrupt data.
+  bool damaged = false;
   Vector3 camera_position_ned_m = Vector3::Zero();
   YawPitchRoll camera_attitude_yaw_pitch_roll_deg;
   Shake shake;
@@ -81,6 +104,7 @@ struct Frame {
   std::vector<Intruder> intruders;
 };
 
+// The lens, as each line of truth.jsonl states it.
 struct LensFacts {
   std::string model;
   std::array<double, 2> focal_px{};
@@ -90,11 +114,11 @@ struct LensFacts {
   int height = 0;
 };
 
-// One line of truth.jsonl, without the newline. Numbers are shortest round-trip; NaN and infinity
-// never appear (check()).
+// One line of truth.jsonl, without the newline. Each number is the shortest text that parses to the
+// same double. NaN and infinity fail a check().
 std::string jsonl_line(const Frame& frame, const LensFacts& lens);
 
-// Reads it back. Errors carry file and line.
+// Parses such a line. Errors carry file and line.
 Frame parse_jsonl_line(std::string_view line, const std::filesystem::path& file, int line_number);
 struct Truth {
   LensFacts lens;

@@ -8,9 +8,9 @@
 
 namespace airtruth::annotation {
 
-// What is wrong with a frame's truth, in words; empty where it is consistent: finite numbers, a
-// visible box exactly where the intruder is visible, a position exactly where it is in the world,
-// fractions within 0..1.
+// Describes the first inconsistency of a frame's truth; empty where it is consistent. The rules
+// are: numbers are finite, a visible box is present exactly where the intruder is visible, a
+// position is present exactly where it is in the world, and fractions lie within 0..1.
 std::optional<std::string> fault(const Frame& frame);
 std::optional<std::string> fault(const LensFacts& lens);
 

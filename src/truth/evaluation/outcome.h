@@ -9,47 +9,59 @@
 
 #include "truth/evaluation/metrics.h"
 
-// Frame by frame: what a tracker's answer was worth, and where it lost its object.
+// The quality of a tracker's answer frame by frame, and the frame where it lost its target.
 namespace airtruth::evaluation {
 
-// Of one frame that shows the target, after the first.
+// The result of one frame that shows the target, after the first frame.
 struct Outcome {
-  std::size_t frame = 0;  // index of the pair
-  double overlap = 0;     // 0 without an answer
-  // Of the last answer that there was, the first frame's box at the least.
-  double x_px = 0, y_px = 0;  // the answer's centre less the truth's
+  // Index of the frame's pair.
+  std::size_t frame = 0;
+  // 0 where there is no answer.
+  double overlap = 0;
+  // Errors of the latest answer up to this frame; before any answer, those of the first frame's
+  // box.
+  // Centre of the answer minus centre of the truth.
+  double x_px = 0, y_px = 0;
   double centre_px = 0;
-  double normalised = 0;             // over the truth's width and height
-  std::optional<double> angle_mrad;  // between the rays to the two centres; needs a lens
+  // Centre error divided by the truth's width and height.
+  double normalised = 0;
+  // Angle between the rays to the two centres; empty without a lens.
+  std::optional<double> angle_mrad;
 };
 
-// The first pair's truth stands for its answer.
+// The truth of the first pair serves as its answer. `lens` may be null.
 std::vector<Outcome> outcomes(std::span<const FramePair> frames, const lens::Lens* lens);
 
+// A target is lost after kGrace frames with an overlap of at most kLostOverlap.
 constexpr int kGrace = 10;
 constexpr double kLostOverlap = 0.1;
 
-// The frame from which a tracker has lost its object: the first of 10 with the target, one after
-// another, whose overlap is at most 0.1 (Kristan et al. 2020, "The eighth visual object tracking
-// VOT2020 challenge results", section 3.2); or of fewer where the sequence ends within them.
+// The frame at which a tracker has lost its target: the first of 10 consecutive frames with the
+// target whose overlap is at most 0.1 (Kristan et al. 2020, "The eighth visual object tracking
+// VOT2020 challenge results", section 3.2). Fewer frames suffice where the sequence ends within
+// them. Empty where the target is never lost.
 std::optional<std::size_t> first_loss(std::span<const FramePair> frames);
 
-// Mean values of the outcomes that fall into a bin.
+// Mean values of the outcomes in one bin.
 struct Bin {
-  double from = 0;  // inclusive
-  double to = 0;    // exclusive; infinite for the last
+  // Inclusive.
+  double from = 0;
+  // Exclusive; infinite for the last bin.
+  double to = 0;
   std::int64_t frames = 0;
   double overlap = 0;
-  double success_50 = 0;      // overlap of more than 0.5
-  double precision_20px = 0;  // centre within 20 px
+  // Share of frames with an overlap of more than 0.5.
+  double success_50 = 0;
+  // Share of frames with a centre error of at most 20 px.
+  double precision_20px = 0;
   double centre_px = 0;
   double normalised = 0;
   std::optional<double> angle_mrad;
 };
 
-// values[i] belongs to outcomes[i]; those without one fall into no bin, those below the first edge
-// neither. A bin goes from each edge to the next, the last one on without end. Bins without frames
-// are left out.
+// Groups the outcomes by a quantity. values[i] belongs to outcomes[i]. An outcome without a value,
+// or with a value below the first edge, belongs to no bin. A bin extends from each edge to the
+// next, and the last one has no upper end. Bins without frames are omitted.
 std::vector<Bin> breakdown(std::span<const Outcome> outcomes,
                            std::span<const std::optional<double>> values,
                            std::span<const double> edges);

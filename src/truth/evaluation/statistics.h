@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-// How sure a mean over sequences is. Sequences are what is drawn: frames of one sequence say much
-// the same.
+// The uncertainty of means over sequences. The sample consists of sequences and not of frames,
+// because the frames of one sequence are strongly correlated.
 namespace airtruth::evaluation {
 
 struct Interval {
@@ -14,25 +14,28 @@ struct Interval {
   double high = 0;
 };
 
-// 95 % interval of the weighted mean of values by the percentile bootstrap (Efron 1979, "Bootstrap
-// methods: another look at the jackknife"): 10,000 draws with replacement from a fixed seed.
-// `weights` empty: all equal. Empty for fewer than two values.
+// The 95 % interval of the weighted mean of values by the percentile bootstrap (Efron 1979,
+// "Bootstrap methods: another look at the jackknife"): 10,000 draws with replacement from a fixed
+// seed. Empty `weights`: all are equal. The result is empty for fewer than two values.
 std::optional<Interval> bootstrap_mean(std::span<const double> values,
                                        std::span<const double> weights = {});
 
-// Two trackers on the same sequences.
+// The comparison of two trackers on the same sequences.
 struct Paired {
-  double difference = 0;             // mean of a - b
-  std::optional<Interval> interval;  // of it, by bootstrap
-  // Of a difference as large as this either way, were the signs chance (Fisher's permutation test;
-  // all sign changes for up to 16 sequences, else 20,000 drawn ones).
+  // Mean of a - b.
+  double difference = 0;
+  // Bootstrap interval of the difference.
+  std::optional<Interval> interval;
+  // Two-sided p-value of the difference under random signs (Fisher's permutation test; all sign
+  // changes for up to 16 sequences, else 20,000 random ones).
   double p_value = 1;
-  std::int64_t wins = 0, losses = 0, ties = 0;  // of a
+  // Numbers of sequences that a wins, loses and ties.
+  std::int64_t wins = 0, losses = 0, ties = 0;
 };
 Paired paired(std::span<const double> a, std::span<const double> b);
 
-// How far two rankings agree: Kendall's tau-b (Kendall 1945), 1 for the same order, -1 for the
-// reverse. Empty where one of them is all ties or has fewer than two.
+// Agreement of two rankings: Kendall's tau-b (Kendall 1945), 1 for the same order and -1 for the
+// reverse. Empty where one of them consists of ties alone or has fewer than two values.
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 
 }  // namespace airtruth::evaluation
