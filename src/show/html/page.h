@@ -7,15 +7,15 @@
 
 namespace airtruth::html {
 
-// Text that a page's script takes from the element with this id: pictures in base64.
+// Text, such as pictures in base64, that a page's script reads from the element with this id.
 struct PageBlob {
   std::string id;
   std::string text;
 };
 
-// One self-contained HTML page that needs no network: our style, `body`, `json` in the element
-// "data", the blobs, Chart.js, what our pages have in common (page/common.js) and `script`. No text
-// of a user's in `json` can end its element.
+// Builds one self-contained HTML page that needs no network: the common style sheet, `body`, `json`
+// in the element "data", the blobs, Chart.js, the common script (assets/common.js) and `script`.
+// `json` is escaped, so that a user's text cannot end its element.
 std::string page_of(std::string_view title,
                     std::string_view body,
                     std::string_view json,

@@ -3,15 +3,17 @@
 
 #include <string_view>
 
-// The parts of our pages, put into the program when it is built: src/show/html/assets/* and
+// The parts of the HTML pages, embedded into the program at build time: src/show/html/assets/* and
 // Debian's Chart.js (package libjs-chart.js, MIT licence).
 namespace airtruth::html {
 
 std::string_view page_css();
 std::string_view common_js();
-std::string_view page_body();  // of a data set's report
+// Of a data set's report.
+std::string_view page_body();
 std::string_view page_js();
-std::string_view evaluation_body();  // of an evaluation's
+// Of an evaluation.
+std::string_view evaluation_body();
 std::string_view evaluation_js();
 std::string_view chart_js();
 

@@ -16,8 +16,9 @@ struct ColouredBox {
   std::array<std::uint8_t, 3> rgb{};
 };
 
-// A JPEG's picture with boxes drawn on it, the first under the others and with a dark rim.
-// `scale`: pixels of the JPEG for each of the boxes' own. Error where the bytes are no JPEG.
+// The picture of a JPEG with boxes drawn on it. Each box has a dark rim, and later boxes are drawn
+// over earlier ones. `scale`: pixels of the JPEG for each pixel of the boxes. Error where the bytes
+// are not a JPEG.
 image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes);
 
 }  // namespace airtruth::report

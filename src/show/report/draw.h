@@ -9,7 +9,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// OpenCV's drawing on our packed sRGB pictures. Colours are red, green, blue.
+// OpenCV's drawing functions for packed sRGB pictures. Colours are red, green, blue.
 namespace airtruth::report {
 
 const cv::Scalar kGreen(64, 255, 96);
@@ -17,18 +17,22 @@ const cv::Scalar kAmber(255, 176, 32);
 const cv::Scalar kWhite(245, 245, 245);
 const cv::Scalar kGrey(150, 150, 150);
 const cv::Scalar kBlack(0, 0, 0);
-const cv::Scalar kDarkPaper(28, 28, 30);  // behind pictures side by side
+// Background of pictures side by side.
+const cv::Scalar kDarkPaper(28, 28, 30);
 
-// The colour of the intruder with this number: the hues of Okabe and Ito's palette (2008), which
-// people with every kind of colour vision tell apart, lightened for lines on video; from the ninth
-// intruder on they come again.
+// The colour of the intruder with this index: the hues of Okabe and Ito's palette (2008), which
+// people with every kind of colour vision can distinguish, lightened for lines on video. The
+// colours repeat from the ninth intruder on.
 cv::Scalar intruder_colour(std::size_t index);
 
-cv::Mat view(image::Rgb8& picture);        // shares the samples
-image::Rgb8 from_mat(const cv::Mat& rgb);  // copies
+// Shares the samples with the picture.
+cv::Mat view(image::Rgb8& picture);
+// Copies the samples.
+image::Rgb8 from_mat(const cv::Mat& rgb);
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation);
 
-// Text with a dark rim that reads on any background; (x, y) is the left end of the baseline.
+// Draws text with a dark rim, which is legible on any background. (x, y) is the left end of the
+// baseline.
 void text(cv::Mat& canvas,
           const std::string& words,
           int x,
@@ -37,25 +41,25 @@ void text(cv::Mat& canvas,
           const cv::Scalar& colour);
 int text_width(const std::string& words, double size_px);
 
-// All that text() paints: letters, what hangs below the baseline, and the rim.
+// The size of everything that text() draws: letters, the parts below the baseline, and the rim.
 struct TextSize {
   int width = 0;
   int height = 0;
 };
 TextSize text_size(const std::string& words, double size_px);
 
-// Text whose text_size() fills `place` from its upper left corner on.
+// Draws text so that its text_size() starts at the upper left corner of `place`.
 void text_in(cv::Mat& canvas,
              const std::string& words,
              const PixelBox& place,
              double size_px,
              const cv::Scalar& colour);
 
-// `words`, shortened with "..." until text_size() is no wider than `width`.
+// `words`, shortened with "..." until the width of text_size() is at most `width`.
 std::string fitted(const std::string& words, double size_px, int width);
 
-// A box's outline just outside the box, scaled: pixel (x, y) of the box lies at (x * scale, y *
-// scale) of the canvas.
+// Draws the outline of a scaled box, just outside the box: pixel (x, y) of the box lies at (x *
+// scale, y * scale) of the canvas.
 void outline(
     cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour, int thickness = 1);
 void dashed_outline(cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour);

@@ -6,19 +6,22 @@
 
 #include "foundation/geometry/box.h"
 
-// Where labels go on a picture so that none overprints another.
+// Places labels on a picture without overlaps between them.
 namespace airtruth::report {
 
 struct Placing {
-  PixelBox frame;               // no label leaves it
-  std::vector<PixelBox> taken;  // by other labels: never overprinted
-  std::vector<PixelBox> boxes;  // overprinted only where nothing else is left
+  // No label leaves it.
+  PixelBox frame;
+  // Places of other labels; no label overlaps them.
+  std::vector<PixelBox> taken;
+  // Boxes; a label overlaps them only where nothing else is left.
+  std::vector<PixelBox> boxes;
 };
 
-// The place of a label of `width` by `height` pixels for the box `anchor`: the first of the eight
-// places around it, then of rings that grow by a label's height, that overprints nothing; else the
-// one that overprints the fewest pixels of `boxes`. nullopt where every place meets a label or the
-// frame's edge.
+// The place of a label of `width` by `height` pixels for the box `anchor`. The candidates are the
+// eight places around the box, then rings of places at distances that grow by a label's height. The
+// first one without an overlap is chosen, else the one that overlaps the fewest pixels of `boxes`.
+// nullopt where every candidate overlaps a label or leaves the frame.
 std::optional<PixelBox> place_label(const PixelBox& anchor,
                                     int width,
                                     int height,

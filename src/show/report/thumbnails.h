@@ -6,24 +6,24 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// Small pictures for pages.
+// Small pictures for HTML pages.
 namespace airtruth::report {
 
 // The whole picture, at most `width` pixels wide.
 image::Rgb8 small_copy(const image::Rgb8& picture, int width);
 
-// A square around a box, `side` pixels large, with some of its surroundings. Black where a square
-// sticks out of the picture, here and below.
+// A square around a box, `side` pixels large, with some of its surroundings. The parts of a square
+// that lie outside of the picture are black, here and in square().
 image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side);
 
-// The square of `px` from (x, y) on, `side` pixels large.
+// The square that starts at (x, y) and is `px` pixels large, scaled to `side` pixels.
 image::Rgb8 square(const image::Picture& picture, double x, double y, double px, int side);
 
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
 
-// How far the luma within a box is from that around it, in levels: root mean square difference from
-// the median of a ring as wide as the box's shorter side (at least 4 px).
+// The contrast of a box's luma to its surroundings, in levels: the root mean square difference from
+// the median of a ring that is as wide as the box's shorter side (at least 4 px).
 double contrast(const image::Picture& picture, const PixelBox& box);
 
 }  // namespace airtruth::report

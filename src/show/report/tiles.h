@@ -13,8 +13,8 @@ struct NamedPicture {
   image::Rgb8 picture;
 };
 
-// Pictures of one size in `columns` columns under a title, each with its name in its lower left
-// corner.
+// Arranges pictures of one size in `columns` columns under a title, each with its name in its lower
+// left corner.
 image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, int columns);
 
 }  // namespace airtruth::report

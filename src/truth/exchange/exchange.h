@@ -11,8 +11,8 @@
 #include "foundation/base/log.h"
 #include "truth/exchange/labels.h"
 
-// The annotation formats that trainers and toolkits read (docs/formats/exchange.md has each one's
-// folders, origins and sources).
+// The annotation formats that trainers and toolkits read (docs/formats/exchange.md has the folders,
+// origins and sources of each).
 namespace airtruth::exchange {
 
 enum class Format {
@@ -25,37 +25,44 @@ enum class Format {
   kOtb,
   kGot10k,
   kVot,
-  kEvision,  // read only, as the next: `render` writes it
+  // Read only: `render` writes it.
+  kEvision,
   kCsv,
 };
 
-// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision", "csv"; throws
-// Error with the nearest for anything else.
+// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision" or "csv". For any
+// other name it throws an Error that offers the nearest.
 Format format_from_name(std::string_view name);
 const char* name(Format format);
 bool can_write(Format format);
 
-// One object a sequence, from the first frame that shows it whole (or shows it, where none does or
-// nothing is known) to the last that shows it: OTB, GOT-10k, VOT.
+// True for OTB, GOT-10k and VOT, which store one object for each sequence. A sequence begins with
+// the first frame that shows the object whole (or shows it, where no frame does or the labels lack
+// that information) and ends with the last that shows it.
 bool is_single_object(Format format);
 
-// The clips that a format makes of one: itself, or a clip for each of its tracks.
+// The clips that a format stores for one clip: the clip itself, or one clip for each of its tracks.
 std::vector<Clip> arranged(Format format, const Clip& clip);
 
 struct WriteOptions {
-  std::vector<std::string> categories;  // every one that the clips use, in the order of the classes
-  std::vector<std::string> parts;       // "train", "val", ...
+  // Every category that the clips use, in the order of the classes.
+  std::vector<std::string> categories;
+  // For example "train" and "val".
+  std::vector<std::string> parts;
   std::string image_extension = ".jpg";
-  bool with_images = true;   // pictures are written beside the labels
-  bool mot_classes = false;  // MOT: classes numbered from 1 in place of 1 for every object
+  // True: pictures are written beside the labels.
+  bool with_images = true;
+  // MOT only. True: classes are numbered from 1; false: every object has the class 1.
+  bool mot_classes = false;
 };
 
-// Writes a set into a folder, clip by clip; of those written no more than names are held.
+// Writes a set into a folder, clip by clip. Of clips that are written it keeps only the names in
+// memory.
 class Writer {
  public:
   virtual ~Writer() = default;
-  // Where the pictures of clip.frames belong, relative to the folder, one for each. `clip` as
-  // arranged().
+  // The paths of the pictures of clip.frames, relative to the folder, one for each frame. `clip` is
+  // a result of arranged().
   virtual std::vector<fs::path> images(const Clip& clip, const std::string& part) const = 0;
   virtual void add(const Clip& clip, const std::string& part) = 0;
   virtual void finish() = 0;
@@ -64,26 +71,27 @@ std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);
 
-// What the format's own reader does with pictures: AOT's opens PNG alone, those of OTB and GOT-10k
+// What the format's own reader requires of pictures: AOT's opens PNG only, those of OTB and GOT-10k
 // look for *.jpg.
 enum class Pictures { kAny, kPngAlone, kJpgExpected };
 Pictures pictures_of(Format format);
 
-// LOSS.md: what a format keeps of our truth, and what it has no place for.
+// The text of LOSS.md: what a format keeps of the truth, and what it cannot store.
 std::string loss(Format format);
 
 struct ReadOptions {
-  std::optional<std::pair<int, int>>
-      size;                           // of the pictures, where neither labels nor pictures say
-  std::string category = "aircraft";  // where the format has none
-  int origin_px = 0;                  // of CSV: what the first pixel is called, 0 or 1
+  // Width and height of the pictures, for sets whose labels and pictures do not state them.
+  std::optional<std::pair<int, int>> size;
+  // The category of objects where the format has none.
+  std::string category = "aircraft";
+  // CSV only: the coordinate of the first pixel, 0 or 1.
+  int origin_px = 0;
 };
 
-// Every clip of a set. `source`: the folder that a Writer filled, or one of the same form; for
-// COCO, CVAT and AOT also the annotation file; for E-Vision an XML file or a folder of them; for
-// CSV
-// (`frame,x,y,w,h`) a file or a folder. Frames without an object are there and empty. Throws Error
-// at file and line; warns of what it left out.
+// Reads every clip of a set. `source` is the folder that a Writer filled, or one of the same form.
+// For COCO, CVAT and AOT it may also be the annotation file; for E-Vision it is an XML file or a
+// folder of them; for CSV (`frame,x,y,w,h`) it is a file or a folder. Frames without an object are
+// present and empty. Throws Error with file and line, and warns of what it left out.
 std::vector<Clip> read_clips(Format format,
                              const fs::path& source,
                              const ReadOptions& options,

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-// JSON as users bring it. Every fault is one Error that names the file and the place in it
+// Reads JSON from users' files. Every fault is one Error that names the file and the place in it
 // ("annotations[12]: has no image_id"). The words that Python's json adds to JSON, NaN and Infinity
 // in any case and with a sign, are read as null.
 namespace airtruth::exchange {
@@ -19,17 +19,19 @@ class JsonObject {
  public:
   JsonObject(const nlohmann::ordered_json& json, std::string file, std::string place);
 
-  bool has(const char* key) const;  // and is not null
+  // True where the key exists and is not null.
+  bool has(const char* key) const;
   std::string text(const char* key) const;
   double number(const char* key) const;
   std::int64_t whole(const char* key) const;
   std::optional<double> maybe_number(const char* key) const;
-  // Exact, where a double rounds times in nanoseconds since 1970. A number with a fraction is
-  // rounded.
+  // An exact integer: a double would round times in nanoseconds since 1970. A number with a
+  // fraction is rounded.
   std::optional<std::int64_t> maybe_integer(const char* key) const;
-  std::optional<bool> maybe_truth(const char* key) const;  // true, false, 0, 1
+  // Accepts true, false, 0 and 1.
+  std::optional<bool> maybe_truth(const char* key) const;
   std::vector<double> numbers(const char* key) const;
-  // Empty where the key is missing or is anything else (COCO's run lengths).
+  // Empty where the key is missing or has any other type, for example COCO's run lengths.
   std::vector<std::vector<double>> lists_of_numbers(const char* key) const;
   JsonObject object(const char* key) const;
   std::vector<JsonObject> objects(const char* key) const;
@@ -46,7 +48,7 @@ class JsonObject {
   std::string place_;
 };
 
-// A whole file; its top is an object.
+// A whole file whose top element is an object.
 class JsonFile : public JsonObject {
  public:
   explicit JsonFile(const std::filesystem::path& file);

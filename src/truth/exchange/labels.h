@@ -9,13 +9,13 @@
 
 #include "foundation/geometry/box.h"
 
-// Labelled video as the formats of others know it: boxes, tracks and classes by frame, and little
-// else. What is unknown is empty, never a made-up number.
+// Labelled video in the terms that annotation formats share: boxes, tracks and classes by frame. A
+// field without information is empty and never holds a placeholder number.
 namespace airtruth::exchange {
 
 namespace fs = std::filesystem;
 
-// The pixels of an object in a picture: COCO's compressed run lengths (pixel_mask.h).
+// The pixels of an object in a picture, as COCO's compressed run lengths (pixel_mask.h).
 struct PixelMask {
   int width = 0;  // of the picture
   int height = 0;
@@ -26,40 +26,54 @@ struct PixelMask {
 
 // One object in one frame.
 struct Label {
-  std::int64_t track = 1;  // the same object through a clip; from 1
+  // Number of the object's track, the same throughout a clip; from 1.
+  std::int64_t track = 1;
   std::string category;
-  Box box_px;                     // docs/conventions.md: the first pixel covers [0, 1)
-  std::optional<double> visible;  // share of it that is seen, 0..1
-  std::optional<bool> occluded;   // something else hides a part
-  std::optional<bool> truncated;  // the frame's edge cuts a part off
+  // The first pixel covers [0, 1); docs/conventions.md.
+  Box box_px;
+  // Visible share of the object, 0..1.
+  std::optional<double> visible;
+  // True where something else hides a part.
+  std::optional<bool> occluded;
+  // True where the frame's edge cuts a part off.
+  std::optional<bool> truncated;
   std::optional<double> range_m;
   std::optional<bool> above_horizon;
-  std::optional<PixelMask> mask;  // not kept in labels.jsonl
+  // The file labels.jsonl does not store it.
+  std::optional<PixelMask> mask;
   bool operator==(const Label&) const = default;
 };
 
+// All labels of one frame.
 struct LabelledFrame {
-  std::int64_t frame = 0;  // of the video
+  // Number of the frame in the video.
+  std::int64_t frame = 0;
   std::optional<double> time_s;
   std::vector<Label> labels;
   bool operator==(const LabelledFrame&) const = default;
 };
 
+// All labels of one video.
 struct Clip {
-  std::string name;  // a plain file name
-  fs::path media;    // a video, a folder or a pattern of numbered images; empty: none
-  int width = 0;     // 0: unknown
+  // A plain file name (scene::is_plain_file_name).
+  std::string name;
+  // A video, a folder or a pattern of numbered images; empty: none.
+  fs::path media;
+  // 0: unknown.
+  int width = 0;
   int height = 0;
   std::optional<double> frame_rate_hz;
-  std::vector<LabelledFrame> frames;  // in order; also those that show nothing
+  // In order, including the frames without an object.
+  std::vector<LabelledFrame> frames;
 };
 
-// labels.jsonl (docs/formats/labels.md): a line on the clip, then one a frame.
+// The text of labels.jsonl (docs/formats/labels.md): one line for the clip, then one for each
+// frame.
 std::string labels_jsonl(const Clip& clip);
-// Errors carry file and line.
+// Reads labels.jsonl. Errors carry file and line.
 Clip read_labels(const fs::path& file);
 
-// Track numbers of a clip, ascending.
+// The track numbers of a clip, ascending.
 std::vector<std::int64_t> tracks_of(const Clip& clip);
 
 }  // namespace airtruth::exchange

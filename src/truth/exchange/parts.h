@@ -6,10 +6,10 @@
 
 #include "truth/exchange/exchange.h"
 
-// The formats' own writers and readers, for exchange.cpp alone.
+// The writers and readers of the single formats. Only exchange.cpp uses this header.
 namespace airtruth::exchange {
 
-// A writer that names a picture by its place in the clip.
+// A writer whose picture names depend on the picture's index in the clip.
 class IndexedWriter : public Writer {
  public:
   std::vector<fs::path> images(const Clip& clip, const std::string& part) const final;

@@ -8,13 +8,13 @@
 
 #include <pugixml.hpp>
 
-// XML as users bring it: faults are Errors that name the file and the line.
+// Reads XML from users' files. Every fault is an Error that names the file and the line.
 namespace airtruth::exchange {
 
 class XmlFile {
  public:
   explicit XmlFile(const std::filesystem::path& file);
-  // The element at the top; Error where it is another.
+  // The top element; Error where its name differs.
   pugi::xml_node top(const char* name) const;
 
   pugi::xml_node child(const pugi::xml_node& node, const char* name) const;
@@ -28,12 +28,13 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
-// As a number, where it is one.
+// The text as a number; empty where it is not one.
 std::optional<double> number_in(const std::string& text);
 
-// The document, indented by two blanks.
+// The document as text, indented by two blanks.
 std::string text_of(const pugi::xml_document& document);
-// For readers that know elements alone: indented by tabs, without an XML declaration.
+// The document for readers that support only elements: indented by tabs, without an XML
+// declaration.
 std::string bare_text_of(const pugi::xml_document& document);
 
 }  // namespace airtruth::exchange
