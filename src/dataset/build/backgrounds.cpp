@@ -13,7 +13,7 @@
 namespace airtruth::dataset {
 namespace {
 
-// As the background's light and lens have it.
+// Flight options with the sun and the lens of the background.
 synthetic::FlightOptions flight_over(const Background& background,
                                      synthetic::FlightOptions flight) {
   flight.sun_azimuth_deg = background.light.sun_azimuth_deg;
@@ -30,7 +30,7 @@ BackgroundFiles fly(const Background& background,
   BackgroundFiles files;
   files.video = stem.string() + ".mp4";
   files.mask = stem.string() + ".mask.png";
-  // The video is the last to appear.
+  // The video is the last file that appears.
   if (fs::exists(files.video)) return files;
   fs::create_directories(folder.backgrounds());
   const synthetic::Flight flight(flight_over(background, wanted));

@@ -6,14 +6,15 @@
 
 namespace airtruth::dataset {
 
-// The files of a background: a video that is there, or a virtual flight, which is made where it is
-// not. `seen` after each of its frames. A flight's files appear whole or not at all; two makers at
-// once make the same bytes.
+// Returns the files of a background: an existing video, or a virtual flight, which is made where it
+// does not exist yet. A flight's files appear whole or not at all. Two processes that make the same
+// flight at the same time write the same bytes.
 BackgroundFiles prepare(const Background& background,
                         const Folder& folder,
                         const BuildOptions& options);
 
-// Fills size, rate and number of frames from the video. Error where it cannot be read.
+// Fills in size, rate and number of frames from the video. Throws Error where the video cannot be
+// read.
 void add_facts(BackgroundFiles& files);
 
 }  // namespace airtruth::dataset

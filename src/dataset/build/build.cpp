@@ -21,7 +21,7 @@
 namespace airtruth::dataset {
 namespace {
 
-// One build: its share of the catalogue, on several threads.
+// One build: it makes its share of the catalogue on several threads.
 class Work {
  public:
   Work(const Catalogue& catalogue, const Folder& folder, const BuildOptions& options)
@@ -37,7 +37,7 @@ class Work {
     std::vector<std::jthread> threads;
     for (int i = 0; i < std::min<std::int64_t>(jobs_, missing_); ++i)
       threads.emplace_back([this] { make_sequences(); });
-    threads.clear();  // waits
+    threads.clear();  // joins the threads
     if (options_.stop.stop_requested()) throw Interrupted();
     std::sort(summary_.failures.begin(),
               summary_.failures.end(),
@@ -48,7 +48,7 @@ class Work {
  private:
   bool is_wanted(const Item& item) const { return matches(options_.only, item.name); }
 
-  // What there is to do, and which backgrounds and how much of them it takes.
+  // Collects the work, the backgrounds that it needs, and how many of their frames.
   void count() {
     needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
     is_used_.assign(catalogue_.backgrounds.size(), false);
@@ -64,7 +64,7 @@ class Work {
       }
       ++missing_;
       is_used_[item.background] = true;
-      // A clip that begins anywhere is measured from its own first frame, as it is made.
+      // A clip that begins at a random frame is measured from its own first frame, when it is made.
       if (item.rule != nullptr && item.rule->starts_at_random) continue;
       auto& needed = needed_[item.background];
       needed =
@@ -86,7 +86,7 @@ class Work {
     }
   }
 
-  // The motion and the camera of a background, once for all the sequences over it.
+  // Measures the motion and the camera of a background once for all the sequences over it.
   void measure(std::size_t i) {
     scene::Scene scene = scene_over(catalogue_, i);
     scene.background.video = files_[i].video;
@@ -106,7 +106,8 @@ class Work {
     stage = "measuring the camera of " + name;
     try {
       sequence::calibrate_ahead(scene, how);
-    } catch (const Error&) {  // each sequence over this background says so; the others are made
+      // Each sequence over this background reports the error; the others are made.
+    } catch (const Error&) {
     }
   }
 
@@ -159,8 +160,8 @@ class Work {
   int jobs_ = 1;
   std::int64_t total_ = 0;
   std::int64_t missing_ = 0;
-  std::vector<bool> is_used_;  // each background
-  // Of each background: frames whose motion is measured ahead, 0 to its end; empty: none.
+  std::vector<bool> is_used_;  // by background
+  // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
   std::atomic<std::int64_t> next_ = 0;
@@ -173,7 +174,7 @@ class Work {
 BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
   check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
   const sequence::Stopwatch watch;
-  // Records of sequences name their backgrounds in full: virtual flights lie in the data set.
+  // Sequence records hold full background paths, because virtual flights lie in the data set.
   require_utf8(fs::absolute(out));
   for (const auto& [name, video] : options.videos) {
     require_utf8(fs::absolute(video));
@@ -188,7 +189,7 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
   const FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();
   write_failures(folder.failed(options.share, options.shares), summary.failures);
-  // Of several workers none knows that it is the last: `finish` is theirs.
+  // With several workers none can know that it is the last, so `finish` writes their manifest.
   if (options.shares == 1) summary.complete = write_manifest(catalogue, folder);
   summary.seconds = watch.seconds();
   return summary;

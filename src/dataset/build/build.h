@@ -12,26 +12,33 @@
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/log.h"
 
-// A data set folder (docs/formats/dataset.md):
+// The folder of a data set (docs/formats/dataset.md):
 //
-//   catalogue.toml        the catalogue that it is made of
+//   catalogue.toml        the catalogue from which the set is made
 //   backgrounds/          virtual flights, each with its mask and true camera
-//   sequences/<name>/     as `airtruth render` leaves them: whole or not there
-//   manifest/00000.jsonl  a line a sequence, 10,000 to a file; dataset.json last, once every
-//   sequence is there failed.jsonl          what could not be made, and why
+//   sequences/<name>/     output of `airtruth render`; a sequence is whole or absent
+//   manifest/00000.jsonl  one line per sequence, 10,000 lines per file
+//   dataset.json          written last, once every sequence exists
+//   failed.jsonl          the sequences that could not be made, with the reason
 namespace airtruth::dataset {
 
 struct BuildProgress {
-  std::int64_t done = 0;   // sequences made or found whole
-  std::int64_t total = 0;  // of this run's share
-  std::string stage;       // "building"; or, of a background's frames, what is done with them
+  // Sequences of this run's share that were made, or found whole.
+  std::int64_t done = 0;
+  std::int64_t total = 0;  // sequences of this run's share
+  // "building", or the work that is done on a background's frames.
+  std::string stage;
 };
 
 struct BuildOptions {
-  int jobs = 0;                            // sequences at a time; 0: one per core
-  std::string only = "*";                  // a pattern over names
-  std::map<std::string, fs::path> videos;  // in place of the catalogue's: background -> video
-  std::int64_t share = 0;  // this one makes the sequences whose number is share modulo shares
+  // Number of sequences that are made at the same time; 0 means one per core.
+  int jobs = 0;
+  // Pattern; only sequences with a matching name are made.
+  std::string only = "*";
+  // Maps a background's name to the video that replaces the catalogue's.
+  std::map<std::string, fs::path> videos;
+  // This run makes the sequences whose number is congruent to `share` modulo `shares`.
+  std::int64_t share = 0;
   std::int64_t shares = 1;
   std::function<void(const BuildProgress&)> progress;
   Warn warn;
@@ -45,22 +52,23 @@ struct Failure {
 
 struct BuildSummary {
   std::int64_t made = 0;
-  std::int64_t kept = 0;    // whole already
-  std::int64_t frames = 0;  // of the ones made
+  std::int64_t kept = 0;    // sequences that were already whole
+  std::int64_t frames = 0;  // frames of the sequences that were made
   std::vector<Failure> failures;
-  bool complete = false;  // every sequence of the catalogue is there: the manifest is written
+  // True where every sequence of the catalogue exists; the manifest is then written.
+  bool complete = false;
   double seconds = 0;
 };
 
-// Makes what is missing. Killed at any instant and called again, it goes on: a sequence's folder is
-// there whole or not at all, and what is whole is not made again. A sequence that fails is listed
-// and the others go on. Error: `out` was begun with another catalogue, another build is at work in
-// it, a background that no video can be read from, a pattern that nothing fits. Interrupted on
-// stop.
+// Makes the missing sequences. A build that was killed at any instant continues at the next call: a
+// sequence's folder exists whole or not at all, and whole sequences are kept. A sequence that fails
+// is listed in `failures`, and the build continues with the others. Throws Error where `out` was
+// begun with another catalogue, another build is at work in it, the video of a background cannot be
+// read, or no sequence's name matches the pattern. Throws Interrupted on stop.
 BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options);
 
-// Writes the manifest of a folder that several workers have filled; false where a sequence is
-// missing. Error while any of them is at work.
+// Writes the manifest of a folder that several workers have filled. Returns false where a sequence
+// is missing. Throws Error while any worker is active.
 bool finish(const fs::path& root);
 
 }  // namespace airtruth::dataset

@@ -65,12 +65,13 @@ TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   EXPECT_EQ(expansion.size(), 1000004);
   const Item last = expansion.at(1000003);
   EXPECT_EQ(last.name, "r999999");
-  // The same whoever asks, in whatever order.
+  // The items do not depend on the order of the calls.
   const Item again = Expansion(catalogue).at(1000003);
   EXPECT_EQ(again.scene.intruders[0].waypoints_ned_m, last.scene.intruders[0].waypoints_ned_m);
 }
 
-// A drawn intruder meets the asked range in the asked direction at some moment of the clip.
+// At some moment of the clip a random intruder is at the requested range in the requested
+// direction.
 TEST(Catalogue, DrawnIntrudersComeIntoTheRangesThatWereAskedFor) {
   const Catalogue catalogue =
       parse_catalogue(std::string(kCatalogue) +
@@ -105,7 +106,7 @@ class Build : public testing::Test {
   }
   ~Build() override { fs::remove_all(root_); }
 
-  // SHA-256 of every file that the sequences and the manifest hold, by name.
+  // The SHA-256 of every file of the sequences and the manifest, by name.
   static std::map<std::string, std::string> bytes_of(const fs::path& folder) {
     std::map<std::string, std::string> result;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {

@@ -8,12 +8,12 @@
 
 namespace airtruth::dataset {
 
-// A line each; the file is removed where nothing failed.
+// Writes one line per failure. The file is removed where nothing failed.
 void write_failures(const fs::path& file, const std::vector<Failure>& failures);
 
-// manifest/*.jsonl and, last, dataset.json, where every sequence of the catalogue is there (else
-// false, and neither is written). Memory does not grow with the number of sequences. The same bytes
-// for any number of workers.
+// Writes manifest/*.jsonl and, last, dataset.json. Returns false and writes neither where a
+// sequence of the catalogue is missing. Memory does not grow with the number of sequences. The
+// bytes do not depend on the number of workers.
 bool write_manifest(const Catalogue& catalogue, const Folder& folder);
 
 }  // namespace airtruth::dataset

@@ -16,7 +16,8 @@
 namespace airtruth::dataset {
 namespace {
 
-// What a frame of 1280x960 costs (docs/scaling.md); others by their pixels.
+// Cost of a frame of 1280x960 (docs/scaling.md); the cost of other sizes is proportional to their
+// pixels.
 constexpr double kCoreSecondsPerFrame = 0.034;
 constexpr double kCoreSecondsPerFlownFrame = 0.16;
 constexpr double kCoreSecondsPerCalibratedFrame = 0.126;
@@ -57,10 +58,11 @@ class Planner {
  private:
   struct Facts {
     BackgroundFiles files;
-    double size = 1;  // of a frame, in frames of 1280x960
+    // Pixels of a frame relative to 1280x960.
+    double size = 1;
   };
 
-  // Of a background that is used; the first time, what it costs itself is counted.
+  // Facts of a background in use; the first call also counts the cost of the background itself.
   const Facts& facts_of(std::size_t i) {
     Facts& facts = facts_[i];
     if (is_used_[i]) return facts;
@@ -92,7 +94,8 @@ class Planner {
     return std::max<std::int64_t>(0, facts.files.frames - first_frame);
   }
 
-  // Paths that were drawn have their speed, climb and bank already, whatever their range becomes.
+  // The speed, climb and bank of random paths are known before place(); the range does not change
+  // them.
   void fly(const Item& item, double clip_s) {
     for (const scene::Intruder& intruder : item.scene.intruders) {
       const std::string words =

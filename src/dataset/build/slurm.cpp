@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t kMostTasks = 1000;
 
-// As one word of a shell's.
+// Quotes text as one word of a shell command.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -35,8 +35,8 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-// The options of the catalogue, then those of the command line: of two of one name the later
-// counts.
+// The options of the catalogue, then those of the command line. Where two have the same name, the
+// later one counts.
 std::vector<std::string> options_of(const Catalogue& catalogue, const SlurmOptions& options) {
   std::vector<std::string> result = catalogue.slurm;
   if (!options.partition.empty()) result.push_back("--partition=" + options.partition);
@@ -90,7 +90,7 @@ std::string verify_script(const Catalogue& catalogue,
                      quoted(out.string()));
 }
 
-// The first line that a command prints; Error where it fails.
+// Returns the first line that a command prints. Throws Error where the command fails.
 std::string first_line(const std::string& command) {
   FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
   check(pipe != nullptr, "a process can be started");
@@ -122,7 +122,7 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   const std::int64_t tasks = options.array_size > 0
                                  ? std::min<std::int64_t>(options.array_size, sequences)
                                  : std::min(kMostTasks, sequences);
-  // Everything that may be refused is refused before the folder is made.
+  // All checks come before the folder is made.
   const std::string work = work_script(catalogue, root, options, tasks);
   const std::string verify = verify_script(catalogue, root, options);
   open_folder(catalogue, root);

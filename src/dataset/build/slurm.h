@@ -10,27 +10,33 @@
 namespace airtruth::dataset {
 
 struct SlurmOptions {
-  int array_size = 0;  // tasks; 0: one per sequence, at most 1,000
+  // Number of tasks; 0 means one per sequence, at most 1,000.
+  int array_size = 0;
   std::string partition;
-  // As --sbatch states them ("--time=2:00:00"); they count before those of the catalogue's [slurm].
+  // Options as --sbatch states them ("--time=2:00:00"). They take precedence over the options of
+  // the catalogue's [slurm].
   std::vector<std::string> sbatch;
-  std::map<std::string, fs::path> videos;  // in place of the catalogue's backgrounds
-  fs::path program;                        // the airtruth that the tasks run
-  bool dry_run = false;                    // write the scripts and say what would be submitted
+  // Maps a background's name to the video that replaces the catalogue's.
+  std::map<std::string, fs::path> videos;
+  // The airtruth program that the tasks run.
+  fs::path program;
+  // True: write the scripts and report what would be submitted, without submitting it.
+  bool dry_run = false;
 };
 
 struct Submitted {
   fs::path work_script;
   fs::path verify_script;
-  std::string work_job;  // Slurm's numbers; empty on a dry run
+  // Slurm's job numbers; empty on a dry run.
+  std::string work_job;
   std::string verify_job;
 };
 
-// Writes <out>/slurm/work.sh, a job array each task of which makes its share, and verify.sh, which
-// runs once all of them have ended, writes the manifest and verifies; and submits both (sbatch). A
-// task that is requeued goes on where it was. Error where an option or a path cannot stand in a job
-// script (dataset/catalogue/slurm_options.h), and where sbatch is missing or refuses; nothing is
-// then left running.
+// Writes two scripts and submits both with sbatch. <out>/slurm/work.sh is a job array; each of its
+// tasks makes its share. verify.sh runs after all tasks have ended, writes the manifest and
+// verifies the set. A task that is requeued continues where it stopped. Throws Error where a job
+// script cannot hold an option or a path (dataset/catalogue/slurm_options.h), and where sbatch is
+// missing or refuses; no job is then left running.
 Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options);
 
 }  // namespace airtruth::dataset

@@ -36,14 +36,14 @@ bool is_at_work(const Folder& folder) {
   }
 }
 
-// Records name files below their own folder alone, whatever links lie between.
+// A record may name only files below its own folder, whatever links lie between.
 bool is_below(const fs::path& folder, const fs::path& name) {
   const fs::path relative =
       fs::weakly_canonical(folder / name).lexically_relative(fs::weakly_canonical(folder));
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// Sequences of one data set, looked into one by one.
+// Verifies the sequences of one data set one by one.
 class Check {
  public:
   Check(const Folder& folder, const VerifyOptions& options, VerifyResult& result)
@@ -140,8 +140,8 @@ class Check {
     return box.width > 0 && box.height > 0 && intersection(frame, box) == box;
   }
 
-  // A mask for each intruder that is visible, and none more; its pixels are those of the covered
-  // box.
+  // Every visible intruder has a mask, no other mask exists, and the mask's pixels are those of the
+  // covered box.
   void mask(const sequence::Finished& finished,
             const annotation::Frame& frame,
             const annotation::Intruder& intruder) {

@@ -11,35 +11,38 @@
 
 namespace airtruth::dataset {
 
-// Where a data set stands, from its folder alone.
+// The progress of a data set, read from its folder alone.
 struct Status {
   std::string name;
-  std::int64_t sequences = 0;  // of the catalogue
+  std::int64_t sequences = 0;  // sequences of the catalogue
   std::int64_t whole = 0;
-  std::vector<std::string> missing;  // the first hundred
-  std::int64_t half = 0;  // left by runs that were killed; the next build clears them away
-  bool at_work = false;   // a build is running now
-  bool complete = false;  // dataset.json is there
+  std::vector<std::string> missing;  // the first hundred names
+  // Unfinished sequences of runs that were killed; the next build removes them.
+  std::int64_t half = 0;
+  // True while a build is running.
+  bool at_work = false;
+  bool complete = false;  // dataset.json exists
 };
 Status status(const fs::path& root);
 
 struct VerifyOptions {
-  std::int64_t deep_every =
-      0;  // draw every n-th frame anew and compare (sequence/sequence/recompose.h)
+  // Renders every n-th frame again and compares it (sequence/sequence/recompose.h); 0 means none.
+  std::int64_t deep_every = 0;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;
 };
 
-// Every file against its checksum; every line of truth read back, boxes within the frame; as many
-// frames in the video as lines of truth; the manifest against the sequences. Each fault is one
-// line.
+// The result of checking every file against its checksum, reading every line of truth (boxes lie
+// within the frame), comparing the number of video frames with the number of truth lines, and
+// comparing the manifest with the sequences. Each fault is one line.
 struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
-  std::int64_t recomposed = 0;  // frames that were drawn anew
-  // By geometry alone (its position through the stated lens and motion, no pixel looked at): how
-  // often an intruder's reference point lies in the picture, and how often no box says so although
-  // nothing hides it. The second is a fault.
+  std::int64_t recomposed = 0;  // frames that were rendered again
+  // Counts from geometry alone: an intruder's position is projected through the stated lens and
+  // motion, and no pixel is read. in_view counts how often an intruder's reference point lies in
+  // the picture. in_view_without_box counts how often there is then no box although nothing hides
+  // the intruder; each of these is a fault.
   std::int64_t in_view = 0;
   std::int64_t in_view_without_box = 0;
   std::vector<std::string> faults;

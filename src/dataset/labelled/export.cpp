@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 
 const char* extension_of(Images images) { return images == Images::kPng ? ".png" : ".jpg"; }
 
-// The pictures that are written; Error for those that the format's reader does not open.
+// Returns the kind of pictures to write. Throws Error where the format's reader does not open that
+// kind.
 Images images_of(const ExportOptions& options) {
   const exchange::Pictures wanted = exchange::pictures_of(options.format);
   if (!options.images) return wanted == exchange::Pictures::kPngAlone ? Images::kPng : Images::kJpg;
@@ -36,7 +37,7 @@ Images images_of(const ExportOptions& options) {
   return *options.images;
 }
 
-// What decides every byte of an export.
+// The options that determine every byte of an export.
 Json options_json(const fs::path& set, const ExportOptions& options) {
   const char* split = options.split == Split::kNone           ? "none"
                       : options.split == Split::kByBackground ? "by-background"
@@ -75,7 +76,7 @@ std::string boxes_text(Boxes boxes) {
          "aircraft.\n";
 }
 
-// The folder of an export while it is being made.
+// The folder of an export while the export is under way.
 class Place {
  public:
   Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
@@ -85,7 +86,8 @@ class Place {
         throw Error("holds an export made with other options; expected a new folder",
                     {root_.string()});
       complete_ = true;
-      fs::remove_all(root_ / ".export");  // of a run that ended between the two last steps
+      // A run that ended between its last two steps leaves this folder.
+      fs::remove_all(root_ / ".export");
       return;
     }
     const bool begun = fs::exists(begun_file());
@@ -224,8 +226,8 @@ class Export {
     summary_.images += written;
   }
 
-  // The clips that the format makes of one. The toolkits of single objects refuse sequences of one
-  // frame, whose truth they read as four numbers and no table.
+  // The clips that the format makes from one clip. Single-object toolkits refuse a sequence of one
+  // frame: they read its truth as four numbers and not as a table.
   std::vector<exchange::Clip> arranged(const exchange::Clip& clip) const {
     std::vector<exchange::Clip> clips = exchange::arranged(options_.format, clip);
     if (exchange::is_single_object(options_.format))
@@ -233,7 +235,7 @@ class Export {
     return clips;
   }
 
-  // Which pictures are made of which frame.
+  // Decides which pictures are made from which frame.
   std::map<std::int64_t, std::vector<fs::path>> places_of(const exchange::Clip& clip,
                                                           const std::string& part) const {
     std::map<std::int64_t, std::vector<fs::path>> places;
@@ -276,7 +278,7 @@ class Export {
       }
   }
 
-  // What the boxes of this export are, and what the masks are.
+  // Describes the boxes and the masks of this export.
   std::string about_boxes() const {
     std::string text = "\n";
     if (rendered_ > 0) text += boxes_text(options_.boxes);
@@ -314,7 +316,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     throw Error(std::string("numbered classes are asked for, and ") +
                 exchange::name(options.format) + " holds its classes anyway; expected format mot");
   const LabelledSet labelled(set);
-  // XML, JSON and YAML hold the names of folders.
+  // The labels hold folder names in XML, JSON and YAML.
   require_utf8(fs::absolute(set));
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));

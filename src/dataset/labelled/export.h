@@ -20,33 +20,41 @@ enum class Images { kJpg, kPng, kNone };
 
 struct ExportOptions {
   exchange::Format format = exchange::Format::kCoco;
-  std::optional<Images> images;  // default: JPEG; PNG for AOT, whose reader opens no other
-  std::int64_t every = 1;        // frames 0, n, 2n, ...
+  // Empty: JPEG, but PNG for AOT, whose reader opens no other kind.
+  std::optional<Images> images;
+  std::int64_t every = 1;  // the export holds the frames 0, n, 2n, ...
   Split split = Split::kByBackground;
+  // Shares of train, val and test (split.h).
   std::array<double, 3> shares{0.8, 0.1, 0.1};
   std::uint64_t seed = 1;
   Boxes boxes = Boxes::kCovered;
-  bool one_class = false;    // "aircraft", in place of the aircraft's types
-  bool mot_classes = false;  // MOT: classes numbered from 1, in place of 1 for every aircraft
-  int jobs = 0;              // sequences at a time; 0: one per core
+  // Every label has the class "aircraft"; otherwise its class is the aircraft's type.
+  bool one_class = false;
+  // For MOT only: classes are numbered from 1. Otherwise every aircraft has class 1.
+  bool mot_classes = false;
+  // Number of sequences that are exported at the same time; 0 means one per core.
+  int jobs = 0;
   Warn warn;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;  // sequences
+  // Counts sequences.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;
 };
 
 struct ExportSummary {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
-  std::int64_t images = 0;  // written by this run
+  std::int64_t images = 0;  // pictures that this run wrote
   std::int64_t masks = 0;   // labels that hold the object's pixels
   std::map<std::string, std::int64_t> frames_of_part;
-  bool was_there = false;  // an earlier run had finished it
+  // True where an earlier run had already finished the export.
+  bool was_there = false;
 };
 
-// Writes a data set in another format into a new folder, with its pictures, LOSS.md and, last,
-// export.json. An export that was stopped goes on when it is called again with the same options:
-// pictures that are whole are not made again. Error where the folder holds anything else, for
-// pictures that the format's reader does not open, and for mot_classes with another format.
+// Writes a data set in another format into the folder `out`: the labels, the pictures, LOSS.md
+// (what the format cannot hold) and, last, export.json. A call with the same options continues an
+// export that was stopped and keeps the pictures that are already whole. Throws Error where `out`
+// holds anything else, where the format's reader does not open the requested pictures, and where
+// mot_classes is set for a format other than MOT.
 ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& options);
 
 }  // namespace airtruth::dataset

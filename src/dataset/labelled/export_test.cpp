@@ -27,7 +27,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// A small data set, made once for all the tests.
+// A small data set, made once for all tests of this file.
 class Made : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -50,8 +50,8 @@ class Made : public testing::Test {
       if (entry.is_regular_file()) found.insert(fs::relative(entry.path(), folder).string());
     return found;
   }
-  // A copy of the set in which the first frame's truth of a sequence was changed, and its record
-  // made to fit.
+  // Copies the set, changes the first frame's truth of one sequence, and updates its record to
+  // match.
   fs::path changed(const std::string& sequence,
                    const std::function<void(nlohmann::ordered_json&)>& change) {
     const fs::path copy = fresh();
@@ -67,7 +67,7 @@ class Made : public testing::Test {
     std::string record = read_file(folder / "sequence.json");
     record.replace(record.find(before), before.size(), sha256_of(truth));
     write_file(folder / "sequence.json", record);
-    finish(copy);  // the manifest too
+    finish(copy);  // writes the manifest as well
     return copy;
   }
   inline static fs::path root_;
@@ -112,7 +112,8 @@ TEST_F(Made, EveryFormatComesBackWithTheBoxesOfTheTruthAndPicturesOfTheVideo) {
         if (clip.frames[i].labels.empty()) continue;
         EXPECT_NEAR(clip.frames[i].labels[0].box_px.x, expected.frames[i].labels[0].box_px.x, 1e-9);
       }
-      // The picture of the second frame is the video's: boxes and pixels are of one frame.
+      // The exported picture of the second frame equals the video's, so boxes and pixels belong to
+      // the same frame.
       video::Reader pictures(clip.media);
       video::Reader frames(expected.media);
       for (std::size_t i = 0; i < clip.frames.size(); ++i) {
@@ -183,7 +184,8 @@ TEST_F(Made, CountsOfRecordsThatWereChangedAreOneLine) {
   ExportOptions options;
   options.images = Images::kNone;
   export_set(set(), out, options);
-  fs::create_directories(out / ".export" / "done");  // of a run that was killed at its last step
+  // A run that was killed at its last step leaves this folder.
+  fs::create_directories(out / ".export" / "done");
   EXPECT_TRUE(export_set(set(), out, options).was_there);
   EXPECT_FALSE(fs::exists(out / ".export"));
   changed(out / "export.json", "\"frames\": 32", "\"frames\": 1e308");
@@ -197,7 +199,7 @@ TEST_F(Made, CountsOfRecordsThatWereChangedAreOneLine) {
   fs::copy(set(), copy, fs::copy_options::recursive);
   const LabelledSet labelled(copy);
   const std::string first = labelled.names().front();
-  // 2^64 - 1 is -1 in 64 bits.
+  // 2^64 - 1 would become -1 in a signed 64-bit integer.
   changed(labelled.folder(first) / "sequence.json",
           "\"frames\": 8",
           "\"frames\": 18446744073709551615");
@@ -316,7 +318,7 @@ TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
               ElementsAre(HasSubstr("its mask is not of its covered box")));
 }
 
-// A set that was made before truth had covered boxes.
+// A set from before the truth had covered boxes.
 TEST_F(Made, AnOlderSetIsRefusedWithOneLineOrTakenByItsVisibleBoxes) {
   const fs::path old = fresh();
   fs::copy(set(), old, fs::copy_options::recursive);
@@ -370,7 +372,7 @@ TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
   const VerifyResult sound = verify(set(), options);
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.recomposed, 32);
-  // A visible box that was moved by one pixel.
+  // One visible box is moved by one pixel.
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["visible_box_px"][0] = intruder["visible_box_px"][0].get<int>() + 1;
   });

@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbered pictures are read in the order of their numbers from the first on; labels go with them
-// only where there is one for each.
+// The reader takes numbered pictures in the order of their numbers, beginning with the first.
+// Labels match them only where every picture has its own label.
 void match_pictures(exchange::Clip& clip, const Warn& warn) {
   if (clip.media.empty() || fs::is_regular_file(clip.media)) return;
   const auto images = video::numbered_images(clip.media);
@@ -36,7 +36,7 @@ void match_pictures(exchange::Clip& clip, const Warn& warn) {
     clip.frames[i].frame = static_cast<std::int64_t>(i);
 }
 
-// Sizes, rates and times that the labels do not say and the video does.
+// Fills in sizes, rates and times that the labels lack and the video states.
 void ask_video(exchange::Clip& clip, const Warn& warn) {
   if (clip.media.empty()) return;
   const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
@@ -79,7 +79,7 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
 }
 
 void expect_rate(const exchange::Clip& clip, const fs::path& source) {
-  constexpr double kHighestRate_hz = 1e6;  // as in labels.jsonl
+  constexpr double kHighestRate_hz = 1e6;  // the limit of labels.jsonl
   if (clip.frame_rate_hz && !(*clip.frame_rate_hz > 0 && *clip.frame_rate_hz <= kHighestRate_hz))
     throw Error(fmt::format("{}: the frame rate is {} Hz; expected a number above 0, up to {}",
                             clip.name,
@@ -88,10 +88,10 @@ void expect_rate(const exchange::Clip& clip, const fs::path& source) {
                 {source.string()});
 }
 
-// Names that are good for a folder, each once.
+// Makes names that are valid for a folder, each unique.
 std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   std::string name = wanted;
-  // Labels, records and other formats' files are UTF-8.
+  // Labels, records and the files of other formats are UTF-8.
   const bool is_utf8 = utf8_fault(name) == std::string::npos;
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -130,7 +130,7 @@ ImportSummary import_set(const fs::path& source,
     clip.name = free_name(clip.name, taken);
     expect_rate(clip, source);
   }
-  // Nothing is written before everything is read.
+  // All input is read before the first file is written.
   ImportSummary summary;
   for (const exchange::Clip& clip : clips) {
     const fs::path folder = out / "sequences" / clip.name;
@@ -139,7 +139,7 @@ ImportSummary import_set(const fs::path& source,
     if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
     const Json record = record_of(clip, options);
     write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
-    // Categories are as the labels have them, and may be no UTF-8.
+    // Categories come unchanged from the labels and may be invalid UTF-8.
     write_file(folder / "sequence.json",
                record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
                Flush::kLater);

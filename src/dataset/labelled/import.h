@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 struct ImportOptions {
   exchange::Format format = exchange::Format::kCoco;
   exchange::ReadOptions read;
-  // Clip name -> its video, where that is not found beside the labels. "" for the only clip.
+  // Maps a clip's name to its video, for videos that do not lie beside the labels. The name ""
+  // stands for the only clip.
   std::map<std::string, fs::path> videos;
   Warn warn;
 };
@@ -26,10 +27,10 @@ struct ImportSummary {
   std::int64_t labels = 0;
 };
 
-// Reads labelled video of another format and leaves out/sequences/NAME/labels.jsonl and
-// sequence.json (docs/formats/labels.md), which `overlay`, `dataset export` and the evaluation read
-// as they read what was rendered. Videos stay where they are. Error where `out` exists and is not
-// empty.
+// Reads labelled video of another format and writes out/sequences/NAME/labels.jsonl and
+// sequence.json (docs/formats/labels.md). `overlay`, `dataset export` and the evaluation read these
+// like rendered sequences. The videos stay where they are. Throws Error where `out` exists and is
+// not empty.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
 }  // namespace airtruth::dataset

@@ -24,7 +24,7 @@ namespace {
 constexpr const char* kLabels = "labels.jsonl";
 constexpr double kEarthRadiusM = 6'371'000;
 
-// The horizon is seen below the level by its dip, sqrt(2 h / R) of the height.
+// The visible horizon lies below the horizontal by its dip, sqrt(2 h / R), at the height h.
 bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
   const Vector3 way = position_ned_m - camera_ned_m;
   const double elevation = std::atan2(-way.z(), std::hypot(way.x(), way.y()));
@@ -65,7 +65,7 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   return label;
 }
 
-// The pixels of kCoveredAlpha or more, which covered_box_px bounds.
+// The pixels whose alpha is kCoveredAlpha or more; covered_box_px bounds them.
 std::optional<exchange::PixelMask> pixels_of_mask(const sequence::Finished& finished,
                                                   const std::string& id,
                                                   std::int64_t frame) {
@@ -107,7 +107,7 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
   std::vector<std::string> names;
   if (fs::is_directory(folder))
     for (const auto& entry : fs::directory_iterator(folder))
-      // Hidden folders are of runs that are not over, or were killed.
+      // Hidden folders belong to runs that are under way or were killed.
       if (entry.is_directory() && !entry.path().filename().string().starts_with(".") &&
           is_sequence(entry.path()))
         names.push_back(entry.path().filename().string());

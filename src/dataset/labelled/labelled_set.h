@@ -12,51 +12,65 @@ namespace airtruth::dataset {
 
 namespace fs = std::filesystem;
 
-// What is known of a sequence before its labels are read.
+// Facts about a sequence that are available before its labels are read.
 struct ClipFacts {
   std::string name;
-  std::string background;               // the video that it was made over; of an import, its own
-  std::vector<std::string> categories;  // of what may be seen in it
+  // The background video; for an imported clip, its own video.
+  std::string background;
+  // The categories of the objects that may appear in the sequence.
+  std::vector<std::string> categories;
   std::int64_t frames = 0;
 };
 
-// Which box of truth.jsonl becomes a label's (docs/formats/truth.md).
+// Selects the box of truth.jsonl that becomes a label's box (docs/formats/truth.md).
 enum class Boxes {
-  kCovered,  // covered_box_px: the pixels that the aircraft itself covers; to train on
-  kExact,    // exact_box_px, cut by the frame: where geometry has it, floating
-  kVisible,  // visible_box_px: the pixels that changed, the codec's ripple with them
+  // covered_box_px bounds the pixels that the aircraft itself covers. It is the box for training.
+  // exact_box_px, cut at the frame's edges, is the box that geometry gives, in fractions of a
+  // pixel.
+  // visible_box_px bounds the pixels that changed, with the codec's ripple.
+  kCovered,
+  kExact,
+  kVisible,
 };
 const char* name(Boxes boxes);  // "covered", "exact", "visible"
 // Throws Error for any other name.
 Boxes boxes_from_name(const std::string& name);
 
-// The labelled clips of a folder: a data set that `dataset build` made, whole or not; what
-// `dataset import` made; or one or more sequences that `render` made.
+// The labelled clips of a folder. The folder is a data set that `dataset build` made, complete or
+// not; the output of `dataset import`; or one or more sequences that `render` made.
+//
+// Example: a catalogue has two backgrounds, "sky" and "more", one trajectory "across", and two
+// aircraft, "b737" and "c172"; its product is named "{background}-{trajectory}-{aircraft}" and
+// every clip has 8 frames. Once it is built, names() returns the four names "more-across-b737",
+// "more-across-c172", "sky-across-b737" and "sky-across-c172", facts("sky-across-b737").frames is
+// 8, and missing() is 0.
 class LabelledSet {
  public:
-  // Error where the folder holds no sequence.
+  // Throws Error where the folder holds no sequence.
   explicit LabelledSet(const fs::path& root);
 
   const std::vector<std::string>& names() const { return names_; }  // sorted
   ClipFacts facts(const std::string& name) const;
-  // With `media` as the path of its video, and with the pixels of each object where `with_masks` is
-  // asked for and the sequence has masks. Labels are of the frames in which an object is visible
-  // and has such a box; imported clips have one box alone, whichever is asked for. Error where
-  // covered boxes are asked for and the sequence is older than they are.
+  // Returns one clip; its `media` is the path of its video. Labels exist for the frames in which an
+  // object is visible and has the requested box. Each label holds its object's pixels where
+  // `with_masks` is true and the sequence has masks. An imported clip has a single kind of box,
+  // which is returned for every value of `boxes`. Throws Error where covered boxes are requested
+  // and the sequence is older than they are.
   exchange::Clip clip(const std::string& name,
                       Boxes boxes = Boxes::kCovered,
                       bool with_masks = false) const;
-  // Covered, or visible where a sequence of the set is older than covered boxes are; that is said.
+  // Returns kCovered, or kVisible (with a warning) where a sequence of the set is older than
+  // covered boxes are.
   Boxes usual_boxes(const Warn& warn) const;
-  // The sequence was made with [output] masks = true.
+  // True where the sequence was made with [output] masks = true.
   bool has_masks(const std::string& name) const;
   fs::path folder(const std::string& name) const;
-  // It was labelled elsewhere: of its camera nothing is known.
+  // True where the clip was labelled elsewhere; nothing is known about its camera.
   bool is_imported(const std::string& name) const;
   bool has_covered_boxes(const std::string& name) const;
-  // Error where it has not.
+  // Throws Error where the sequence has no covered boxes.
   void expect_covered_boxes(const std::string& name) const;
-  // Some of the sequences that the catalogue asks for are not there.
+  // The number of sequences of the catalogue that the folder does not hold.
   std::int64_t missing() const { return missing_; }
 
  private:
@@ -65,7 +79,8 @@ class LabelledSet {
   std::int64_t missing_ = 0;
 };
 
-// "738/738-Ryanair" -> "738"; a model file's name without its ending.
+// The type of an aircraft of the list ("738/738-Ryanair" gives "738"), or the name of a model file
+// without its extension.
 std::string category_of(const std::string& aircraft);
 
 }  // namespace airtruth::dataset

@@ -16,7 +16,8 @@ constexpr std::array<const char*, 3> kParts = {"train", "val", "test"};
 
 struct Group {
   std::string name;
-  std::string order;  // drawn: groups of one size go in no order of names
+  // A random key, so that the order of equally large groups does not follow their names.
+  std::string order;
   std::vector<std::string> sequences;
   std::int64_t frames = 0;
 };

@@ -13,7 +13,7 @@
 
 namespace airtruth::dataset {
 
-// How a data set is parted into train, val and test.
+// How a data set is divided into train, val and test.
 enum class Split {
   kNone,          // one part, "all"
   kByBackground,  // all the sequences over one video go to one part
@@ -21,10 +21,11 @@ enum class Split {
 };
 Split split_from_name(std::string_view name);  // "none", "by-background", "by-sequence"
 
-// The part of each sequence, by name. Sequences are kept together as asked, and given out so that
-// the parts' shares of the frames come near to `shares` (of train, val, test); a part with a share
-// is not left empty while there are groups enough. The same for the same seed. Warns where parts
-// stay empty, and where a background is in more than one.
+// Returns the part of each sequence, by the sequence's name. Sequences stay together as `split`
+// says. The groups are assigned so that the parts' shares of the frames come near to `shares`
+// (train, val, test). A part with a share above 0 receives at least one group as long as there are
+// enough groups. The same seed gives the same result. Warns where a part stays empty, and where a
+// background is in more than one part.
 std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
                                           Split split,
                                           const std::array<double, 3>& shares,

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kLoopSide = 96;
 constexpr std::size_t kLoopFrames = 10;
-constexpr int kStillQuality = 7;  // of libav's mjpeg: about 10 kB a still
+// Quality setting of libav's mjpeg encoder; a still takes about 10 kB.
+constexpr int kStillQuality = 7;
 constexpr int kLoopQuality = 5;
 
 std::optional<PixelBox> first_box(const annotation::Frame& frame) {

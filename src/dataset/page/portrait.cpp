@@ -45,7 +45,7 @@ Portrait::Camera camera_of(const annotation::Frame& frame, int width, int height
           std::atan2(h(1, 0), h(0, 0)) * degrees};
 }
 
-// The cell of the picture that a box's centre lies in.
+// The cell of the picture that holds a box's centre.
 std::size_t cell_of(const PixelBox& box, int width, int height) {
   const auto part = [](double at, double whole, int parts) {
     return static_cast<std::size_t>(std::clamp(std::floor(at / whole * parts), 0.0, parts - 1.0));

@@ -16,20 +16,22 @@
 
 namespace airtruth::dataset {
 
-// What the report page shows of one sequence, read from its record, its truth and its video.
-// Series are thinned to at most kMostPoints.
+// The content of the report page for one sequence, read from its record, its truth and its video.
+// Series are thinned to at most kMostPoints points.
 struct Portrait {
   static constexpr std::size_t kMostPoints = 120;
-  // Cells of the picture in which the centres of boxes are counted.
+  // The grid of cells over the picture in which the centres of boxes are counted.
   static constexpr int kCellColumns = 32;
   static constexpr int kCellRows = 24;
 
-  struct Point {  // of one intruder in one frame
+  // One intruder in one frame.
+  struct Point {
     std::int64_t frame = 0;
     double time_s = 0;
     std::optional<double> range_m, azimuth_deg, elevation_deg;
     std::optional<std::array<double, 3>> position_ned_m;
-    std::optional<double> width_px, height_px;  // of its covered (else visible) box
+    // Size of the covered box, or of the visible box where there is no covered one.
+    std::optional<double> width_px, height_px;
     const char* state = "";
   };
   struct Intruder {
@@ -41,33 +43,41 @@ struct Portrait {
     std::int64_t frame = 0;
     std::array<double, 3> position_ned_m{};
     double yaw_deg = 0;
-    double shift_px = 0;  // of the picture's middle, by the measured motion
+    // Displacement of the picture's centre by the measured camera motion.
+    double shift_px = 0;
     double roll_deg = 0;
   };
 
   ClipFacts facts;
-  std::string folder;              // of its files
-  std::vector<std::string> files;  // in it
+  std::string folder;              // the folder of the sequence's files
+  std::vector<std::string> files;  // file names in `folder`
   int width = 0, height = 0;
   double duration_s = 0;
   std::optional<double> horizontal_fov_deg;
   std::optional<double> sun_azimuth_deg, sun_elevation_deg;
   std::string motion_model;
-  std::optional<scene::Scene> scene;  // the effective one; empty: imported
+  std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
   std::vector<Intruder> intruders;
   std::vector<Camera> camera;
-  std::array<std::int64_t, 5> frames_by_state{};  // visible, hidden, outside, behind, ended
-  std::int64_t covered_boxes = 0;                 // of the visible ones
-  std::int64_t without_box = 0;           // in view by geometry (truth/annotation/in_view.h)
-  std::int64_t frames_with_intruder = 0;  // that a label says something of
+  // Frames with the state visible, hidden, outside, behind and ended, in this order.
+  std::array<std::int64_t, 5> frames_by_state{};
+  // Number of visible states that have a covered box.
+  std::int64_t covered_boxes = 0;
+  // Number of states that are in view by geometry and have no box (truth/annotation/in_view.h).
+  std::int64_t without_box = 0;
+  // Frames for which a label describes an intruder.
+  std::int64_t frames_with_intruder = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
-  std::vector<std::int64_t> centres;  // of boxes by cell of the picture, row by row from the top
-  std::vector<std::string> ids;       // of all intruders (sequence::intruder_ids)
+  // Number of box centres in each cell, row by row from the top.
+  std::vector<std::int64_t> centres;
+  // The ids of all intruders (sequence::intruder_ids).
+  std::vector<std::string> ids;
   Film film;
-  std::filesystem::path video;  // empty where the pictures are files of their own
+  // Empty where the pictures are separate files.
+  std::filesystem::path video;
 };
 
-// `stills`: pictures in its film at most.
+// `stills` is the highest number of pictures in its film.
 Portrait portrait_of(const LabelledSet& set,
                      const std::string& name,
                      std::size_t stills,

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A histogram over stated edges; what lies beyond them counts in the first and last bin.
+// A histogram over stated edges; values beyond them count in the first and the last bin.
 struct Histogram {
   std::vector<double> edges;
   std::vector<std::int64_t> counts;
@@ -47,18 +47,19 @@ std::vector<double> steps(double from, double to, double step) {
 
 constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
 
-// Stills of all sequences together: about 13 kB each on the page.
+// Upper bound for the stills of all sequences together; a still takes about 13 kB of the page.
 constexpr std::size_t kMostStills = 1500;
 constexpr std::size_t kMostStillsOfOne = 60;
 constexpr std::size_t kLeastStillsOfOne = 4;
 
-// What is counted over the whole set, from the thinned series.
+// Counts over the whole set, made from the thinned series.
 struct Totals {
   std::int64_t frames = 0;
   std::array<std::int64_t, 5> by_state{};
   std::int64_t without_box = 0;
   std::int64_t frames_with_intruder = 0;
-  std::int64_t negative_sequences = 0;  // that show no intruder in any frame
+  // Sequences that show no intruder in any frame.
+  std::int64_t negative_sequences = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
   std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCells);
   Histogram range_m{
@@ -96,7 +97,8 @@ Json rounded(const std::optional<double>& value, double unit) {
   return value ? Json(rounded(*value, unit)) : Json();
 }
 
-// Columns, since a page of a thousand sequences holds a hundred thousand points.
+// The data is stored in columns because a page of a thousand sequences holds a hundred thousand
+// points.
 Json series_of(const Portrait::Intruder& intruder) {
   Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
        east = frame, down = frame, state = frame;
@@ -146,7 +148,7 @@ Json camera_of(const Portrait& portrait) {
           {"roll_deg", roll}};
 }
 
-// Of the containers that airtruth writes and imports, those that browsers play.
+// Of the containers that airtruth writes and imports, browsers play these.
 bool plays_in_browsers(const fs::path& video) {
   return video.extension() == ".mp4" || video.extension() == ".webm";
 }

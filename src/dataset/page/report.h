@@ -12,14 +12,15 @@ namespace fs = std::filesystem;
 
 struct ReportOptions {
   bool overwrite = false;
-  int jobs = 0;  // sequences at a time; 0: one per core
+  // Number of sequences that are read at the same time; 0 means one per core.
+  int jobs = 0;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;
 };
 
-// One self-contained page on a data set (a LabelledSet's folder): what is in it, histograms, and
-// each sequence with its pictures, its geometry and links to its files. Needs no network. Error
-// where `out` exists and is not to be overwritten.
+// Writes one self-contained page about a data set (the folder of a LabelledSet): its contents,
+// histograms, and each sequence with its pictures, its geometry and links to its files. The page
+// needs no network. Throws Error where `out` exists and overwrite is false.
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options);
 
 }  // namespace airtruth::dataset
