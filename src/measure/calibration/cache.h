@@ -9,28 +9,36 @@
 
 namespace airtruth::calibration {
 
-// Calibrations are cached by content: everything that their numbers depend on, and the version of
-// the methods. A file of the cache that is not whole or not ours is ignored, never trusted.
+// The key of a cached calibration: everything that the measured values depend on. The version of
+// the methods is part of the file name too. A cache file that is incomplete or fails its checksum
+// is ignored.
 struct CacheKey {
-  std::string video_sha256;  // "" where the video has no checksum: nothing is kept
-  std::string mask_sha256;   // "" without a mask
-  std::string lens;          // words that tell lenses apart by every number
+  // SHA-256 of the video; "" if the video has no checksum, and then nothing is cached.
+  std::string video_sha256;
+  // SHA-256 of the mask of the own aircraft; "" without a mask.
+  std::string mask_sha256;
+  // A description of the lens that contains every parameter, so that different lenses differ in it.
+  std::string lens;
   std::optional<double> altitude_m;
   image::ToneCurve tone;
 
-  std::string file_name() const;  // a hash of all of it, ".json"
+  // A hash of all fields, with the extension ".json".
+  std::string file_name() const;
 };
 
-// What was kept: values, missing, notes and yaw_from_first_deg, with the size and the number of
-// frames. Empty where nothing is kept under the key.
+// Reads a calibration from the cache in `folder`. The result has the picture size, the number of
+// frames, `values`, `missing`, `notes` and `yaw_from_first_deg`. Empty if the cache has no valid
+// file for the key.
 std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key);
+// Writes a calibration into the cache in `folder`.
 void store(const fs::path& folder, const CacheKey& key, const Calibration& calibration);
 
-// The calibration of the whole clip, from the cache or measured and kept there. Of several threads
-// and processes that ask for the same at once, one measures and the others wait for its result; a
-// cache that cannot be written costs the measurement again and is no error. `options` states what
-// `key` states; its first frame is 0 and its heading is 0. An empty folder: no cache. Throws as
-// calibrate(), and Interrupted on options.stop.
+// Returns the calibration of the whole clip, from the cache if it is there; otherwise measures it
+// and stores it. If several threads or processes ask for the same calibration at once, one of them
+// measures and the others wait for its result. A cache that cannot be written is no error: the next
+// run measures again. `options` must agree with `key`, and its first frame and its heading must
+// be 0. An empty `folder` means that there is no cache. Throws as calibrate() does, and Interrupted
+// when options.stop is requested.
 Calibration calibrate_once(const fs::path& video,
                            const Options& options,
                            const fs::path& folder,

@@ -19,18 +19,26 @@
 #include "foundation/image/tone_curve.h"
 #include "world/scene/scene.h"
 
-// What a camera and its air do to light, measured from a clip alone: the values of
-// scene::CameraModel, each with how sure it is, or why it cannot be had.
+// Measures the camera model and the air of a scene from a video clip alone: point spread,
+// sharpening, noise, exposure, rolling shutter, codec step, airlight, extinction and sun. These are
+// the values of scene::CameraModel. Each value has a standard error, or the reason why the clip
+// does not show it.
 namespace airtruth::calibration {
 
 namespace fs = std::filesystem;
 
 struct Options {
-  std::optional<lens::Lens> lens;  // for sun, horizon and extinction
+  // The lens of the camera. Sun, horizon and extinction need it.
+  std::optional<lens::Lens> lens;
+  // Pixels that show the own aircraft; nullptr if none do. It must outlive the call.
   const image::Mask* own_aircraft = nullptr;
-  std::optional<double> altitude_m;  // above the ground: with it terrain tells the extinction
-  double heading_deg = 0;            // of the camera in the first frame, for the sun's azimuth
-  image::ToneCurve tone;             // under which light is measured: one clip cannot tell it
+  // Height of the camera above the ground, metres. The extinction needs it.
+  std::optional<double> altitude_m;
+  // Heading of the camera in the first frame, degrees. The azimuth of the sun is relative to it.
+  double heading_deg = 0;
+  // The camera's tone curve. It is an input because one clip does not determine it.
+  image::ToneCurve tone;
+  // The frames to measure: `frame_count` of them from `first_frame` on; if empty, all.
   std::int64_t first_frame = 0;
   std::optional<std::int64_t> frame_count;
   Warn warn;
@@ -44,73 +52,99 @@ struct Estimate {
   double sigma = 0;
 };
 
-// Noise of the luma at one brightness: what the noise curve is fitted to.
+// Luma noise at one brightness: one of the points to which the noise curve is fitted.
 struct NoisePoint {
-  double luma = 0;         // 0..1, coded
-  double sigma_codes = 0;  // standard deviation of luma, code values
+  // Coded luma, 0 to 1.
+  double luma = 0;
+  // Standard deviation of the luma, code values.
+  double sigma_codes = 0;
+  // The number of flat blocks that the point stands for.
   int blocks = 0;
 };
 
-// The profile of a step across the sharpest edges, from 0 to 1, at places in pixels.
+// The mean profile across the sharpest edges of a clip, with the fitted step response.
 struct EdgeProfile {
+  // Signed distances from the middle of the edge, px. The three vectors have one size.
   std::vector<double> place_px;
+  // Measured and fitted height at each place, 0 on the dark side and 1 on the bright side.
   std::vector<double> height;
   std::vector<double> fitted;
-  double spread_px = 0;  // from 10 to 90 % of what was fitted
-  int edges = 0;         // that were fitted; the profile is of those nearest to the camera
+  // The distance between 10 % and 90 % of the height of the fitted response, px.
+  double spread_px = 0;
+  // The number of edges that were fitted. The profile shows only those whose spread is nearest to
+  // the spread of the camera.
+  int edges = 0;
 };
 
+// The horizon found in one frame.
 struct Horizon {
   std::int64_t frame = 0;
-  double pitch_deg = 0;   // of the camera: up positive
-  double roll_deg = 0;    // right wing down positive
-  double separation = 0;  // how far apart sky and ground are, in their own standard deviations
+  // Pitch of the camera, positive upwards.
+  double pitch_deg = 0;
+  // Roll of the camera, positive with the right wing down.
+  double roll_deg = 0;
+  // The distance between the colours of sky and ground, in their standard deviations.
+  double separation = 0;
 };
 
+// The result of a calibration.
 struct Calibration {
   fs::path video;
-  int clips = 1;  // that were measured as one (join.h)
+  // The number of clips whose measurements were joined into this one (join.h).
+  int clips = 1;
   int width = 0;
   int height = 0;
   std::int64_t frames = 0;
   double frame_rate_hz = 0;
-  std::vector<std::int64_t> cuts;  // frames that begin a shot; nothing is measured across
+  // Frames that begin a new shot. No pair of frames across a cut is used.
+  std::vector<std::int64_t> cuts;
   std::string lens;
-  image::ToneCurve tone;  // as it was given
-  // By key, as in a scene: "sensor.noise_gain", "air.extinction_per_km" (three), ...
+  // The tone curve of the options.
+  image::ToneCurve tone;
+  // The measured values by their key in a scene file: "sensor.noise_gain" has one estimate,
+  // "air.extinction_per_km" has three (red, green, blue).
   std::map<std::string, std::vector<Estimate>> values;
-  // The readout with its sign, downwards positive, before it is told from nothing; what is joined.
+  // The readout time of the frame in seconds with its sign, positive downwards. It is kept whether
+  // or not it differs significantly from 0, since join.h combines the signed values of clips.
   std::optional<Estimate> downwards_s;
-  std::map<std::string, std::string> missing;  // key: why not
-  std::map<std::string, std::string> notes;    // key: what to know about the value
-  // Of values that are not the clip's own alone: whose they are (profile.h).
+  // By key: the reason why the value is not measured.
+  std::map<std::string, std::string> missing;
+  // By key: a remark about the value.
+  std::map<std::string, std::string> notes;
+  // By key: the origin of a value that does not come from this clip alone (profile.h).
   std::map<std::string, std::string> sources;
-  std::map<std::string, std::string> doubts;  // key: what contradicts the value by more than errors
-  // Of each frame: the heading of the camera, in degrees from that of the first frame, which turns
-  // the sun's azimuth for a sequence that begins at a later frame. Empty without a lens or a
-  // horizon.
+  // By key: a measurement that contradicts the value by more than the errors allow.
+  std::map<std::string, std::string> doubts;
+  // For each frame, the heading of the camera relative to that in the first frame, degrees. A
+  // sequence that begins at a later frame turns the azimuth of the sun by it. Empty without a lens
+  // or a horizon; it ends at the first cut.
   std::vector<double> yaw_from_first_deg;
   std::vector<NoisePoint> noise;
   EdgeProfile edge;
   std::vector<Horizon> horizons;
-  std::optional<image::Rgb8> sky_picture;  // a frame with its sky tinted, for the plots
+  // A frame with its sky tinted, for the plots.
+  std::optional<image::Rgb8> sky_picture;
 };
 
-// Reads the clip once. Error for what is no video; a clip too short or too still gives what it
-// holds.
+// Measures the clip in one pass over its frames. Throws Error if the file is not a video. What a
+// clip is too short or too still to show is in `missing`.
 Calibration calibrate(const fs::path& video, const Options& options);
 
-// Is a readout a sign of a rolling shutter? Below twice its error it is none.
+// Whether a readout time differs significantly from 0 and so shows a rolling shutter: its magnitude
+// exceeds twice its standard error.
 inline bool rolls(const Estimate& readout) { return std::abs(readout.value) > 2 * readout.sigma; }
 
-// camera.toml: values, and as comments their errors and what is missing.
+// The text of camera.toml: the values, with their errors and the reasons for missing values as
+// comments.
 std::string toml_from(const Calibration& calibration);
+// The measured values as the camera model of a scene.
 scene::CameraModel model_of(const Calibration& calibration);
 
-// Noise curve, edge profile, horizon over time, segmentation: one picture to look at.
+// One picture with four plots: noise curve, edge profile, horizon over time, and a frame with its
+// sky tinted.
 image::Rgb8 plot(const Calibration& calibration);
 
-// "fisheye 562.7 x 563.1 px" and the like: tells lenses apart in messages and files.
+// The name and the focal length of a lens, such as "fisheye 562.7 px", for messages and files.
 std::string lens_words(const lens::Lens& lens);
 
 }  // namespace airtruth::calibration

@@ -10,25 +10,35 @@
 
 namespace airtruth::calibration {
 
-// An edge's samples, those within a quarter of a pixel together.
+// The samples across one edge, averaged in bins of a quarter of a pixel.
 struct GatheredEdge {
   explicit GatheredEdge(const StepEdge& step);
-  double low = 0, high = 0;                // coded luma on its two sides, 0 to 1
-  Eigen::VectorXd places, heights, roots;  // px, 0..1, square roots of how many samples each
-  double weight = 1;                       // of its word on the mask
+  // Coded luma on the two sides of the edge, 0 to 1.
+  double low = 0, high = 0;
+  // For each bin: the mean place in px from the middle, the mean height from 0 to 1, and the square
+  // root of the number of samples.
+  Eigen::VectorXd places, heights, roots;
+  // Weight of this edge in the estimate of the unsharp mask.
+  double weight = 1;
 };
 
-// What suits one edge by itself.
+// The parameters that fit one edge by itself.
 struct EdgeFit {
-  double spread_px = 1;     // the camera's, and what it has in the world
-  double spread_error = 0;  // of its logarithm
+  // Standard deviation of the Gaussian spread, px: that of the camera and that of the edge in the
+  // world together.
+  double spread_px = 1;
+  // Standard error of the logarithm of the spread.
+  double spread_error = 0;
+  // Amount of the unsharp mask and its standard error; the error is 0 if the amount was given.
   double amount = 0, amount_error = 0;
-  double rms = 0;  // heights that it differs by from that
+  // Root mean square of the residuals, in heights from 0 to 1.
+  double rms = 0;
 };
 
-// Every edge under a mask of that radius: its place, plateaus, spread and, where it is not given,
-// the mask's amount (Gauss and Newton; place and plateaus by variable projection, Golub and
-// Pereyra 1973).
+// Fits each edge under an unsharp mask of the given radius (standard deviation, px). The unknowns
+// of an edge are its place, its two plateaus, its spread and, if `amount` is empty, the amount of
+// the mask. The method is Gauss-Newton, with place and plateaus eliminated by variable projection
+// (Golub and Pereyra 1973). The result has one fit per edge, in order.
 std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
                                double radius_px,
                                std::optional<double> amount,

@@ -11,39 +11,45 @@
 
 namespace airtruth::calibration {
 
-// The camera's step response from the sharp straight edges of a clip: profiles across them to a
-// fraction of a pixel (the slanted edge of ISO 12233). What is left of sharpness there is the
-// lens's point spread, pixels and codec together, and what the world has; a bump on both sides of
-// the step is sharpening. A bump on one side is a line in the world: such edges are left out.
+// Measures the camera's step response from the sharp straight edges of a clip. It samples the
+// profiles across them to a fraction of a pixel (the slanted-edge method of ISO 12233). The width
+// of a profile comes from the lens's point spread, the pixels and the codec together, and from the
+// softness of the edge in the world. An overshoot on both sides of the step is sharpening. An
+// overshoot on one side is a line in the world, and such edges are left out.
 class EdgeMeter {
  public:
   EdgeMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
       : own_aircraft_(own_aircraft), tone_(tone) {}
-  // frame_from_before: the picture's motion, which tells a sharp edge from a blurred one; empty:
-  // not known.
+  // Adds the edges of one frame. `frame_from_before`: motion of the picture since the previous
+  // frame, by which edges blurred by motion are recognised; empty if it is not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
 
-  // The spread's error holds that the sharpest of few edges may be soft in the world: edges of one
-  // frame are different ones, those of other frames may be the same again, as those of one aircraft
-  // before the sky are.
-  // codec_step: of the quantiser, in code values; 0: none is known. A codec takes sharpness from
-  // weak edges: where enough stand out from its step, they alone are taken.
+  // The step response of the camera. Empty, with the reason in `why`, where there are too few sharp
+  // edges.
+  //
+  // The error of the spread includes the chance that the sharpest of few edges is soft in the
+  // world. The number of different edges is that of one frame: the edges of other frames may be the
+  // same ones again, as those of one aircraft against the sky are.
+  //
+  // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
+  // softens weak edges. Where enough edges are high compared with the step, only those are used.
   std::optional<StepResponse> result(std::string& why, double codec_step = 0);
-  // What chroma has beyond luma across edges that are as sharp as `response`, which is of result()
-  // with the same codec_step.
+  // The extra spread of chroma beyond luma (chroma.h) across edges that are as sharp as `response`.
+  // `response` must be the answer of result() with the same `codec_step`.
   std::optional<Estimate> chroma(const StepResponse& response,
                                  std::string& why,
                                  double codec_step = 0) const;
+  // The mean profile of the edges that the last result() used.
   const EdgeProfile& profile() const { return profile_; }
 
  private:
   struct Edge {
-    double x = 0, y = 0;    // of the picture
-    double nx = 0, ny = 0;  // across it
-    double width_px = 0;    // standard deviation of its derivative
-    double asymmetry = 0;   // rms height that its two halves differ by
-    double height = 0;      // of the step, in code values
-    double moved_px = 0;    // across itself, since the frame before; NaN: not known
+    double x = 0, y = 0;    // a point on the edge, px of the picture
+    double nx = 0, ny = 0;  // unit vector across the edge
+    double width_px = 0;    // standard deviation of the derivative of the profile
+    double asymmetry = 0;   // rms difference between the two halves of the profile, as heights
+    double height = 0;      // of the step, code values
+    double moved_px = 0;    // motion across the edge since the previous frame; NaN: not known
     bool is_long = false;
     StepEdge step;
     std::vector<ChromaStep> chroma;
@@ -54,8 +60,9 @@ class EdgeMeter {
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;
-  int most_at_once_ = 0;                 // edges in one frame
-  std::size_t most_chroma_at_once_ = 0;  // those that show a step of colour too
+  // The largest number of edges in one frame, and of those with a step of chroma.
+  int most_at_once_ = 0;
+  std::size_t most_chroma_at_once_ = 0;
   EdgeProfile profile_;
 };
 
