@@ -26,7 +26,6 @@ class Environment {
 
   // Sums and multiples of environments are those of their radiances. scaled() multiplies by
   // channel.
-  // channel.
   Environment& operator+=(const Environment& other);
   Environment scaled(const Rgb& by) const;
 

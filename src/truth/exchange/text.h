@@ -13,58 +13,61 @@
 #include "foundation/base/log.h"
 #include "truth/exchange/labels.h"
 
-// What the formats' readers and writers have in common.
+// Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
 
-// The lines of a text file, without blank ones and those that begin with '#'.
+// The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {
-  int number = 0;  // from 1
+  // From 1.
+  int number = 0;
   std::string text;
 };
 std::vector<Line> lines_of(const fs::path& file);
 
-// Numbers of a line, split at commas, semicolons, tabs and blanks. "nan" is a number. Throws Error
-// at the line.
+// The numbers of a line, split at commas, semicolons, tabs and blanks. "nan" is a number. Throws
+// Error with the line.
 std::vector<double> numbers_of(const Line& line, const fs::path& file);
 
-// `key = value` or `key=value` lines; [sections] are passed over.
+// Lines of the form `key = value` or `key=value`; [sections] are skipped.
 std::map<std::string, std::string> settings_of(const fs::path& file);
 std::optional<double> number_in(const std::map<std::string, std::string>& settings,
                                 const std::string& key);
 
-// A clip longer than this (4.6 hours at 30 frames/s) is a slip of the pen.
+// Largest number of frames of a clip, 4.6 hours at 30 frames/s. A longer clip is taken for an error
+// in its file.
 constexpr std::int64_t kMostFrames = 500'000;
 
-// The number, where it is whole and within [low, high].
+// The number as an integer where it is whole and within [low, high]; else empty.
 std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);
-// A picture's side: 0 (unknown) where the number is none.
+// The side of a picture, in pixels; 0 (unknown) where the value is missing or invalid.
 int side_of(const std::optional<double>& value);
 
-// Whole numbers with zeros in front.
+// A whole number with leading zeros.
 std::string padded(std::int64_t number, int digits);
 
-// "NAME_000123" -> {"NAME", 123}; without a number at the end {whole, empty}.
+// "NAME_000123" -> {"NAME", 123}. Without a number at the end the result is {the whole text,
+// empty}.
 std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::string& stem);
 
-// Folders and files of a folder, sorted by name.
+// entries() returns the folders and files of a folder, sorted by name.
 std::vector<fs::path> entries(const fs::path& folder);
 std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension);
 
-// By number: names sort 10 before 2.
+// Sorts by frame number; by name, 10 would come before 2.
 void sort_frames(Clip& clip);
 
-// Width and height of the first picture in a folder; empty where there is none.
+// Width and height of the first picture in a folder; empty where there is no picture.
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder);
 
-// A box that has an area and touches the picture (of unknown size: any). Others are left out of
-// what is read, with a warning that names `what`.
+// True for a box that has an area and touches the picture (of unknown size: any such box). The
+// readers omit other boxes with a warning.
 bool is_in_picture(const Box& box, int width, int height);
 
-// The part of a box that lies in the picture (of unknown size: all of it); empty where there is
-// none.
+// The part of a box that lies in the picture (of unknown size: the whole box); empty where none
+// does.
 std::optional<Box> clipped(const Box& box, int width, int height);
 
-// Counts what was left out, and says so once.
+// Counts omitted items by reason, and warns once for each reason when it is destroyed.
 class LeftOut {
  public:
   explicit LeftOut(const Warn& warn) : warn_(warn) {}

@@ -10,13 +10,16 @@
 namespace airtruth::synthetic {
 namespace {
 
-constexpr int kCells = 512;  // along north and east
-constexpr int kLevels = 26;  // upwards
+// Cells along north and along east.
+constexpr int kCells = 512;
+// Levels upwards.
+constexpr int kLevels = 26;
 constexpr float kCell_m = 40;
 constexpr float kBase_m = 1050;
 constexpr float kDepth_m = 1500;
 constexpr float kLevel_m = kDepth_m / kLevels;
-constexpr int kDetail = 64;  // texels of the fine noise, along each axis
+// Texels of the fine noise along each axis.
+constexpr int kDetail = 64;
 constexpr float kDetailTexel_m = 15;
 constexpr float kExtinction_per_m = 0.022F;
 constexpr float kFarthestCloud_m = 60000;
@@ -30,7 +33,7 @@ std::size_t voxel_index(int x, int y, int level) {
          static_cast<std::size_t>(level);
 }
 
-// Henyey and Greenstein (1941), a forward lobe over an even glow.
+// Phase function of Henyey and Greenstein (1941): a forward lobe plus an isotropic part.
 float cloud_phase(float cosine) {
   const float g = 0.6F;
   const float lobe = (1 - g * g) / std::pow(1 + g * g - 2 * g * cosine, 1.5F);
@@ -68,7 +71,7 @@ void Clouds::fill(double cover) {
     for (int x = 0; x < kCells; ++x) {
       const float u = static_cast<float>(x) / 64;
       const float v = static_cast<float>(y) / 64;
-      // Groups of clouds (5 km) of single ones (1.3 km).
+      // Clouds come in groups (5 km) of single ones (1.3 km).
       const float groups = fractal(u * 0.5F, v * 0.5F, 2, kCells / 128, seed_ + 1);
       const float single = fractal(u * 2, v * 2, 4, kCells / 32, seed_ + 2);
       const float strength = (0.42F * groups + 0.58F * single - threshold) / 0.22F;
@@ -95,8 +98,8 @@ void Clouds::fill(double cover) {
   });
 }
 
-// From the top down: each level's depth towards the sun is that of the level above, one step up the
-// sunbeam.
+// Works from the top down: the optical depth of each level towards the sun follows from the level
+// above, one step along the sunbeam.
 void Clouds::light_up() {
   const Vector3 sun = sky_.sun_in_world();
   const float up = static_cast<float>(std::max(-sun.z(), 0.15));
@@ -176,10 +179,11 @@ float Clouds::erosion(float north_m, float east_m, float height_m) const {
   return lerp(lerp(row(0, 0), row(1, 0), fy), lerp(row(0, 1), row(1, 1), fy), fz);
 }
 
-// Sunlight once scattered and its softer echoes (Wrenninge et al. 2013), and the light of sky and
-// ground.
+// Sunlight that is scattered once, an approximation of multiple scattering (Wrenninge et al. 2013),
+// and the light of sky and ground.
 Light Clouds::scattered(const Sample& sample, float height, float phase) const {
-  const float quarter = sample.sunlit;  // exp(-depth / 4)
+  // exp(-depth / 4).
+  const float quarter = sample.sunlit;
   const float direct = quarter * quarter * quarter * quarter;
   const float echo = std::sqrt(quarter);
   const float sun = phase * (0.42F * direct + 0.30F * quarter) + 0.22F * echo;
@@ -208,7 +212,7 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
     const float height_m = t * up - kBase_m;
     Sample here = sample(t * north, t * east, height_m / kDepth_m);
     if (here.density > 0) {
-      // Far off the fine noise is finer than the steps: it fades to its mean.
+      // At a large distance the fine noise is finer than the steps, so it fades to its mean.
       const float fine = lerp(erosion(t * north, t * east, height_m), 0.5F, clamp01(t / 15000));
       here.density = clamp01((here.density - 1.05F * (1 - here.density) * (fine - 0.22F)) * 1.4F);
     }
@@ -230,7 +234,7 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
   return colour * (1 - opaque * kept) + sum * kept;
 }
 
-// Streaks of ice, drawn out along one wind.
+// Streaks of ice, stretched along one wind direction.
 void Clouds::add_cirrus(const Vector3& direction, Light& colour) const {
   const float up = static_cast<float>(-direction.z());
   const float x = static_cast<float>(direction.x()) * kCirrus_m / up;

@@ -9,24 +9,26 @@
 
 namespace airtruth::synthetic {
 
-// Fair-weather cumulus as a volume that repeats every 20 km, lit by the sun through itself, and
-// thin cirrus far above. Read once, while the sky's panorama is made; what is left for the frames
-// is its shadow on the ground.
+// Fair-weather cumulus as a volume that repeats every 20 km and shadows itself from the sun, and
+// thin cirrus far above. The volume is sampled once, while the sky's panorama is drawn; the frames
+// use only its shadow on the ground.
 class Clouds {
  public:
   Clouds(const Sky& sky, double cover, std::uint32_t seed);
 
-  // The light of the sky in that direction with the clouds before it, from a point near the ground.
+  // The light of the sky in that direction with the clouds in front of it, from a point near the
+  // ground.
   Light seen_through(const Vector3& direction_in_world, const Light& behind) const;
 
-  // Share of the sunlight that reaches the ground there, 1 = clear.
+  // Share of the sunlight that reaches the ground at each of cells x cells places; 1 is clear.
   std::vector<float> ground_shadow(int cells) const;
   static double period_m();
 
  private:
   struct Voxel {
     std::uint8_t density = 0;
-    std::uint8_t sunlit = 0;  // exp(-optical depth towards the sun / 4)
+    // exp(-optical depth towards the sun / 4).
+    std::uint8_t sunlit = 0;
   };
   struct Sample {
     float density = 0;

@@ -7,7 +7,7 @@
 namespace airtruth::synthetic {
 namespace {
 
-// To and fro between 0 and 1.
+// A triangle wave between 0 and 1.
 float bounce(double x) {
   const double turn = x - 2 * std::floor(x / 2);
   return static_cast<float>(turn < 1 ? turn : 2 - turn);
@@ -29,7 +29,7 @@ std::vector<Clutter::Disc> Clutter::at(double time_s) const {
   for (int i = 0; i < count_; ++i) {
     const std::uint32_t id = hash(i, 0, seed_);
     const auto draw = [&](std::uint32_t k) { return unit(mix(id + k)); };
-    // One crossing takes 8 to 40 s.
+    // One crossing of the image takes 8 to 40 s.
     const double across = time_s * (0.025 + 0.1 * draw(1)) + 2 * draw(2);
     const double along = time_s * (0.025 + 0.1 * draw(3)) + 2 * draw(4);
     discs.push_back({bounce(across) * static_cast<float>(width_),
@@ -54,7 +54,8 @@ void Clutter::draw(const std::vector<Disc>& discs, int y, int width, Light* row)
       const float scale = 4.5F / disc.radius;
       const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
       Light tone = light(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
-      tone[3] = row[x][3];  // the lens's shading is the pixel's own
+      // The lens's fall-off belongs to the pixel and not to the disc.
+      tone[3] = row[x][3];
       row[x] += (tone - row[x]) * smoothstep(0.0F, 0.25F, edge);
     }
   }

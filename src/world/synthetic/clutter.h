@@ -8,7 +8,8 @@
 
 namespace airtruth::synthetic {
 
-// Mottled discs that wander over the image by themselves: what a motion estimate must not follow.
+// Mottled discs that move over the image independently of the camera: motion that a motion estimate
+// must reject.
 class Clutter {
  public:
   Clutter(int width, int height, double share, std::uint32_t seed);
@@ -20,7 +21,7 @@ class Clutter {
     std::uint32_t seed = 0;
   };
   std::vector<Disc> at(double time_s) const;
-  // Draws them over a row of light.
+  // Draws the discs over a row of light.
   static void draw(const std::vector<Disc>& discs, int y, int width, Light* row);
 
  private:

@@ -119,7 +119,8 @@ struct Flight::Impl {
   Ground ground;
 };
 
-// Sky and clouds are drawn where some frame looks, the clouds' shadow goes to the ground.
+// Draws sky and clouds in the directions that some frame looks at, and passes the clouds' shadow to
+// the ground.
 Ground Flight::Impl::make_world() {
   for (int k = 0; k < options.frame_count; ++k)
     for (const Light& d : view.directions_in_world(path.shaken(k).world_from_body, 4))

@@ -13,19 +13,20 @@
 #include "foundation/image/picture.h"
 #include "world/trajectory/path.h"
 
-// Virtual flights: onboard video of a world that is known exactly. Sky with clouds and sun,
-// textured ground to a hazy horizon, the own aircraft in view, a camera that flies and shakes,
-// sensor noise. A function of a seed and a few parameters; the yardstick of the motion tests and
-// the background of `airtruth demo`.
+// Virtual flights: onboard video of a world that is known exactly. The world has a sky with clouds
+// and sun, textured ground up to a hazy horizon and the own aircraft in view; the camera flies and
+// shakes, and its sensor adds noise. A flight is a function of its options, the seed included. It
+// is the reference of the motion tests and the background of `airtruth demo`.
 namespace airtruth::synthetic {
 
+// Options of a virtual flight.
 struct FlightOptions {
   std::uint64_t seed = 1;
   int width = 1280;
   int height = 960;
   double frame_rate_hz = 30;
   int frame_count = 322;
-  // Lens: pinhole by its vertical view, or a given one.
+  // The lens: a pinhole with this vertical field of view, or the given one.
   double vertical_fov_deg = 75;
   std::optional<lens::Lens> lens;
   double speed_mps = 25;
@@ -33,37 +34,50 @@ struct FlightOptions {
   double heading_deg = 0;
   double sun_azimuth_deg = 120;
   double sun_elevation_deg = 40;
-  double cloud_cover = 0.5;             // 0..1
-  double hills_deg = 1.1;               // highest of the hills on the horizon; 0 none
-  double extinction_per_km = 1.0 / 17;  // of the air before ground and hills, all colours alike
-  double shake_deg = 0.35;              // rms of the vibration in pitch and yaw
-  double roll_deg = 3;                  // amplitude of the slow rolling of the flight
-  bool own_aircraft = true;             // nose and wing tips in view
-  double noise = 1.0;                   // sensor noise: 1 = a cheap camera; 0 none
-  // For the calibration's tests:
-  bool ideal_sensor = false;  // no lens blur, no sharpening, no noise
-  bool linear_light = false;  // no shoulder, no fall-off to the corners
-  double clutter =
-      0;  // share of the image's texture that moves on its own (for the motion tests), 0..1
-  bool translate = true;  // false: the camera only rotates, so that a homography is exact
+  // Share of the sky, 0..1.
+  double cloud_cover = 0.5;
+  // Height of the highest hills on the horizon; 0: none.
+  double hills_deg = 1.1;
+  // Extinction of the air before ground and hills, equal for all colours.
+  double extinction_per_km = 1.0 / 17;
+  // Root mean square of the vibration in pitch and yaw.
+  double shake_deg = 0.35;
+  // Amplitude of the slow rolling of the flight.
+  double roll_deg = 3;
+  // True: nose and wing tips are in view.
+  bool own_aircraft = true;
+  // Strength of the sensor noise: 1 is a cheap camera, 0 none.
+  double noise = 1.0;
+  // Options for the tests of the calibration.
+  // True: no lens blur, no sharpening and no noise.
+  bool ideal_sensor = false;
+  // True: no shoulder of the tone curve and no fall-off to the corners.
+  bool linear_light = false;
+  // Share of the image's texture that moves independently, 0..1; for the motion tests.
+  double clutter = 0;
+  // False: the camera only rotates, so that a homography describes its motion exactly.
+  bool translate = true;
 };
 
-// Frame by frame, any order, any thread: frame k depends on the options and k alone.
+// Renders the frames of a flight in any order and on any thread: frame k depends only on the
+// options and on k.
 class Flight {
  public:
   explicit Flight(const FlightOptions& options);
   ~Flight();
   Flight(Flight&&) noexcept;
 
-  image::Picture frame(int index) const;  // 4:2:0, BT.601 limited as a cheap camera tags it
-  trajectory::State camera(
-      int index) const;  // true pose of the camera: position and world_from_body (shaken)
-  trajectory::State nominal_camera(int index) const;  // the same without the shake
-  const image::Mask& own_aircraft()
-      const;  // 0 where the own aircraft, or nothing (beyond the lens), is
+  // 4:2:0, tagged as BT.601 limited, as by a cheap camera.
+  image::Picture frame(int index) const;
+  // True pose of the camera with the shake: position and world_from_body.
+  trajectory::State camera(int index) const;
+  // The pose without the shake.
+  trajectory::State nominal_camera(int index) const;
+  // 0 where the own aircraft, or the area beyond the lens's field, is.
+  const image::Mask& own_aircraft() const;
   const lens::Lens& lens() const;
   const FlightOptions& options() const;
-  // The exact far-field homography frame_from_first: K R_k R_0^-1 K^-1. Pinhole only.
+  // The exact homography frame_from_first of the far field: K R_k R_0^-1 K^-1. Only for a pinhole.
   Homography frame_from_first(int index) const;
 
  private:
@@ -71,8 +85,8 @@ class Flight {
   std::unique_ptr<Impl> impl_;
 };
 
-// flight.csv: frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg of the true camera, and
-// of the nominal one.
+// The text of flight.csv: frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg of the true
+// camera, and those of the nominal one.
 std::string csv_from_flight(const Flight& flight);
 
 }  // namespace airtruth::synthetic

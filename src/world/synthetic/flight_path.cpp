@@ -23,7 +23,7 @@ FlightPath::FlightPath(const FlightOptions& options)
   pitch_phase_rad_ = random.uniform(0, 2 * kPi);
 }
 
-// Tones spread over 5 to 15 Hz, one in each band, of equal power.
+// Tones of equal power from 5 to 15 Hz, one in each band.
 FlightPath::Tones FlightPath::vibration(Random random, double rms_deg) {
   Tones tones;
   for (int i = 0; i < kTones; ++i) {
@@ -46,7 +46,7 @@ trajectory::State FlightPath::nominal(int index) const {
   const double time_s = index / options_.frame_rate_hz;
   const double rate = 2 * kPi / kRollPeriod_s;
   const double roll_deg = options_.roll_deg * std::sin(rate * time_s + roll_phase_rad_);
-  // Coordinated: yaw rate = g tan(roll) / speed, integrated for the small sinusoidal roll.
+  // A coordinated turn: yaw rate = g tan(roll) / speed, integrated for the small sinusoidal roll.
   const double turn = options_.speed_mps > 1 ? kGravity_mps2 / options_.speed_mps : 0.0;
   const double yaw_deg = options_.heading_deg + std::min(turn, 0.5) * options_.roll_deg / rate *
                                                     (std::cos(roll_phase_rad_) -

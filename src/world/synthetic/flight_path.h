@@ -9,8 +9,8 @@
 
 namespace airtruth::synthetic {
 
-// Where the camera is and how it shakes. Closed forms of time, so that any frame can be asked for
-// first.
+// The pose of the camera and its shake. Both are closed forms of time, so that frames can be
+// computed in any order.
 class FlightPath {
  public:
   explicit FlightPath(const FlightOptions& options);

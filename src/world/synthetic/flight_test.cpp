@@ -23,7 +23,7 @@ FlightOptions small() {
   return options;
 }
 
-// Level ground under an empty sky, without noise: the horizon is the only edge far off.
+// Level ground under an empty sky, without noise: the horizon is the only distant edge.
 FlightOptions bare() {
   FlightOptions options = small();
   options.cloud_cover = 0;
@@ -33,7 +33,7 @@ FlightOptions bare() {
   return options;
 }
 
-// Luma at a point, pixel coordinates with the corner as origin.
+// Luma at a point in pixel coordinates whose origin is the image's corner.
 double luma_at(const image::Picture& picture, const Pixel& p) {
   const double x = p.x() - 0.5;
   const double y = p.y() - 0.5;
@@ -48,7 +48,7 @@ double luma_at(const image::Picture& picture, const Pixel& p) {
          (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
 
-// A direction with up = 0 has its image where K R d says; roll and pitch together.
+// The image row of a direction with up = 0 according to K R d, with roll and pitch together.
 double horizon_row(const Flight& flight, int frame, double column) {
   const auto& pinhole = std::get<lens::Pinhole>(flight.lens().model());
   const Quaternion cam_from_world =
@@ -59,7 +59,7 @@ double horizon_row(const Flight& flight, int frame, double column) {
   return pinhole.principal_point_px.y() + y * pinhole.focal_px.y();
 }
 
-// Where the smooth sky ends: the first kink of luma down the column.
+// The row where the smooth sky ends: the first kink of luma down the column.
 double end_of_sky(const image::Picture& picture, int column) {
   const auto luma = [&](int y) { return int{picture.luma().row(y)[column]}; };
   int y = 40;
@@ -84,7 +84,7 @@ TEST(Flight, HorizonLiesWherePitchAndRollPutIt) {
   }
 }
 
-// Mean difference between frame k and frame 0 carried over by the homography.
+// Mean difference between frame k and frame 0 warped by the homography.
 double mean_difference(const image::Picture& first,
                        const image::Picture& later,
                        const Homography& later_from_first) {
@@ -115,7 +115,7 @@ TEST(Flight, TheHomographyCarriesTheFirstFrameToAnyOther) {
     const double without = mean_difference(first, later, Homography::Identity());
     EXPECT_LT(with, 2.5) << frame;
     EXPECT_LT(with, 0.5 * without) << frame;
-    // Half a pixel aside is worse: the check sees such an error.
+    // A warp that is half a pixel off is worse, so the check detects such an error.
     Homography aside = flight.frame_from_first(frame);
     aside.row(0) += 0.5 * aside.row(2);
     EXPECT_LT(with, mean_difference(first, later, aside)) << frame;
@@ -156,8 +156,8 @@ TEST(Flight, OwnAircraftStandsStillWhereTheMaskSaysAndNowhereElse) {
   int hidden = 0;
   for (int y = 5; y < options.height - 5; ++y)
     for (int x = 5; x < options.width - 5; ++x) {
-      // Edges are soft and sharpening reaches two pixels: look where the neighbourhood is all of
-      // one kind.
+      // Edges are soft and sharpening reaches two pixels, so only pixels whose whole neighbourhood
+      // is of one kind count.
       bool all_hidden = true;
       bool all_free = true;
       for (int j = -5; j <= 5; ++j)
@@ -254,7 +254,7 @@ TEST(Flight, AFisheyeSeesItToo) {
   options.lens = lens::fisheye_from_vertical_fov(150, {320, 240});
   const Flight flight(options);
   const image::Picture picture = flight.frame(0);
-  // Bluer above than below.
+  // The sky is bluer than the ground.
   int sky = 0;
   int ground = 0;
   for (int x = 15; x < 145; ++x) {

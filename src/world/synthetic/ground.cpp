@@ -8,18 +8,21 @@
 namespace airtruth::synthetic {
 namespace {
 
-constexpr int kMarch = 7;             // steps through the height field
-constexpr float kReliefEnd_m = 5000;  // beyond, the ground is flat
-constexpr float kFarthest_m = 26000;  // where the hills begin
+// Number of steps through the height field.
+constexpr int kMarch = 7;
+// Beyond this distance the ground is flat.
+constexpr float kReliefEnd_m = 5000;
+// Distance at which the hills begin.
+constexpr float kFarthest_m = 26000;
 constexpr float kPeakCell_m = 10;
 constexpr float kDetail_m = 0.4F;
 
-// Two-way interpolation of four bytes at once, each in 16 bits of a word.
+// Bilinear interpolation of four bytes at once, each in 16 bits of a word.
 inline std::uint64_t spread(std::uint32_t t) {
   return (t & 0x00FF00FFU) | (static_cast<std::uint64_t>((t >> 8) & 0x00FF00FFU) << 32);
 }
 
-// red, blue, green, height as 0..255 * 256
+// Red, blue, green and height, each as 0..255 times 256.
 [[gnu::always_inline]] inline std::uint64_t bilinear(const std::uint32_t* texels,
                                                      int size,
                                                      float x,
@@ -37,7 +40,7 @@ inline std::uint64_t spread(std::uint32_t t) {
          spread(lower[left]) * ((16 - fx) * fy) + spread(lower[right]) * (fx * fy);
 }
 
-// Within 0.09: enough to choose a mip level.
+// Base-2 logarithm with an error below 0.09, which suffices to choose a mip level.
 float fast_log2(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return static_cast<float>(bits) * 0x1p-23F - 126.94F;
@@ -81,7 +84,7 @@ float Ground::smooth_height_m(float x, float y, int level) const {
          (kHighest_m / 65280);
 }
 
-// Trilinear; texel positions of level 0, measured from texel centres.
+// Trilinear interpolation at texel positions of level 0, measured from texel centres.
 Light Ground::colour(float x, float y, float level) const {
   const float top = static_cast<float>(levels_.size() - 2);
   level = std::clamp(level, 0.0F, top);

@@ -12,14 +12,16 @@
 
 namespace airtruth::synthetic {
 
-// The ground as a tile of colour and height with its mip levels. Trees and houses stand up from it:
-// a ray is followed through the height field (relief mapping; Policarpo, Oliveira and Comba 2005).
+// The ground as a repeating tile of colour and height with mip levels. Trees and houses rise from
+// it: rays are traced through the height field (relief mapping; Policarpo, Oliveira and Comba
+// 2005).
 class Ground {
  public:
-  static constexpr float kHighest_m = 16;  // of trees and houses
+  // Largest height of trees and houses.
+  static constexpr float kHighest_m = 16;
 
-  // `texel_m` is rounded so that the tile has a power of two of texels. `pixel_rad` is the angle of
-  // one pixel.
+  // `texel_m` is rounded so that the tile's side is a power of two texels. `pixel_rad` is the angle
+  // of one pixel.
   Ground(double texel_m,
          double pixel_rad,
          double extinction_per_km,
@@ -27,8 +29,8 @@ class Ground {
          const Clouds& clouds,
          std::uint32_t seed);
 
-  // The light that comes up from the ground to an eye there; `down` > 0, the direction is a unit
-  // vector.
+  // The light from the ground towards an eye at that place. `north`, `east` and `down` form a unit
+  // vector with `down` > 0.
   Light seen(float eye_north_m,
              float eye_east_m,
              float eye_height_m,
@@ -36,7 +38,7 @@ class Ground {
              float east,
              float down) const;
 
-  // What the ground fades to at the horizon, by direction.
+  // The colour to which the ground fades at the horizon, by direction.
   Light haze(float north, float east) const;
 
  private:
@@ -45,10 +47,12 @@ class Ground {
   static constexpr int kHazeSectors = 64;
   struct Level {
     int size = 0;
-    std::vector<std::uint32_t> texels;  // square root of red, green, blue; height
+    // Square roots of red, green and blue, and the height.
+    std::vector<std::uint32_t> texels;
   };
   struct Texel {
-    Light colour = Light::Zero();  // square roots
+    // Square roots of the light.
+    Light colour = Light::Zero();
     float height_m = 0;
   };
   void paint(const Land& land);
@@ -57,8 +61,8 @@ class Ground {
   void make_levels();
   void find_peaks();
   float peak_m(float north_m, float east_m, float span_m) const;
-  // How far along the ray something standing up is met, and the height at which; empty where
-  // nothing is.
+  // The point where a ray meets a tree or a house, with the factor of its shade; empty where the
+  // ray meets none.
   struct Meeting {
     float distance_m = 0;
     float shade = 1;
@@ -80,7 +84,8 @@ class Ground {
              const Light& roof);
   void darken(float north_m, float east_m, float radius_m, float factor);
   std::uint32_t& texel(int x, int y);
-  float height_m(float x, float y, int level) const;  // of the texel
+  // Of the texel.
+  float height_m(float x, float y, int level) const;
   float smooth_height_m(float x, float y, int level) const;
   Light colour(float x, float y, float level) const;
   float sunlit(float north_m, float east_m) const;
@@ -93,8 +98,8 @@ class Ground {
   Light sunlight_;
   Light skylight_;
   std::vector<Level> levels_;
-  // Greatest heights in and beside square cells, each level's cells twice as wide: open fields need
-  // no marching.
+  // Greatest heights in and beside square cells; the cells of each level are twice as wide as those
+  // of the level before. They let rays over open fields skip the search.
   std::vector<std::vector<std::uint8_t>> peaks_;
   std::vector<float> shadow_;
   std::vector<float> detail_;

@@ -8,11 +8,12 @@
 
 #include "world/synthetic/ground.h"
 
-// How the tile is painted: the land first, then shadows, trees and houses over it.
+// Paints the tile: first the land, then shadows, trees and houses over it.
 namespace airtruth::synthetic {
 namespace {
 
-constexpr float kPlanting_m = 6.4F;  // pitch of the grid on which trees may stand
+// Pitch of the grid of possible tree positions.
+constexpr float kPlanting_m = 6.4F;
 
 std::uint32_t pack(const Light& albedo, float height_m) {
   const auto byte = [](float x) { return static_cast<std::uint32_t>(clamp01(x) * 255 + 0.5F); };
@@ -83,7 +84,7 @@ void Ground::paint(const Land& land) {
   });
 }
 
-// Woods, riverside trees, trees along tracks, and single holm oaks in the fields.
+// Plants woods, riverside trees, trees along tracks, and single holm oaks in the fields.
 void Ground::plant(const Land& land, std::uint32_t seed) {
   struct Tree {
     float north_m, east_m, radius_m, height_m;
@@ -185,7 +186,7 @@ void Ground::house(float north_m,
     }
 }
 
-// Villages of tiled roofs around a few streets, and lone barns.
+// Builds villages of tiled roofs around a few streets, and single barns.
 void Ground::build(std::uint32_t seed) {
   constexpr int kVillages = 6;
   constexpr int kHouses = 90;
@@ -205,7 +206,7 @@ void Ground::build(std::uint32_t seed) {
       const std::uint32_t id = hash(i, k, seed + 1);
       const float far_m = 30 + 150 * std::sqrt(unit(id)) * (0.4F + 0.6F * unit(mix(id + 1)));
       const float angle = 6.2832F * unit(mix(id + 2));
-      // Along a grid of lanes 26 m apart.
+      // The houses stand along a grid of lanes 26 m apart.
       const float u = 26 * std::round(far_m * std::cos(angle) * 1.5F / 26) + 5 * unit(mix(id + 3));
       const float v = 17 * std::round(far_m * std::sin(angle) / 17);
       const float x = north + std::cos(street) * u - std::sin(street) * v;
@@ -267,7 +268,8 @@ void Ground::find_peaks() {
 
 namespace {
 
-// Colours are kept as roots of light, and light is what is averaged; the height as it is.
+// Colours are stored as square roots of light and averaged as light. The height is averaged
+// directly.
 std::uint32_t mean_of(const std::array<std::uint32_t, 4>& texels) {
   std::uint32_t mean = 0;
   for (int shift = 0; shift < 24; shift += 8) {

@@ -10,11 +10,13 @@
 namespace airtruth::synthetic {
 namespace {
 
-constexpr int kSlow = 512;   // cells of the slow map along each side
-constexpr int kSoil = 1024;  // texels of the mottling
+// Cells of the slowly varying map along each side.
+constexpr int kSlow = 512;
+// Texels of the mottling along each side.
+constexpr int kSoil = 1024;
 constexpr float kSoil_m = 1.25F;
 
-// Late summer on a dry plateau.
+// Colours of a dry plateau in late summer.
 const std::array<Light, 9> kCrops = {light(0.46F, 0.36F, 0.20F),
                                      light(0.52F, 0.43F, 0.26F),
                                      light(0.40F, 0.31F, 0.18F),
@@ -77,7 +79,7 @@ Light Land::slow(float north_m, float east_m) const {
          (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
 
-// Blocks of fields: the cells of a jittered grid (Worley 1996), their borders bent a little.
+// Blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent borders.
 Land::Block Land::block(float north_m, float east_m, const Light& slow) const {
   constexpr float kBlock_m = kLand_m / kBlocks;
   const float x = north_m / kBlock_m + slow[0];
@@ -114,7 +116,7 @@ Land::Block Land::block(float north_m, float east_m, const Light& slow) const {
   return best;
 }
 
-// Strips along the block's own direction, cut into parcels, each with its crop and the lines of its
+// Strips along the block's own direction, divided into parcels, each with its crop and its lines of
 // sowing.
 Light Land::crop(const Block& block, float north_m, float east_m) const {
   const Centre& centre = *block.centre;

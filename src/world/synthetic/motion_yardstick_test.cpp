@@ -13,14 +13,14 @@
 #include "foundation/base/median.h"
 #include "world/synthetic/flight.h"
 
-// Measured motion against motion that is known: a pinhole that only turns, so that a homography is
-// exact, the own aircraft in view, a fifth of the picture wandering by itself.
+// Compares measured motion with known motion: a pinhole that only rotates, so that a homography is
+// exact, with the own aircraft in view and a fifth of the picture moving independently.
 namespace airtruth::synthetic {
 namespace {
 
 constexpr int kFrames = 1000;
 
-// Mean distance over the image's corners between where two homographies take them.
+// Mean distance, over the image's corners, between the points to which two homographies map them.
 double corner_error_px(const Homography& measured,
                        const Homography& truth,
                        double width,
@@ -31,7 +31,7 @@ double corner_error_px(const Homography& measured,
   return sum / 4;
 }
 
-// The plane motion of a pinhole that turns.
+// The homography of a pinhole that rotates.
 Homography of_pinhole(const lens::Lens& lens, const Quaternion& cam_from_reference) {
   const auto [width, height] = lens.size();
   Homography camera = Homography::Identity();
@@ -40,7 +40,7 @@ Homography of_pinhole(const lens::Lens& lens, const Quaternion& cam_from_referen
   return camera * cam_from_reference.toRotationMatrix() * camera.inverse();
 }
 
-// Both models through a pinhole that only turns.
+// Both motion models with a pinhole that only rotates.
 TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
   FlightOptions options;
   options.width = 640;
@@ -93,8 +93,8 @@ TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
   }
 }
 
-// Where a far point at the image's edge is predicted, from where it was in the first frame, and
-// where it is.
+// Distances between the predicted and the true pixels of far points that were at the image's edge
+// in the first frame.
 std::vector<double> edge_errors_px(const lens::Lens& lens,
                                    const motion::FrameMotion& measured,
                                    const Quaternion& cam_from_first_cam) {
@@ -124,9 +124,9 @@ struct Yardstick {
   int measured = 0;
 };
 
-// Part of the picture wanders by itself, the own aircraft is in view, and the camera flies on over
-// the ground. A `clutter` of 0.12 makes more than 40 % of the corners outliers: its discs have more
-// texture than sky and clouds have.
+// Part of the picture moves independently, the own aircraft is in view, and the camera flies on
+// over the ground. A `clutter` of 0.12 makes more than 40 % of the corners outliers, because its
+// discs have more texture than sky and clouds.
 Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
   FlightOptions options;
   options.lens = lens;
@@ -150,7 +150,8 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
     errors_deg.push_back(degrees(truth.angularDistance(*turned.rotation)));
     result.measured += turned.state == motion::State::kMeasured ? 1 : 0;
     for (const double e : edge_errors_px(lens, turned, truth)) rotation_px.push_back(e);
-    if (k >= kAgainstHomography) continue;  // which only gets worse
+    // Beyond this frame the homography's error only grows.
+    if (k >= kAgainstHomography) continue;
     for (const double e : edge_errors_px(lens, homography.next(picture, time_s), truth))
       homography_px.push_back(e);
   }
@@ -172,7 +173,8 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
 
 TEST(MotionYardstick, RotationThroughAFisheyeHoldsWithinAFiftiethOfADegreeOver1000Frames) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
-  const lens::ImageSize size{640, 480};  // the calibration is scaled
+  // The calibration is scaled to this size.
+  const lens::ImageSize size{640, 480};
   const lens::Lens lens =
       shared == nullptr
           ? lens::Lens(lens::Fisheye{{422, 422}, {478, 355}, {0.06, 0.01, 0, 0}}, size)
@@ -190,9 +192,9 @@ TEST(MotionYardstick, RotationThroughAPinholeIsNoWorseThanAHomography) {
   EXPECT_LE(result.rotation_edge_px, result.homography_edge_px);
 }
 
-// Hard banks low over ground: what is near streams by, and only clouds and a strip along the
-// horizon turn with the camera alone. From frame to frame, over the whole picture; and against the
-// first frame.
+// Steep turns low over ground: near ground moves fast through the picture, and only clouds and a
+// strip along the horizon follow the camera's rotation alone. The test measures from frame to frame
+// over the whole picture, and against the first frame.
 TEST(MotionYardstick, InAHardBankLowOverGroundTheRotationIsThatOfTheFarField) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, {640, 480});
   FlightOptions options;
@@ -236,13 +238,13 @@ TEST(MotionYardstick, InAHardBankLowOverGroundTheRotationIsThatOfTheFarField) {
       steps_px[steps_px.size() * 95 / 100],
       median(errors_deg));
   EXPECT_GT(steepest_deg, 40);
-  // 0.012 and 0.046; 0.028 and 0.108 where near ground counts as much as what is far.
+  // Measured: 0.012 and 0.046; with equal weights for near ground and far points, 0.028 and 0.108.
   EXPECT_LT(median(steps_px), 0.02);
   EXPECT_LT(steps_px[steps_px.size() * 95 / 100], 0.08);
 }
 
-// Nothing is seen for a second, while the aircraft rolls on: what is level then is told by the
-// horizon alone.
+// Nothing is visible for a second while the aircraft keeps rolling. Afterwards only the horizon
+// shows the level.
 TEST(MotionYardstick, TheHorizonPutsTheRotationRightAfterABlank) {
   const lens::Lens lens = lens::fisheye_from_vertical_fov(100, {640, 480});
   FlightOptions options;

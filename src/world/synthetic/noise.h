@@ -6,11 +6,11 @@
 
 #include <Eigen/Core>
 
-// Repeatable procedural noise: value noise on integer lattices, periodic where a texture must tile.
+// Repeatable procedural noise: value noise on integer lattices, periodic so that textures can tile.
 namespace airtruth::synthetic {
 
-// Linear red, green, blue (sRGB primaries, 1 = a sunlit white wall) and a fourth number for the
-// user.
+// Linear red, green and blue (sRGB primaries, 1 is a sunlit white wall), and a fourth number whose
+// meaning each caller defines.
 using Light = Eigen::Array4f;
 
 inline Light light(float red, float green, float blue) { return {red, green, blue, 0.0F}; }
@@ -28,7 +28,7 @@ inline std::uint32_t hash(int x, int y, std::uint32_t seed) {
              mix(static_cast<std::uint32_t>(y) + seed * 0x85ebca6bU));
 }
 
-// In [0, 1).
+// Maps a hash to [0, 1).
 inline float unit(std::uint32_t h) { return static_cast<float>(h >> 8) * 0x1p-24F; }
 
 inline float clamp01(float x) { return x < 0 ? 0.0F : (x > 1 ? 1.0F : x); }
@@ -45,7 +45,7 @@ inline int floor_int(float x) {
   return i - (x < static_cast<float>(i) ? 1 : 0);
 }
 
-// Value noise in [0, 1); repeats after `period` lattice cells (a power of two).
+// Value noise in [0, 1). It repeats after `period` lattice cells; `period` is a power of two.
 inline float value_noise(float x, float y, int period, std::uint32_t seed) {
   const int x0 = floor_int(x);
   const int y0 = floor_int(y);
@@ -68,7 +68,8 @@ inline float value_noise(float x, float y, float z, int period, std::uint32_t se
   return lerp(layer(0), layer(1), fz * fz * (3 - 2 * fz));
 }
 
-// Fractal sum, each octave half as strong and twice as fine; about [0, 1], mean 0.5.
+// Sum of octaves, each half as strong and twice as fine as the one before; about [0, 1], with a
+// mean of 0.5.
 inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
   float sum = 0;
   float weight = 0.5F;

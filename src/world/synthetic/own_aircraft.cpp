@@ -7,8 +7,8 @@
 #include <tbb/parallel_for.h>
 
 // Shapes are distance fields in the camera's body frame (x forward, y right, z down, metres), drawn
-// by sphere tracing (Hart 1996). Coverage at edges comes from the smallest distance relative to the
-// pixel's cone.
+// by sphere tracing (Hart 1996). The coverage at an edge follows from the smallest distance
+// relative to the width of the pixel's cone.
 namespace airtruth::synthetic {
 namespace {
 
@@ -27,7 +27,7 @@ constexpr float kFarthestPart_m = 6;
 
 float length(float x, float y, float z) { return std::sqrt(x * x + y * y + z * z); }
 
-// Bound of the distance to an ellipsoid.
+// A lower bound of the distance to an ellipsoid.
 float ellipsoid(const Point& p, const Point& radii) {
   const Point a = p / radii;
   const Point b = a / radii;
@@ -44,9 +44,11 @@ float cone(const Point& p, const Point& from, const Point& to, float radius_from
 }
 
 struct WingPlace {
-  float span;  // 0 at the root, 1 at the tip
+  // 0 at the root, 1 at the tip.
+  float span;
   float chord_m;
-  float behind;  // 0 at the leading edge, 1 at the trailing edge
+  // 0 at the leading edge, 1 at the trailing edge.
+  float behind;
 };
 
 WingPlace wing_place(const Point& p) {
@@ -62,7 +64,7 @@ float wing(const Point& p) {
   const float y = std::abs(p[1]);
   const float lift = 0.045F * w.span + 0.10F * w.span * w.span;
   const float dx = p[0] - centre_x;
-  // Camber: the trailing edge hangs.
+  // Camber lowers the trailing edge.
   const float dz = p[2] - (0.66F - lift) - 0.05F * (dx < 0 ? -dx : 0.4F * dx);
   const float beyond = std::max(y - kHalfSpan_m, 0.0F);
   const Point local(dx, beyond, dz);
@@ -94,7 +96,8 @@ Point normal(const Point& p) {
   return size > 0 ? Point(n / size) : Point(0, 0, -1);
 }
 
-// Paint: white wings with orange tips and dark hinge lines, grey body, black nose and wheels.
+// The paint: white wings with orange tips and dark hinge lines, a grey body, a black nose and black
+// wheels.
 Light paint(const Point& p, Part part) {
   const float grime = 0.90F + 0.14F * fractal(p[0] * 9 + 40, p[1] * 9 + 40, 4, 256, 99);
   if (part == Part::kWheel) return light(0.03F, 0.03F, 0.032F);
@@ -171,8 +174,8 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
   return colour;
 }
 
-// Largest relative distance that still lets a pixel of the block be touched: skips empty blocks by
-// one ray.
+// True where a ray of the block may touch the aircraft: one ray tests whether the distance relative
+// to the block's cone becomes small enough. Blocks without a touch are skipped.
 bool may_touch(const Point& ray, float block_rad) {
   float t = 0.45F;
   for (int i = 0; i < 60 && t < kFarthestPart_m; ++i) {

@@ -13,13 +13,16 @@ namespace airtruth::synthetic {
 // The aircraft that carries the camera, seen from its tail: wings, body and nose. It does not move
 // in the image.
 struct OwnAircraft {
-  std::vector<Light> layer;  // premultiplied colour and coverage, by pixel; empty without aircraft
-  std::vector<int> first;    // by row, the part that it covers
+  // Premultiplied colour and coverage by pixel; empty without an aircraft.
+  std::vector<Light> layer;
+  // First and last column, by row, that the aircraft covers.
+  std::vector<int> first;
   std::vector<int> last;
-  image::Mask mask;  // 0 where it, or what the lens cannot see, covers any part of the pixel
+  // 0 where the aircraft, or the area beyond the lens's field, covers any part of the pixel.
+  image::Mask mask;
 };
 
-// `sun_in_body` is the sun's direction as the aircraft flies level.
+// `sun_in_body` is the direction towards the sun while the aircraft flies level.
 OwnAircraft draw_own_aircraft(const lens::Lens& lens,
                               const Vector3& sun_in_body,
                               const Sky& sky,

@@ -30,7 +30,7 @@ class HillRanges {
   }
 
  private:
-  // Of the airlight over a range of hills that stands so far away.
+  // The share of airlight in the light of a range of hills at that distance.
   static float veil(double range_km, double extinction_per_km) {
     return static_cast<float>(1 - std::exp(-range_km * extinction_per_km));
   }

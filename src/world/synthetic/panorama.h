@@ -10,18 +10,18 @@
 
 namespace airtruth::synthetic {
 
-// Everything at infinity: sky, sun, clouds, hills. Clouds are kilometres away, so that the few
+// Everything at infinity: sky, sun, clouds and hills. The clouds are kilometres away, and the few
 // hundred metres of a flight would hardly shift them; they are drawn once, as seen from the start.
 //
-// Stereographic from the nadir: texel = centre + radius (north, east) / (1 + up). One chart without
-// seams for all directions down to a little below the horizon, at least half as fine overhead as at
-// the horizon.
+// The map is stereographic from the nadir: texel = centre + radius (north, east) / (1 + up). This
+// one chart has no seams and covers all directions down to slightly below the horizon. Its
+// resolution overhead is at least half of that at the horizon.
 class Panorama {
  public:
-  // `texel_rad` at the horizon.
+  // `texel_rad`: the angle of a texel at the horizon.
   explicit Panorama(double texel_rad);
 
-  // Says that the direction will be looked at. Only such parts are drawn.
+  // Marks a direction that frames will look at. draw() fills only the marked parts.
   void want(float north, float east, float up);
   struct Hills {
     double highest_deg = 0;
@@ -43,7 +43,8 @@ class Panorama {
     const Light lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
     return upper + (lower - upper) * fy;
   }
-  static constexpr float kLowest = -0.02F;  // `up` of the lowest direction
+  // The component `up` of the lowest direction.
+  static constexpr float kLowest = -0.02F;
 
  private:
   static constexpr int kBlock = 16;

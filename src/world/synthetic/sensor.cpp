@@ -15,8 +15,8 @@ constexpr float kBrightest = 2.5F;
 constexpr int kGrain = 256;
 constexpr float kSharpening = 0.22F;
 
-// Code values 0..255 by the square root of light, so that the dark end is as fine as the bright
-// one.
+// Code values 0..255 by the square root of light, so that dark tones are resolved as finely as
+// bright ones.
 std::vector<float> tone_curve(bool linear) {
   std::vector<float> curve(kCurve + 1);
   for (int i = 0; i <= kCurve; ++i) {
@@ -59,7 +59,7 @@ Light Sensor::coded(const Light& light) const {
   return {look(0), look(1), look(2), 0.0F};
 }
 
-// Every 16 rows take another part of the tile, so that no pattern repeats.
+// Every 16 rows use another part of the noise tile, so that no pattern repeats.
 const Light& Sensor::grain(int frame, int x, int y) const {
   const std::uint32_t offset = hash(frame, y >> 4, seed_);
   const auto column = (static_cast<std::uint32_t>(x) + offset) & (kGrain - 1);
@@ -128,7 +128,7 @@ void Sensor::sharpen(const Exposure& exposure, int y, image::Picture& picture) c
     const int rr = std::min(x + 2, width_ - 1);
     const int near = here[l] + here[r] + above[x] + below[x];
     const int far = here[ll] + here[rr] + far_above[x] + far_below[x];
-    // The lens's blur, then the camera's unsharp mask.
+    // First the lens's blur, then the camera's unsharp mask.
     const float soft = 0.72F * here[x] + 0.07F * static_cast<float>(near);
     const float sharp = soft + kSharpening * (soft - 0.25F * static_cast<float>(far));
     out[x] = code(sharp / 64);

@@ -10,20 +10,20 @@
 
 namespace airtruth::synthetic {
 
-// From light to the samples of a cheap camera: a fixed exposure with a soft shoulder, noise,
-// sharpening, 4:2:0.
+// Converts light to the samples of a cheap camera: a fixed exposure with a soft shoulder, noise,
+// sharpening and 4:2:0.
 class Sensor {
  public:
   Sensor(const FlightOptions& options, std::uint32_t seed);
 
-  // Luma before sharpening, in 1/64 code values.
+  // Luma before sharpening, in 1/64 of a code value.
   struct Exposure {
     std::vector<std::uint16_t> luma;
   };
   Exposure start() const;
 
-  // Rows y and y + 1 (the same row twice at the bottom of an odd picture); y is even. Any order,
-  // any thread.
+  // Exposes rows y and y + 1, with an even y; at the bottom of a picture of odd height both are the
+  // same row. Rows can come in any order and on any thread.
   void expose(int frame,
               int y,
               const Light* upper,
@@ -31,7 +31,7 @@ class Sensor {
               Exposure& exposure,
               image::Picture& picture) const;
 
-  // When all rows are in.
+  // Sharpens a row. All rows must be exposed before.
   void sharpen(const Exposure& exposure, int y, image::Picture& picture) const;
 
  private:

@@ -6,12 +6,14 @@
 
 namespace airtruth::synthetic {
 
-// The cloudless sky: a blue that pales towards the horizon (more air), and the sun with its glow.
+// The cloudless sky: a blue that becomes paler towards the horizon, where the path through the air
+// is longer, and the sun with its glow.
 class Sky {
  public:
   explicit Sky(const Vector3& sun_in_world);
   Light at(const Vector3& direction_in_world) const;
-  // What far things fade to: the sky just above the horizon in that direction.
+  // The colour to which distant objects fade: that of the sky just above the horizon in that
+  // direction.
   Light haze(const Vector3& direction_in_world) const;
   const Vector3& sun_in_world() const { return sun_; }
   Light sunlight() const { return sunlight_; }
@@ -21,7 +23,7 @@ class Sky {
   Light sunlight_;
 };
 
-// Toward the sun, north-east-down.
+// The unit vector towards the sun, north-east-down.
 Vector3 sun_in_world(double azimuth_deg, double elevation_deg);
 
 }  // namespace airtruth::synthetic

@@ -6,7 +6,7 @@
 namespace airtruth::synthetic {
 namespace {
 
-// Beyond the lens's field: the last ray on the way there. Such pixels are black anyway.
+// Beyond the lens's field: the last valid ray on the way there. Such pixels are black in the end.
 Vector3 ray_or_nearest(const lens::Lens& lens, const Pixel& pixel) {
   if (const auto ray = lens.ray_from_pixel(pixel)) return *ray;
   const Pixel middle(0.5 * lens.size().width, 0.5 * lens.size().height);

@@ -10,17 +10,18 @@
 
 namespace airtruth::synthetic {
 
-// The lens as a table: rays at nodes every few pixels, linear between them (within 0.02 px for a
-// lens of 75 degrees). The fourth number is the lens's fall-off of light.
+// The lens as a table: rays at nodes every few pixels, with linear interpolation between them
+// (within 0.02 px for a lens of 75 degrees). The fourth number of a node is the lens's fall-off of
+// light.
 class View {
  public:
-  // falls_off: less light reaches the corners than the middle, as through a cheap lens.
+  // falls_off: true where less light reaches the corners than the middle, as through a cheap lens.
   View(const lens::Lens& lens, bool falls_off);
 
-  // Rays of every `stride`-th node, turned into the world.
+  // Rays of every `stride`-th node, rotated into the world.
   std::vector<Light> directions_in_world(const Quaternion& world_from_body, int stride) const;
 
-  // visit(x, direction) from left to right; `nodes` are those of stride 1.
+  // Calls visit(x, direction) from left to right. `nodes` are those of stride 1.
   template <typename Visit>
   void for_each_in_row(int y, const std::vector<Light>& nodes, const Visit& visit) const {
     const int row = y / kPitch;
