@@ -12,19 +12,24 @@
 #include "world/scene/scene.h"
 #include "world/synthetic/flight.h"
 
-// A catalogue: backgrounds, aircraft and trajectories by name, and the sequences to make of them,
-// listed one by one, as a product, or drawn at random from ranges. docs/formats/catalogue.md
+// A catalogue names backgrounds, aircraft and trajectories, and says which sequences to make of
+// them: listed one by one, as a product, or drawn at random from ranges. docs/formats/catalogue.md
 // describes the file.
+//
+// Example: two [[background]] tables, one [[trajectory]], two [[aircraft]] and one [[product]] over
+// all of them describe 2 x 1 x 2 = 4 sequences. With a [[random]] rule of count = 10 beside it, the
+// catalogue describes 14 (expand.h).
 namespace airtruth::dataset {
 
 namespace fs = std::filesystem;
 
 struct Background {
   std::string name;
-  // A virtual flight, made once in the data set's own folder (its sun and lens are those below); or
-  // a video.
+  // Either a virtual flight, which is made once in the data set's own folder with the sun and lens
+  // below, or a video.
   std::variant<synthetic::FlightOptions, fs::path> source;
-  std::optional<fs::path> mask;  // of a video; a flight brings its own
+  // The mask of a video; a flight brings its own.
+  std::optional<fs::path> mask;
   std::int64_t first_frame = 0;
   scene::Lens lens;
   scene::Camera camera;
@@ -36,21 +41,22 @@ struct Background {
 };
 
 struct Aircraft {
-  std::string name;      // in this catalogue
-  std::string aircraft;  // of `airtruth aircraft list`, or a model file
+  std::string name;  // name in this catalogue
+  // A name of `airtruth aircraft list`, or a model file.
+  std::string aircraft;
   Where where;
 };
 
 struct Trajectory {
   std::string name;
   std::vector<Vector3> waypoints_ned_m;
-  std::vector<double> times_s;  // or
+  std::vector<double> times_s;  // set unless speed_mps is
   std::optional<double> speed_mps;
   std::optional<std::int64_t> frame_count;
   Where where;
 };
 
-// One of the above each, by its place in the catalogue.
+// One sequence: one of each of the above, by index in the catalogue.
 struct Listed {
   std::string name;
   Where where;
@@ -60,7 +66,7 @@ struct Listed {
   std::optional<std::int64_t> frame_count;
 };
 
-// Every background with every trajectory with every aircraft.
+// Every combination of the given backgrounds, trajectories and aircraft.
 struct Product {
   std::string name;  // pattern with {background}, {trajectory}, {aircraft}
   std::vector<std::size_t> backgrounds, trajectories, aircraft;
@@ -78,38 +84,50 @@ struct AircraftType {
   std::vector<std::string> liveries;  // names of `airtruth aircraft list`
 };
 
-// The sun at a time of day that is drawn, at a place and on a day (sun_position.h).
+// The sun at a random time of day, at a given place and on a given day (sun_position.h).
 struct DaytimeRange {
-  std::optional<Range> hours;  // local solar time; empty: hours that suit the type
+  // Local solar time in hours; empty: hours that suit the type.
+  std::optional<Range> hours;
   double latitude_deg = 45;
   int day_of_year = 172;
 };
 
-// Intruders that cross the view: at a moment within the clip, the meeting moment, each is at a
-// range and a direction from the camera; it flies straight or, with a bank, in a coordinated turn.
+// A rule for random intruders that cross the view. At a moment within the clip, the meeting moment,
+// each intruder has the range and direction from the camera that the rule draws. It flies straight
+// or, with a bank, in a coordinated turn.
 struct Drawn {
   std::string name;  // pattern with {index}
   Where where;
   std::int64_t count = 0;
   std::int64_t frame_count = 90;
   std::vector<std::size_t> backgrounds;
-  std::vector<AircraftType> types;  // drawn first; then a livery of the type
+  // The type is drawn first, then a livery of that type.
+  std::vector<AircraftType> types;
   Range range_m{100, 2000};
-  std::optional<Range> size_px;  // longest side of the exact box at the meeting moment; in place of
-                                 // range_m
-  Range azimuth_deg{-30, 30};    // from the boresight, to the right
-  Range elevation_deg{-5, 20};   // up
-  std::optional<Range> speed_mps;  // empty: suits the type
+  // Replaces range_m: longest side of the exact box at the meeting moment, in px.
+  std::optional<Range> size_px;
+  // Angle from the boresight, positive to the right.
+  Range azimuth_deg{-30, 30};
+  Range elevation_deg{-5, 20};  // positive up
+  // Empty: a speed that suits the type.
+  std::optional<Range> speed_mps;
   Range heading_deg{0, 360};
-  std::optional<Range> climb_deg;  // empty: within 5 degrees, and what suits the type
-  std::optional<Range> bank_deg;   // right wing down; empty: straight, or what suits the type
+  // Empty: within 5 degrees and the limits of the type.
+  std::optional<Range> climb_deg;
+  // Positive with the right wing down. Empty: straight flight, or a bank that suits the type.
+  std::optional<Range> bank_deg;
   bool bank_suits_type = false;
-  std::optional<Range> sun_azimuth_deg, sun_elevation_deg;  // else the background's
-  std::optional<DaytimeRange> daytime;                      // in place of these two
-  double negatives = 0;  // share of sequences without an intruder
+  // Empty: the sun of the background.
+  std::optional<Range> sun_azimuth_deg, sun_elevation_deg;
+  // Replaces the two sun ranges.
+  std::optional<DaytimeRange> daytime;
+  // Share of sequences without an intruder, from 0 to 1.
+  double negatives = 0;
   std::int64_t fewest_intruders = 1, most_intruders = 1;
-  bool numbers_intruders = false;  // ids are intruder-1, intruder-2, ...; else "intruder"
-  bool starts_at_random = false;   // anywhere in the background where the clip fits
+  // True: ids are intruder-1, intruder-2, ...; false: the id is "intruder".
+  bool numbers_intruders = false;
+  // True: the clip begins at a random frame of the background at which it fits.
+  bool starts_at_random = false;
 };
 
 using Rule = std::variant<Listed, Product, Drawn>;
@@ -124,13 +142,14 @@ struct Catalogue {
   scene::Render render;
   scene::Composite composite;
   scene::Output output;
-  std::vector<std::string> slurm;  // "--name=value" for sbatch, of the table [slurm]
+  // Options "--name=value" for sbatch, from the table [slurm].
+  std::vector<std::string> slurm;
   fs::path file;
   std::string text;
 };
 
-// Errors carry line and column: as for scenes, and names that no table has (nearest spelling) or
-// two tables have.
+// Both throw Error with line and column: for the same faults as in scenes, for a name that no table
+// has (with the nearest spelling), and for a name that two tables have.
 Catalogue read_catalogue(const fs::path& file);
 Catalogue parse_catalogue(std::string_view text, const fs::path& file);
 

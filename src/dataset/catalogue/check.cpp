@@ -24,7 +24,7 @@ void check_aircraft(const Aircraft& aircraft) {
 }
 
 void check_video(const fs::path& video, const std::string& background, const Where& where) {
-  // A pattern of numbered images is for the reader to look at.
+  // The reader checks a pattern of numbered images.
   if (video.string().find('%') == std::string::npos && !fs::exists(video))
     throw Error(
         "the video of background '" + background + "', " + video.string() + ", does not exist",
@@ -39,8 +39,8 @@ video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
   return info;
 }
 
-// Mask, lens, camera file and path of a background. How much of the clip is used is each
-// sequence's, and the camera's path must be as long as that alone.
+// Checks mask, lens, camera file and path of a background. Each sequence decides how much of the
+// clip it uses, and the camera's path must cover only that part.
 void check_background(const Catalogue& catalogue,
                       std::size_t place,
                       const std::map<std::string, fs::path>& videos) {
@@ -62,8 +62,8 @@ void check_background(const Catalogue& catalogue,
   sequence::check_scene(scene, info);
 }
 
-// One rule's names differ by construction; those of two may meet. Hashes, since a million names
-// are to cost eight bytes each.
+// The names of one rule differ by construction, but names of two rules may coincide. Hashes are
+// compared because a million names must cost no more than eight bytes each.
 void check_names(const Catalogue& catalogue) {
   if (catalogue.rules.size() < 2) return;
   const Expansion expansion(catalogue);

@@ -9,11 +9,11 @@
 
 namespace airtruth::dataset {
 
-// What a catalogue names is at hand on this machine, so that a slip of the pen is said before any
-// work is done: aircraft are known, videos exist (but for the backgrounds in `videos`, for which
-// those stand), each background's mask, lens, camera file and path can be read and go with its
-// video and with the catalogue's method, and no two sequences have one name. Throws Error at the
-// line.
+// Checks the inputs of a catalogue on this machine before any work begins. Aircraft must be known.
+// Videos must exist, except those of the backgrounds in `videos`, which are replaced by the videos
+// given there. Each background's mask, lens, camera file and path must be readable and must fit its
+// video and the catalogue's method. No two sequences may have the same name. Throws Error at the
+// line of the catalogue.
 void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos);
 
 }  // namespace airtruth::dataset

@@ -12,7 +12,8 @@
 namespace airtruth::dataset {
 namespace {
 
-// Where nothing is stated and the type has no class (aircraft/fleet/flight_limits.h).
+// Defaults where the rule states no value and the type has no class
+// (aircraft/fleet/flight_limits.h).
 constexpr Range kAnySpeedMps{40, 140};
 constexpr Range kAnyHours{8, 17};
 constexpr double kAnyBankDeg = 30;
@@ -31,7 +32,7 @@ const T& drawn(Random& random, const std::vector<T>& things) {
       static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size())))];
 }
 
-// A type, then a livery of it, of one number: its whole part and the rest.
+// One number selects a type and then its livery: its integer part and its fraction.
 const std::string& drawn_aircraft(Random& random, const std::vector<AircraftType>& types) {
   const double at = random.uniform() * static_cast<double>(types.size());
   const std::size_t type = std::min(types.size() - 1, static_cast<std::size_t>(at));
@@ -46,7 +47,7 @@ Range speed_range(const Drawn& rule, const aircraft::FlightLimits* limits) {
   return limits != nullptr ? Range{limits->usual_low_mps, limits->usual_high_mps} : kAnySpeedMps;
 }
 
-// No steeper than the type climbs and descends at that speed.
+// Limits the slope to the type's climb and descent at that speed.
 Range climb_range(const Drawn& rule, const aircraft::FlightLimits* limits, double speed_mps) {
   if (rule.climb_deg) return *rule.climb_deg;
   Range range{-kUsualClimbDeg, kUsualClimbDeg};
@@ -84,14 +85,14 @@ Encounter drawn_encounter(Random& random, const Random& of_bank, const Drawn& ru
   return encounter;
 }
 
-// Every 1/share-th sequence, counted from a place that the seed draws.
+// Selects every 1/share-th sequence; the seed draws the offset.
 bool is_negative(const Drawn& rule, const Seed& seed, std::int64_t index) {
   Random random = seed.stream("negatives of " + rule.name);
   const double before = static_cast<double>(index) * rule.negatives + random.uniform();
   return std::floor(before + rule.negatives) > std::floor(before);
 }
 
-// At an hour of daylight.
+// The sun at a random hour of daylight.
 SunPosition drawn_sun(Random random, const DaytimeRange& daytime, const std::string& aircraft) {
   Range hours = kAnyHours;
   if (daytime.hours)

@@ -8,33 +8,38 @@
 
 #include "dataset/catalogue/catalogue.h"
 
-// What a rule of [[random]] draws for a sequence, in numbers: no file is read for it.
+// The random values of a rule of [[random]] for one sequence. No file is read for them.
 namespace airtruth::dataset {
 
-// How an intruder meets the camera.
+// The geometry with which an intruder passes the camera.
 struct Encounter {
-  std::string aircraft;           // of the aircraft list
-  double meeting_share = 0.5;     // of the clip's time, from 0.2 to 0.8: the meeting moment
-  std::optional<double> range_m;  // at the meeting moment; or
+  // A name of the aircraft list.
+  std::string aircraft;
+  // The meeting moment as a share of the clip's time, from 0.2 to 0.8.
+  double meeting_share = 0.5;
+  // Distance at the meeting moment; exactly one of range_m and size_px is set.
+  std::optional<double> range_m;
   std::optional<double> size_px;
-  double azimuth_deg = 0;  // from the boresight, to the right
+  double azimuth_deg = 0;  // from the boresight, positive to the right
   double elevation_deg = 0;
   double heading_deg = 0;  // at the meeting moment
   double climb_deg = 0;
   double speed_mps = 0;
-  double bank_deg = 0;  // right wing down; 0: straight
+  double bank_deg = 0;  // positive with the right wing down; 0: straight
 };
 
 struct DrawnSequence {
   std::size_t background = 0;
-  std::vector<Encounter> encounters;  // none: a negative
+  std::vector<Encounter> encounters;  // empty: a sequence without an intruder
   std::optional<double> sun_azimuth_deg, sun_elevation_deg;
-  double start_share = 0;  // where it begins, among the places that its background has
+  // The beginning of the clip, as a share of the positions that its background offers.
+  double start_share = 0;
 };
 
-// Sequence `index` of a rule: a function of rule, seed and index. The types come out even, and so
-// do the liveries of each type. Of any n sequences in a row, the number of negatives is within one
-// of n times their share. Sizes and ranges are even in their logarithm.
+// Draws sequence `index` of a rule; the result depends on rule, seed and index alone. Types are
+// equally frequent, and so are the liveries of each type. Among any n consecutive sequences the
+// number without an intruder is within one of n times the share `negatives`. Sizes and ranges have
+// a uniform logarithm.
 DrawnSequence draw(const Drawn& rule, std::uint64_t seed, std::int64_t index);
 
 }  // namespace airtruth::dataset

@@ -34,7 +34,7 @@ std::optional<Range> maybe_range(const TableReader& table,
   return range_in(table, key, limits);
 }
 
-// Of "type", or of [low, high]: empty for the first.
+// Reads "type" or [low, high]; empty for "type".
 std::optional<Range> range_or_type(const TableReader& table,
                                    std::string_view key,
                                    const scene::Limits& limits) {
@@ -42,7 +42,7 @@ std::optional<Range> range_or_type(const TableReader& table,
   return maybe_range(table, key, limits);
 }
 
-// The aircraft that fit the patterns, by the folder of their name, which is their type.
+// The aircraft that match the patterns, grouped by the folder of their name, which is their type.
 std::string no_aircraft_fits(const std::string& pattern) {
   const std::string text = "no aircraft fits '" + pattern + "'";
   const std::string wider = "*" + pattern + "*";
@@ -129,8 +129,8 @@ void read_intruders(const TableReader& table, Drawn& drawn) {
   drawn.most_intruders = drawn.fewest_intruders;
 }
 
-// A clip may begin anywhere in a background whose camera flies as steadily at any time; a path of
-// the camera is tied to the frame with which it begins.
+// A clip may begin at a random frame only where the camera flies equally steadily at any time. A
+// camera path is tied to the frame at which it begins.
 void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& drawn) {
   const auto start = table.choice("start", {"first", "random"});
   drawn.starts_at_random = start == "random";

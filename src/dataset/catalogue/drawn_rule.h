@@ -8,8 +8,8 @@
 
 namespace airtruth::dataset {
 
-// The tables [[random]] of a catalogue whose backgrounds are read. Throws Error with line and
-// column.
+// Reads the tables [[random]] of a catalogue whose backgrounds have been read. Throws Error with
+// line and column.
 std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& catalogue);
 
 }  // namespace airtruth::dataset

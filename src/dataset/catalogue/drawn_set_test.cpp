@@ -14,7 +14,7 @@
 #include "foundation/base/files.h"
 #include "truth/annotation/truth.h"
 
-// Sets that are drawn, made: what was drawn is what the truth says.
+// Data sets from random rules: the truth of the rendered sequences agrees with the random values.
 namespace airtruth::dataset {
 namespace {
 
@@ -39,8 +39,8 @@ class DrawnSet : public testing::Test {
   fs::path root_;
 };
 
-// The exact box of the rendered truth, in the frame of the meeting moment, has the size that was
-// drawn; without a camera's motion to the last hundredth of a pixel.
+// In the frame of the meeting moment the exact box of the rendered truth has the requested size,
+// within a hundredth of a pixel without camera motion.
 TEST_F(DrawnSet, TheExactBoxHasTheSizeThatWasDrawn) {
   const Catalogue catalogue = parse_catalogue(
       text("motion = { model = \"none\" }\n",
@@ -77,8 +77,8 @@ TEST_F(DrawnSet, ADirectionThatTheLensDoesNotSeeIsOneFailureAndItsReason) {
   EXPECT_THAT(summary.failures[0].reason, HasSubstr("at no range in the direction azimuth 17"));
 }
 
-// Clips begin at random where they fit, and a sequence without an intruder is made, verified and
-// recorded like any other.
+// Clips begin at random frames at which they fit. A sequence without an intruder is made, verified
+// and recorded like any other.
 TEST_F(DrawnSet, NegativesAndRandomStartsAreWholeSequences) {
   const Catalogue catalogue = parse_catalogue(
       text("",
@@ -113,7 +113,7 @@ TEST_F(DrawnSet, NegativesAndRandomStartsAreWholeSequences) {
   EXPECT_THAT(verify(root_, deep).faults, testing::IsEmpty());
 }
 
-// Two sequences over different parts of one clip have one camera, measured once.
+// Two sequences over different parts of one clip share one camera, which is measured once.
 TEST_F(DrawnSet, ABackgroundIsCalibratedOnceForAllItsSequences) {
   const Catalogue catalogue = parse_catalogue(
       text("realism = { auto = true, fallback = true }\n",

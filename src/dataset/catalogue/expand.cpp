@@ -11,8 +11,10 @@
 namespace airtruth::dataset {
 namespace {
 
-constexpr double kAssumedRateHz = 30;        // of a background whose own rate is not known
-constexpr double kProvisionalRangeM = 1000;  // where the range follows from a size, until place()
+// Frame rate that is assumed for a background of unknown rate.
+constexpr double kAssumedRateHz = 30;
+// Range until place() derives it from the size.
+constexpr double kProvisionalRangeM = 1000;
 
 std::int64_t size_of(const Rule& rule) {
   if (const auto* product = std::get_if<Product>(&rule))
@@ -81,8 +83,8 @@ Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index
   return item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
 }
 
-// What a rule of [[random]] draws for one sequence. Its paths are provisional: those of a clip at
-// kAssumedRateHz, until place() knows the background.
+// The random values of a rule of [[random]] for one sequence. Until place() knows the background,
+// its paths are provisional and belong to a clip at kAssumedRateHz.
 Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
   Item item;
   item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
@@ -149,7 +151,7 @@ Item Expansion::at(std::int64_t index) const {
 
 namespace {
 
-// The first frame of a clip that begins anywhere in its background where it fits.
+// The first frame of a clip at a random position of its background at which it fits.
 std::int64_t random_first_frame(const Item& item,
                                 std::int64_t first_frame,
                                 const BackgroundFiles& files) {

@@ -9,7 +9,7 @@
 
 namespace airtruth::dataset {
 
-// The places of a data set.
+// The paths within a data set's folder.
 struct Folder {
   fs::path root;
 
@@ -20,24 +20,24 @@ struct Folder {
   fs::path cache() const { return root / ".cache"; }
   fs::path manifest() const { return root / "manifest"; }
   fs::path record() const { return root / "dataset.json"; }
-  // Of a whole build, or of one share of it.
+  // The list of failures of a whole build, or of one share of it.
   fs::path failed(std::int64_t share, std::int64_t shares) const {
     return root / (shares > 1 ? "failed-" + std::to_string(share) + ".jsonl" : "failed.jsonl");
   }
-  // Is the sequence there? Its folder is renamed into place with its record inside, so the record
-  // is enough.
+  // True where the sequence exists. Its folder is renamed into place with its record inside, so the
+  // record proves that it is whole.
   bool holds(const std::string& name) const { return fs::exists(sequence(name) / "sequence.json"); }
 };
 
-// Creates the folder, or opens one that was begun with the same catalogue; Error where it holds
-// another's.
+// Creates the folder, or opens one that was begun with the same catalogue. Throws Error where it
+// holds the set of another catalogue.
 Folder open_folder(const Catalogue& catalogue, const fs::path& root);
 
-// Held while a build is at work; dropped by the kernel when the process dies. Shared among workers
-// that each make their own share; a whole build is alone.
+// A lock that is held during a build; the kernel releases it when the process ends. Workers that
+// each make their own share hold it together (`shared`); a whole build holds it alone.
 class FolderLock {
  public:
-  FolderLock(const Folder& folder, bool shared);  // Error where another holds it
+  FolderLock(const Folder& folder, bool shared);  // throws Error where another process holds it
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();

@@ -16,10 +16,12 @@ namespace airtruth::dataset {
 namespace {
 
 constexpr double kStandardGravityMps2 = 9.80665;
-constexpr double kStraightBankDeg = 0.01;  // less than that is no turn
+// A smaller bank counts as straight flight.
+constexpr double kStraightBankDeg = 0.01;
 constexpr double kPastClip_s = 1;
-// Of a turn: its waypoints are at most so far apart in angle and time, and so many lie beyond the
-// clip at either end, where the natural spline through them loses its bend (by 0.27 a waypoint).
+// Waypoints of a turn: the largest distance between neighbours in angle and in time, and the number
+// of waypoints beyond either end of the clip, where the natural spline loses its curvature (by a
+// factor of 0.27 per waypoint).
 constexpr double kTurnStepDeg = 4;
 constexpr double kTurnStep_s = 0.5;
 constexpr int kTurnMargin = 8;
@@ -48,12 +50,12 @@ void lay_straight(scene::Intruder& intruder,
                               meeting + (clip_s + kPastClip_s - meets_s) * velocity};
 }
 
-// From the meeting point, after a time, on the helix.
+// Displacement from the meeting point after a time on the helix.
 Vector3 turned(const Encounter& encounter, double turn_rate, double after_s) {
   const double heading = radians(encounter.heading_deg);
   const double climb = radians(encounter.climb_deg);
   const double over_ground_mps = encounter.speed_mps * std::cos(climb);
-  const double radius_m = over_ground_mps / turn_rate;  // signed
+  const double radius_m = over_ground_mps / turn_rate;  // the sign gives the side of the turn
   const double now = heading + turn_rate * after_s;
   return {radius_m * (std::sin(now) - std::sin(heading)),
           radius_m * (std::cos(heading) - std::cos(now)),
@@ -99,7 +101,7 @@ void lay_through(scene::Intruder& intruder,
     lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
 }
 
-// Finds the range at which an aircraft has a size.
+// Finds the range at which an aircraft has a given size.
 class Sizer {
  public:
   Sizer(const scene::Scene& scene,
@@ -117,7 +119,7 @@ class Sizer {
 
   double focal_px() const { return lens_.focal_px(); }
 
-  // Where the aircraft is then; empty where no range gives the size.
+  // The aircraft's position at that range; empty where no range gives the size.
   std::optional<Vector3> position(const aircraft::Mesh& mesh,
                                   const Quaternion& world_from_body,
                                   const Vector3& direction,
@@ -132,13 +134,15 @@ class Sizer {
       const auto exact =
           annotation::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);
       if (!exact.box || exact.partly_unseen) {
-        range_m *= 2;  // part of it is behind the camera or beyond the lens's field
+        // A part of the aircraft is behind the camera or beyond the lens's field.
+        range_m *= 2;
         if (range_m > kFarthestM) return std::nullopt;
         continue;
       }
       const double ratio = std::max(exact.box->width, exact.box->height) / size_px;
       if (std::abs(ratio - 1) < kWithinShare) return at;
-      range_m *= ratio;  // far away, size times range stays the same
+      // At long range the product of size and range is constant.
+      range_m *= ratio;
     }
     return std::nullopt;
   }
@@ -202,7 +206,8 @@ void meet(scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
           const lens::ImageSize& size) {
-  constexpr double kUsualLengthM = 15;  // for a first guess
+  // Length for the first estimate of the range.
+  constexpr double kUsualLengthM = 15;
   scene::Intruder& intruder = scene.intruders[k];
   const double meets_s = meeting_s(encounter, clip);
   const trajectory::State camera = camera_at(scene.camera, meets_s);

@@ -7,10 +7,10 @@
 #include "dataset/catalogue/drawing.h"
 #include "world/scene/scene.h"
 
-// From what was drawn to a path in the world.
+// Turns the random values of an encounter into a path in the world.
 namespace airtruth::dataset {
 
-// The frames that a sequence will have, as far as is known.
+// The length of a sequence, as far as it is known.
 struct DrawnClip {
   std::int64_t frames = 0;
   double frame_rate_hz = 30;
@@ -18,29 +18,29 @@ struct DrawnClip {
   double duration_s() const { return static_cast<double>(frames) / frame_rate_hz; }
 };
 
-// Id, aircraft and speed of intruder k (from 0) of a sequence; its path is not laid yet.
+// Returns intruder k (from 0) of a sequence with id, aircraft and speed; it has no path yet.
 scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k);
 
-// The meeting moment, on the clip's clock. Where a size was drawn it is the time of a frame, so
-// that the truth of that frame has the size.
+// Returns the meeting moment in seconds on the clip's clock. Where the encounter has a size, the
+// moment is the time of a frame, so that the truth of that frame has the size.
 double meeting_s(const Encounter& encounter, const DrawnClip& clip);
 
-// Lays a path through the point at that range, in the direction that was drawn, at the meeting
-// moment: straight, or in a coordinated turn of the bank that was drawn (a helix whose radius is
-// speed^2 / (g tan bank) over the ground). It spans the clip and at least a second more. `camera`
-// flies as its position, velocity and attitude say.
+// Gives the intruder a path that at the meeting moment passes the point at range_m in the
+// encounter's direction. The path is straight, or a coordinated turn with the encounter's bank: a
+// helix of radius speed^2 / (g tan bank) over the ground. It covers the clip and at least one
+// second more. `camera` moves with its stated position, velocity and attitude.
 void lay_path(scene::Intruder& intruder,
               const Encounter& encounter,
               const scene::Camera& camera,
               const DrawnClip& clip,
               double range_m);
 
-// Lays the path of intruder k of a scene for good. Where a size was drawn, the range is the one at
-// which the longest side of the exact box at the meeting moment is that size: of all that the
-// aircraft's silhouette covers, in its attitude then, through the scene's lens, by the nominal
-// camera and with an instant shutter. The aircraft flies no lower than kLowestFlightM above the
-// ground (down = 0) at that moment where the camera is higher than that; its elevation is raised
-// for it. Error where no range gives the size.
+// Gives intruder k of a scene its final path. Where the encounter has a size, the range is the one
+// at which the longest side of the exact box at the meeting moment has that size. The exact box
+// bounds the aircraft's silhouette in its attitude at that moment, projected through the scene's
+// lens from the nominal camera with an instantaneous shutter. Where the camera is more than
+// kLowestFlightM (metres) above the ground (down = 0), the aircraft is at least that high at the
+// meeting moment; its elevation is raised if necessary. Throws Error where no range gives the size.
 constexpr double kLowestFlightM = 30;
 void meet(scene::Scene& scene,
           std::size_t k,

@@ -13,12 +13,13 @@
 #include "foundation/base/suggest.h"
 #include "world/scene/table_reader.h"
 
-// For the readers of catalogues: names of its tables, looked up.
+// Look-up of the names in a catalogue's tables, for the readers of catalogues.
 namespace airtruth::dataset {
 
-constexpr std::int64_t kMost = 1'000'000'000;  // of what a catalogue counts
+// Upper bound for every count in a catalogue.
+constexpr std::int64_t kMost = 1'000'000'000;
 
-// The place of the thing of that name; Error at `where` with the nearest spelling.
+// Returns the index of the thing with that name. Throws Error at `where` with the nearest spelling.
 template <typename Things>
 std::size_t place_of(const Things& things,
                      const std::string& name,
@@ -34,8 +35,8 @@ std::size_t place_of(const Things& things,
               where);
 }
 
-// Names in the array at `key`, each a pattern over the things' names; all of them where the key is
-// absent.
+// Returns the indices of the things whose names match a pattern of the array at `key`; all of them
+// where the key is absent.
 template <typename Things>
 std::vector<std::size_t> places_of(const scene::TableReader& table,
                                    std::string_view key,

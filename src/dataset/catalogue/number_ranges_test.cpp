@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number that a user's file may hold, replaced by numbers that break programs. What is
-// replaced comes from the readers themselves (world/scene/key_log.h), so that a new key is walked
-// as well.
+// Replaces every number of the user's files by extreme values. The list of numbers comes from the
+// readers themselves (world/scene/key_log.h), so that the test covers a new key automatically.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -71,10 +70,10 @@ double as_double(const Number& number) {
   return std::visit([](auto value) { return static_cast<double>(value); }, number);
 }
 
-// A file of TOML, a reader of it, and what to do with what it reads.
+// A TOML file, a reader for it, and an action on the result.
 struct Base {
   std::string text;
-  // Reads the text, and where `renders` also makes what it says.
+  // Reads the text and, where `renders` is true, also renders the result.
   std::function<void(const std::string& text, bool renders)> use;
   // Every reading lists the aircraft, which takes a tenth of a second: fewer numbers are tried.
   bool is_slow = false;
@@ -183,7 +182,8 @@ class NumberRanges : public testing::Test {
     scene::parse_scene(scene::toml_from_scene(scene), scene.file);
   }
 
-  // One line that says where, or nothing: anything but an Error fails the test.
+  // Returns one line that describes the error, or an empty one. Any exception but Error fails the
+  // test.
   static std::string error_of(const std::function<void()>& body) {
     try {
       body();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Of this module's tests: four sequences of eight small frames, lossless.
+// The catalogue of this module's tests: four sequences of eight small frames, coded without loss.
 namespace airtruth::dataset {
 
 constexpr const char* kCatalogue = R"(

@@ -40,7 +40,7 @@ std::optional<Range> daylight_hours(double latitude_deg, int day_of_year) {
   const double lowest =
       std::sin(radians(kLowestSunDeg)) - std::sin(latitude) * std::sin(declination);
   const double widest = std::cos(latitude) * std::cos(declination);
-  if (lowest >= widest) return std::nullopt;  // a polar night
+  if (lowest >= widest) return std::nullopt;  // polar night
   const double half_h =
       lowest <= -widest ? 12 : degrees(std::acos(lowest / widest)) / kDegreesPerHour;
   return Range{12 - half_h, 12 + half_h};

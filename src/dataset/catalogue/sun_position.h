@@ -12,11 +12,13 @@ struct SunPosition {
   double elevation_deg = 0;
 };
 
-// Where the sun stands at a local solar time (12 h: due south or north), by the declination of
-// Cooper (1969), within half a degree. day_of_year: 1 is the first of January.
+// Returns the sun's position at a local solar time (at 12 h the sun is due south or north), from
+// the declination of Cooper (1969), accurate to half a degree. day_of_year is 1 on the first of
+// January.
 SunPosition sun_position(double hour, double latitude_deg, int day_of_year);
 
-// Hours between which the sun is kLowestSunDeg or more above the horizon; empty where it never is.
+// The hours between which the sun is at least kLowestSunDeg (degrees) above the horizon; empty on a
+// day without such an hour.
 constexpr double kLowestSunDeg = 3;
 std::optional<Range> daylight_hours(double latitude_deg, int day_of_year);
 
