@@ -10,18 +10,20 @@
 #include "picture/video/writer.h"
 #include "world/synthetic/flight.h"
 
-// For tests: virtual flights as clips, with something in them that is to be measured out again.
+// For tests: writes virtual flights as video clips with a known camera effect, which the
+// calibration must then measure.
 namespace airtruth::calibration {
 
+// The camera effects that are applied to a flight.
 struct Injected {
   double point_spread_px = 0;
-  // So many of the flight's pixels, a side, are one of the clip's: a flight draws each by one ray,
-  // through textures that are softer than a pixel.
+  // Supersampling: one pixel of the clip is the mean of `finer` x `finer` pixels of the flight. A
+  // flight renders each pixel by one ray, through textures that are softer than a pixel.
   int finer = 1;
   composite::Sensor sensor;
 };
 
-// Its file is removed with it.
+// A temporary video file, which the destructor removes.
 class Clip {
  public:
   Clip();
@@ -30,13 +32,13 @@ class Clip {
   Clip& operator=(const Clip&) = delete;
   const fs::path& path() const { return path_; }
 
-  // As long, as large and as fast as `o` says.
+  // Writes the pictures of `frame` with the length, size and frame rate of `o`.
   void write(const synthetic::FlightOptions& o,
              const std::function<image::Picture(int)>& frame,
              video::Format format = video::Format::kMkv,
              int quality = 18);
-  // A flight, or some of its frames, with that put into it; over painted panels, as airfields have
-  // them.
+  // Writes a flight, or some of its frames, with the effects of `what`. `panels`: the ground has
+  // painted panels, such as those of airfields.
   void write(const synthetic::Flight& flight,
              const Injected& what,
              bool panels = false,
@@ -44,14 +46,16 @@ class Clip {
              std::optional<int> frame_count = {});
 
  private:
-  inline static int made_ = 0;  // by this process
+  // The number of clips that this process has made.
+  inline static int made_ = 0;
   fs::path path_;
 };
 
-// 30 frames of 960 x 720, through an ideal sensor.
+// Options of a flight of 30 frames of 960 x 720 pixels, filmed with an ideal sensor.
 synthetic::FlightOptions ideal(std::uint64_t seed);
 
-// `share`: of the truth, by which the value may be off.
+// Expects that the calibration has the value `key`, and that it differs from `truth` by at most
+// `share` of `truth`.
 void expect_within(const Calibration& c, const std::string& key, double truth, double share);
 
 }  // namespace airtruth::calibration

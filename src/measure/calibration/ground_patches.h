@@ -9,10 +9,11 @@
 
 namespace airtruth::calibration {
 
-// Light of level ground in patches of one size, whatever their distance, so that what is far does
-// not look more alike than what is near only because a pixel holds more of it: as large as a pixel
-// is on the ground at 2 degrees below the horizon, and beyond that a pixel. One view after the
-// other.
+// The light of level ground, averaged over patches of equal size on the ground at any distance.
+// Without that, far ground would look more uniform than near ground because a far pixel covers
+// more of it. A patch is as large as the ground that one pixel covers at 2 degrees below the
+// horizon; farther away a patch is one pixel. The patches of all views follow one another in the
+// order of the views.
 std::vector<SeenLight> ground_patches(const std::vector<GroundView>& views,
                                       const lens::Lens& lens,
                                       const image::Mask* own_aircraft,

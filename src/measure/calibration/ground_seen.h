@@ -7,19 +7,24 @@
 #include "foundation/image/tone_curve.h"
 #include "measure/calibration/ground_track.h"
 
-// The light of level ground, by where it lies.
+// The light of level ground by its position on the ground. Lengths are in heights: multiples of the
+// camera's height above the ground.
 namespace airtruth::calibration {
 
-// One square of the ground, a height wide, in one view.
+// One square of the ground, one height wide, as one view shows it.
 struct SquareSeen {
+  // Number of the square; equal numbers in different views mean the same ground.
   int square = 0;
-  int sector = 0;    // of the view's azimuth (extinction.h) that it lies in
-  double range = 0;  // heights
+  // Sector of the azimuth (extinction.h) at which the view shows the square.
+  int sector = 0;
+  // Range from the camera, heights.
+  double range = 0;
+  // Linear light: red, green, blue.
   std::array<double, 3> light{};
 };
 
-// Ground from just under the true horizon to where squares begin to be told apart: what all views
-// show of a band of it in one sector, on the whole.
+// Ground between the true horizon and the distance at which single squares can be resolved: the
+// mean light of one range band in one sector over all views.
 struct FarGround {
   int sector = 0;
   double range = 0;  // heights
@@ -27,10 +32,12 @@ struct FarGround {
 };
 
 struct GroundSeen {
-  // In the order of their squares. As far out as a pixel's way along the ground stays within one.
+  // Sorted by square. They reach as far as the ground that one pixel covers stays within one
+  // square.
   std::vector<SquareSeen> squares;
   std::vector<FarGround> far;
 };
+// `track` gives the position and the level frame of each view.
 GroundSeen ground_seen(const std::vector<GroundView>& views,
                        const GroundTrack& track,
                        const lens::Lens& lens,

@@ -10,38 +10,46 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
-// Where a camera flew over level ground, from the ground alone.
+// Estimates the path of a camera over level ground from the pictures of the ground alone.
 namespace airtruth::calibration {
 
-constexpr double kMostTiltDeg = 6;  // of the horizon that views are given
+// The largest error, degrees, that is searched for in the horizon of the views.
+constexpr double kMostTiltDeg = 6;
 
 struct GroundView {
-  const image::Picture* picture = nullptr;  // outlives the view
-  Quaternion cam_from_world;                // north-east-down
+  // The picture must outlive the view.
+  const image::Picture* picture = nullptr;
+  // The world frame is north-east-down.
+  Quaternion cam_from_world;
 };
 
-// Places are in heights over the ground, north and east of the first view.
+// The path of the camera. Places are north and east of the first view, in heights: multiples of the
+// camera's height above the ground.
 struct GroundTrack {
-  std::size_t first = 0;                // view that places[0] is of
-  std::vector<Eigen::Vector2d> places;  // of so many views one after the other
-  // How far the true horizon lies above the one that the views were given, where they look: haze
-  // draws it down. As a turn about the axis to their right.
+  // Index of the view to which places[0] belongs.
+  std::size_t first = 0;
+  // The places of consecutive views.
+  std::vector<Eigen::Vector2d> places;
+  // Elevation of the true horizon above the horizon of the views, in the direction of view; haze
+  // lowers the visible horizon. `level_from_world` is the same correction as a rotation about the
+  // axis to the right of the views.
   double horizon_rad = 0;
   Quaternion level_from_world = Quaternion::Identity();
-  double agreement = 0;  // correlation of views at rest over one another, -1 to 1
+  // Correlation between the aligned views, -1 to 1.
+  double agreement = 0;
 };
 
-// Each view is straightened to the plane, its contrast made even, and laid over the next one by
-// correlation of what both show (Padfield 2012, "Masked object registration in the Fourier
-// domain"). The horizon is where views farther apart agree best. Empty where they do not agree.
-// Throws Interrupted.
+// Projects each view onto the ground plane, equalises its contrast and registers it with the next
+// one by masked correlation (Padfield 2012, "Masked object registration in the Fourier domain").
+// The horizon is the one under which views that are farther apart agree best. Empty where the views
+// do not agree. Throws Interrupted when `stop` is requested.
 std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
                                         const lens::Lens& lens,
                                         const image::Mask* own_aircraft,
                                         const std::stop_token& stop = {});
 
-// Where a direction (down positive in z) meets the ground, in heights from under the camera. Empty
-// at the horizon and above.
+// The point at which a direction (z down) meets the ground, north and east of the point under the
+// camera, in heights. Empty at the horizon and above.
 std::optional<Eigen::Vector2d> place_on_ground(const Vector3& direction_in_level);
 
 }  // namespace airtruth::calibration

@@ -8,13 +8,14 @@
 
 namespace airtruth::calibration {
 
-// Noise from flat blocks of pairs of frames. Which blocks are flat is decided in one frame of a
-// pair and their variance taken from the other, so that the choice does not bias the value; a
-// plane is taken off each block first.
+// Measures luma noise in flat blocks of pairs of frames. One frame of a pair decides which blocks
+// are flat and the other frame gives their variance, so that the selection does not bias the value.
+// A plane is subtracted from each block first.
 class NoiseMeter {
  public:
   NoiseMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
       : own_aircraft_(own_aircraft), tone_(tone) {}
+  // Adds a pair of consecutive frames.
   void add(const image::Picture& frame, const image::Picture& next);
 
   struct Result {
@@ -22,14 +23,19 @@ class NoiseMeter {
   };
   // Empty, with the reason in `why`, where there are too few flat blocks.
   std::optional<Result> result(std::string& why) const;
+  // The noise by brightness, to which result() fits the noise curve.
   std::vector<NoisePoint> points() const;
 
  private:
   struct Block {
-    double luma = 0;        // 0..1, coded
-    double variance = 0;    // code values squared, in the other frame
-    double covariance = 0;  // with the neighbour to the right and below, mean of both
-    double flatness = 0;    // variance in the frame that decides
+    // Coded luma, 0 to 1.
+    double luma = 0;
+    // Variance in the frame that is measured, squared code values.
+    double variance = 0;
+    // Mean of the covariances with the right and with the lower neighbour, squared code values.
+    double covariance = 0;
+    // Variance in the frame that decides about flatness, squared code values.
+    double flatness = 0;
   };
   std::vector<Block> chosen() const;
 

@@ -20,13 +20,15 @@ struct MaskOptions {
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
-// The own aircraft: what stays still in the picture while the world moves. Each pixel of pairs of
-// frames is held against the same place, and against the place that the world has moved to; where
-// the first fits and the second does not it is the aircraft, where the second fits alone it is the
-// world, and where both do (evenly coloured parts) GrabCut (Rother, Kolmogorov and Blake 2004)
-// decides by colour and edges. Black all through, as beyond a fisheye's circle, counts as aircraft.
-// `found`: the share of the picture that is; Error where the video is too short or too still to
-// tell.
+// Finds the parts of the own aircraft that the camera sees: they stay still in the picture while
+// the world moves. In pairs of frames each pixel is compared with the same place in the other frame
+// and with the place to which the world has moved. If only the first agrees, the pixel shows the
+// aircraft; if only the second agrees, it shows the world. If both agree, as in evenly coloured
+// areas, GrabCut (Rother, Kolmogorov and Blake 2004) decides by colour and edges. Pixels that are
+// black in the whole clip, as beyond the image circle of a fisheye lens, count as aircraft.
+//
+// The mask has the size of the video. It is empty if less than a thousandth of the picture is
+// certainly aircraft. Throws Error if the video is too short or too still to separate the two.
 image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options);
 
 }  // namespace airtruth::calibration

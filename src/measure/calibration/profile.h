@@ -9,53 +9,62 @@
 #include "foundation/base/error.h"
 #include "measure/calibration/calibration.h"
 
-// What cameras that were measured before do to light (data/camera-profiles/README.md): a prior for
-// what a clip cannot tell, as a clip of sky alone cannot tell its sharpness.
+// Camera profiles: the camera models of cameras that were measured before
+// (data/camera-profiles/README.md). A profile is a prior for quantities that a clip does not show;
+// a clip of sky alone, for example, does not show its sharpness.
 //
-// A clip's value v +- s and a profile's p +- q make (v / s^2 + p / q^2) / (1 / s^2 + 1 / q^2), with
-// the error 1 / sqrt(1 / s^2 + 1 / q^2): a value whose error is so large that it says nothing gives
-// way to the profile, a sure one stays. Example: 0.91 +- 0.45 px under a profile of 0.42 +- 0.10 px
-// becomes 0.44 +- 0.10 px.
+// A clip's value v +- s and a profile's value p +- q combine to
+// (v / s^2 + p / q^2) / (1 / s^2 + 1 / q^2) with the error 1 / sqrt(1 / s^2 + 1 / q^2). A value
+// with a large error moves to the profile; a value with a small error hardly changes. Example: 0.91
+// +- 0.45 px under a profile of 0.42 +- 0.10 px becomes 0.44 +- 0.10 px.
 namespace airtruth::calibration {
 
 struct CameraProfile {
-  std::string name;    // "gopro-karma"; empty: of no one camera
-  std::string camera;  // which camera that is
-  int width = 0;       // of the clips that it was measured on, px; 0: of several sizes
+  // Name of the profile, such as "gopro-karma"; empty if it does not describe one single camera.
+  std::string name;
+  // Description of the camera.
+  std::string camera;
+  // Picture size of the measured clips, px; 0 if they have several sizes.
+  int width = 0;
   int height = 0;
+  // The number of measured clips.
   int clips = 0;
-  // By key, as Calibration::values: value and error. The error is that for one more clip of the
-  // camera: what the clips differ by is in it. A readout upwards is negative.
+  // Values and errors by the keys of Calibration::values. An error is that of one further clip of
+  // the camera, so it includes the differences between clips. The readout time is negative if the
+  // sensor is read upwards.
   std::map<std::string, Estimate> values;
 
-  std::string words() const;  // "the profile gopro-karma", "the median over 3 cameras"
+  // The profile in words: "the profile gopro-karma", "the median over 3 cameras".
+  std::string words() const;
 };
 
-// The library, by name.
+// All profiles of the library, sorted by name.
 std::span<const CameraProfile> camera_profiles();
 
-// The name of the profile that says nothing: a clip's values stay its own.
+// The name that stands for no profile: the values of the clip stay unchanged.
 inline constexpr const char* kNoProfile = "none";
 
-// Error, with the nearest name, where there is none of that name.
+// The profile with the given name. Throws Error with the nearest existing name if there is none.
 const CameraProfile& camera_profile(const std::string& name, const Where& where = {});
 
-// What stands for a camera of which nothing is known: the optics' medians over the library's
-// cameras, with the spread from camera to camera as errors.
+// The profile for an unknown camera: the medians of the optical values over the cameras of the
+// library, with the spread between cameras as errors.
 CameraProfile usual_camera();
 
-// One file of the library: lines of a key and its cells (data/camera-profiles/README.md).
+// Parses one file of the library: each line has a key and its cells
+// (data/camera-profiles/README.md).
 CameraProfile parse_camera_profile(std::string_view text, const std::string& name);
 
-// Error where the profile was measured on pictures of another size: a spread in pixels is of a
-// size.
+// Throws Error if the profile was measured on pictures of another size, since a spread in pixels
+// holds for one picture size.
 void check_size(const CameraProfile& profile, int width, int height, const Where& where = {});
 
-// The calibration with the profile's word on it. Where a value comes from stands in its `sources`.
-// Error as check_size().
+// Combines a calibration with a profile. The `sources` of the result tell the origin of the
+// combined values. Throws as check_size() does.
 Calibration with_profile(Calibration measured, const CameraProfile& profile);
 
-// A value and its prior by their inverse variances; an error of 0 is a value that is known.
+// The mean of two estimates weighted by inverse variance. An error of 0 means that the value is
+// known exactly.
 Estimate combined(const Estimate& a, const Estimate& b);
 
 }  // namespace airtruth::calibration

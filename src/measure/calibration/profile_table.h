@@ -5,8 +5,8 @@
 
 namespace airtruth::calibration {
 
-// data/camera-profiles/*.csv, put into the program when it is built: before each file a line
-// "profile,NAME".
+// The text of all data/camera-profiles/*.csv, embedded when the program is built. A line
+// "profile,NAME" precedes the text of each file.
 std::string_view profile_table();
 
 }  // namespace airtruth::calibration

@@ -9,14 +9,16 @@
 
 namespace airtruth::calibration {
 
-// Where a pixel of a lens looks.
+// The direction in which a pixel of a lens looks.
 struct PixelRay {
   int x = 0, y = 0;
   Vector3 in_cam;
 };
 
-// Of the pixels from `first` on, `step` apart both ways, row by row, but for those that show the
-// own aircraft (nullptr: none) or nothing. The same for all of a clip's pictures.
+// The rays of a grid of pixels, row by row. The grid begins at pixel `first` in both directions and
+// has a spacing of `step` pixels. Pixels of the own aircraft (nullptr: there is no mask) and pixels
+// outside the image circle of the lens are left out. The rays are the same for all pictures of a
+// clip.
 std::vector<PixelRay> pixel_rays(const lens::Lens& lens,
                                  const image::Mask* own_aircraft,
                                  int first,

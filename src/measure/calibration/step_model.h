@@ -10,8 +10,9 @@
 
 namespace airtruth::calibration {
 
-// An unsharp mask on what is coded: a picture and `amount` times what it differs by from itself
-// through a Gaussian, both of whole pixels.
+// An unsharp mask on coded luma: the picture plus `amount` times the difference between the picture
+// and its Gaussian blur. `radius_px` is the standard deviation of the blur. Picture and blur are
+// integrated over whole pixels.
 class UnsharpMask {
  public:
   UnsharpMask(double amount, double radius_px);
@@ -19,12 +20,13 @@ class UnsharpMask {
  private:
   friend class StepModel;
   double amount_;
-  std::vector<double> kernel_;  // StepModel's places apart
+  // Kernel at the spacing of StepModel's places.
+  std::vector<double> kernel_;
 };
 
-// What becomes of a step of light between two coded levels: a Gaussian's spread in linear light,
-// the tone curve, the mask. Heights are 0..1 far from the step, places px from the middle of what
-// is coded.
+// The response of a camera to a step of light between two coded levels: a Gaussian spread in linear
+// light, then the tone curve, then the unsharp mask. Heights are 0 and 1 far from the step. Places
+// are in px from the middle of the coded step.
 class StepModel {
  public:
   StepModel(double spread_px,
@@ -33,13 +35,15 @@ class StepModel {
             double high,
             const image::ToneCurve& tone);
 
-  // The height and its slope by px.
+  // The height at a place and its slope per px.
   std::pair<double, double> at(double place_px) const;
 
  private:
   friend class UnsharpMask;
-  static constexpr double kHalf = 9;  // px
-  static constexpr int kAPixel = 10;  // places
+  // Half the length of the table of heights, px.
+  static constexpr double kHalf = 9;
+  // The number of table entries per pixel.
+  static constexpr int kAPixel = 10;
   static constexpr std::size_t kCount = 2 * static_cast<std::size_t>(kHalf) * kAPixel + 1;
   void sharpen(const UnsharpMask& mask);
   double slope(std::size_t i) const;

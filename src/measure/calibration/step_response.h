@@ -6,42 +6,51 @@
 
 #include "measure/calibration/calibration.h"
 
-// A camera's answer to a step of light: a Gaussian point spread in linear light, the tone curve,
-// an unsharp mask on what is coded, each of whole pixels (step_model.h). Fitted to edges that were
-// found.
+// The step response of a camera: a Gaussian point spread in linear light, the tone curve and an
+// unsharp mask on coded luma, each integrated over whole pixels (step_model.h). It is fitted to the
+// edges of a clip.
 namespace airtruth::calibration {
 
 // Samples across one straight edge.
 struct StepEdge {
-  double low = 0, high = 0;                        // coded luma on its two sides, 0 to 1
-  std::vector<std::pair<double, double>> samples;  // place px from its middle, height 0..1
+  // Coded luma on the two sides, 0 to 1.
+  double low = 0, high = 0;
+  // Pairs of the place, in px from the middle, and the height, 0 to 1.
+  std::vector<std::pair<double, double>> samples;
 };
 
 struct StepResponse {
-  Estimate point_spread_px;  // standard deviation
-  Estimate sharpening;       // amount of the mask; 0: none that could be told from nothing
-  Estimate sharpening_px;    // standard deviation of its Gaussian
-  std::vector<double> edge_spreads_px;  // of each edge: the camera's and what the world adds
+  // Standard deviation of the point spread.
+  Estimate point_spread_px;
+  // Amount of the unsharp mask; 0 if it does not differ significantly from 0.
+  Estimate sharpening;
+  // Standard deviation of the Gaussian of the unsharp mask.
+  Estimate sharpening_px;
+  // The spread of each edge: that of the camera and that of the edge in the world together.
+  std::vector<double> edge_spreads_px;
 };
 
-// Every edge has its own two levels, since the tone curve bends each differently, and its own
-// spread: the world is softer than a step, here more and there less. So each edge by itself tells a
-// spread and, for a radius, an amount (edge_fit.h). The mask is the camera's and on all edges: it
-// has the median of their amounts, and the radius that suits them best. The camera's spread is that
-// of the sharpest edges, but for luck (a frontier with errors on both sides: Aigner, Lovell and
-// Schmidt 1977, with an exponential one after Meeusen and van den Broeck 1977). Needs an edge at
-// least.
+// Fits the step response to one edge or more. Each edge has its own two levels, since the tone
+// curve bends each step differently, and its own spread, since edges in the world are softer than a
+// step by different amounts. Each edge alone therefore gives a spread and, for a given radius, an
+// amount of sharpening (edge_fit.h). The unsharp mask belongs to the camera and is the same on all
+// edges: its amount is the median of theirs, and its radius is the one that fits all edges best.
+// The spread of the camera is the lower bound of the edges' spreads, apart from random errors. It
+// is estimated as a stochastic frontier: an exponential excess (Meeusen and van den Broeck 1977)
+// plus a symmetric error (Aigner, Lovell and Schmidt 1977).
 StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
                                const image::ToneCurve& tone);
 
-// The answer that `response` gives at `places_px` to a step between two levels, scaled to 0..1.
+// The heights, 0 to 1, that `response` gives at `places_px` for a step between two levels of coded
+// luma.
 std::vector<double> step_heights(const StepResponse& response,
                                  double low,
                                  double high,
                                  const std::vector<double>& places_px,
                                  const image::ToneCurve& tone);
 
-// Between the last place below 10 % of that step's height and the first above 90 %.
+// The distance in px between the last place below 10 % of the height of that step and the first
+// place above 90 %.
 double edge_spread_px(const StepResponse& response,
                       double low,
                       double high,
