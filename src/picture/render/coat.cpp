@@ -6,10 +6,14 @@
 namespace airtruth::render {
 namespace {
 
-constexpr float kDielectric = 0.04f;     // refractive index 1.5: clear coat, glass
-constexpr float kCoatRoughness = 0.1f;   // of paint and panes: a reflection blurred by some degrees
-constexpr float kMetalRoughness = 0.3f;  // rolled and handled sheet
-constexpr float kCabin = 0.05f;          // albedo of a cabin behind its windows
+// Mirrored share along the normal for a refractive index of 1.5: clear coat and glass.
+constexpr float kDielectric = 0.04f;
+// GGX's alpha of paint and panes: it blurs a reflection by a few degrees.
+constexpr float kCoatRoughness = 0.1f;
+// GGX's alpha of rolled and handled sheet metal.
+constexpr float kMetalRoughness = 0.3f;
+// Albedo of a cabin behind its windows.
+constexpr float kCabin = 0.05f;
 
 }  // namespace
 
@@ -17,7 +21,7 @@ Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& tex
   using aircraft::Finish;
   Coat coat;
   coat.roughness = material.finish == Finish::kMetal ? kMetalRoughness : kCoatRoughness;
-  // A pane mirrors however little it hides.
+  // A pane mirrors in full, however little it hides.
   coat.cover = texel[3] * (material.finish == Finish::kGlass ? 1 : material.opacity);
   coat.mirrors = material.finish != Finish::kMat;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -43,7 +47,7 @@ Glint sun_glint(const Eigen::Vector3f& normal,
   const float across = normal.dot(half);
   const float squared = roughness * roughness;
   const float spread = across * across * (squared - 1) + 1;
-  // D over pi, and the visibility: shadowing over 4 cos cos.
+  // D over pi, and the visibility: the shadowing term over 4 cos cos.
   const float facets = squared / (spread * spread);
   const float visibility =
       0.5f / (2 * to_light * to_eye * (1 - roughness) + (to_light + to_eye) * roughness);

@@ -7,7 +7,8 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kBands = 96;  // of elevation, of equal solid angle; twice as many of azimuth
+// Bands of elevation, of equal solid angle. There are twice as many sectors of azimuth.
+constexpr int kBands = 96;
 
 // The real spherical harmonics up to order 2 (Ramamoorthi and Hanrahan 2001, eq. 3).
 std::array<float, 9> harmonics(const Eigen::Vector3f& d) {
@@ -73,7 +74,7 @@ Rgb Environment::sum(const Eigen::Vector3f& direction, const std::array<float, 3
   return result;
 }
 
-// The cosine lobe's own coefficients over pi (Ramamoorthi and Hanrahan 2001, eq. 8).
+// Multiplies by the coefficients of the cosine lobe over pi (Ramamoorthi and Hanrahan 2001, eq. 8).
 Rgb Environment::irradiance_over_pi(const Eigen::Vector3f& normal_in_world) const {
   return sum(normal_in_world, {1, 2.0f / 3, 0.25f});
 }

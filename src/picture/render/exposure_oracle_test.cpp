@@ -14,13 +14,14 @@
 #include "picture/render/renderer.h"
 #include "truth/annotation/exact_box.h"
 
-// The renderer under blur and rolling shutter against the plainest answer there is: each pixel is
-// 64 x 64 places at 256 times; each place asks the lens for its ray and each triangle
-// whether the ray meets it, in doubles. No interpolation, no tree, no planes.
+// Compares the renderer, with motion blur and rolling shutter, with brute force: each pixel has 64
+// x 64 places and 256 times. For each place the lens gives the ray, and each triangle is
+// intersected with the ray in doubles, without interpolation, BVH or edge planes.
 namespace airtruth::render {
 namespace {
 
-constexpr int kPlaces = 64;  // a side
+// Places along each side of a pixel.
+constexpr int kPlaces = 64;
 constexpr int kTimes = 256;
 
 struct Setting {
@@ -42,7 +43,7 @@ class Oracle {
           triangles_.push_back({mesh.positions[t.vertex[0]].cast<double>(),
                                 mesh.positions[t.vertex[1]].cast<double>(),
                                 mesh.positions[t.vertex[2]].cast<double>()});
-    // Over all rows, for a first sieve.
+    // The moments of all rows serve for a first, coarse test.
     const double half_s = (view.shutter.exposure_s + view.shutter.readout_s) / 2;
     std::vector<Then> moments;
     for (int k = -4; k <= 4; ++k) moments.push_back(at(half_s * k / 4));
@@ -55,7 +56,7 @@ class Oracle {
     std::vector<Then> moments;
     for (int k = 0; k < kTimes; ++k)
       moments.push_back(at(row_s(x, y) + view_.shutter.exposure_s * ((k + 0.5) / kTimes - 0.5)));
-    // Where a quarter of the places agree, each at a moment of its own, so do the others.
+    // Where a quarter of the places agree, each at its own moment, the others agree as well.
     const int few = hits(x, y, near, moments, 2);
     if (few == 0) return 0;
     if (few == kPlaces * kPlaces / 4) return 1;
@@ -77,7 +78,7 @@ class Oracle {
     int count = 0;
     for (int j = step / 2; j < kPlaces; j += step)
       for (int i = step / 2; i < kPlaces; i += step) {
-        // The places of one moment, and the moments of one row of places, are spread evenly.
+        // The places of one moment, and the moments of one row of places, are evenly distributed.
         const int moment = 77 * (i / step) + 111 * (j / step);
         const Then& then = moments[static_cast<std::size_t>(moment % kTimes)];
         const Pixel place(x + (i + 0.5) / kPlaces, y + (j + 0.5) / kPlaces);
@@ -104,7 +105,7 @@ class Oracle {
         near.begin(), near.end(), [&](std::size_t t) { return meets(triangles_[t], eye, d); });
   }
 
-  // Moeller and Trumbore 1997.
+  // Intersection by Moeller and Trumbore (1997).
   static bool meets(const Triangle& t, const Vector3& eye, const Vector3& d) {
     const Vector3 ab = t[1] - t[0];
     const Vector3 ac = t[2] - t[0];
@@ -119,7 +120,7 @@ class Oracle {
     return v >= 0 && u + v <= 1 && ac.dot(q) / det > 0;
   }
 
-  // Triangles that come within two pixels of this one while its row is exposed.
+  // The triangles that come within two pixels of this pixel while its row is exposed.
   std::vector<std::size_t> near_pixel(int x, int y) const {
     std::vector<std::size_t> near;
     std::vector<Then> moments;
@@ -154,7 +155,7 @@ class Oracle {
   std::vector<std::optional<Box>> over_all_;
 };
 
-// A small aircraft of boxes and a slanted fin: opaque, few triangles, thin parts.
+// A small aircraft of boxes and a slanted fin: opaque, with few triangles and thin parts.
 aircraft::Mesh toy() {
   aircraft::Mesh mesh;
   mesh.materials.emplace_back();
@@ -223,7 +224,7 @@ Scene scene_of(const Setting& setting,
                 setting.frame_from_nominal_per_s};
   const double range_m = 16 * setting.lens.focal_px() / size_px;
   const Vector3 place = range_m * Vector3(0.97, 0.2, -0.12).normalized();
-  // Speeds in proportion, so that the blur is of some pixels at any range.
+  // Speeds grow with the range, so that the blur is a few pixels at any range.
   Twist body = setting.body;
   body.velocity_mps *= std::max(1.0, range_m / 300);
   scene.instance = {&model, {airtruth::world_from_body({70, 8, 20}), place}, 0, body};
@@ -241,8 +242,8 @@ Scene scene_of(const Setting& setting,
   return scene;
 }
 
-// Brute force's alpha through a Gaussian, pixel by pixel in doubles: the share of each pixel's
-// light that lands on another is the product of two integrals of the normal distribution.
+// The alpha of brute force after a Gaussian blur, pixel by pixel in doubles. The share of a pixel's
+// light that reaches another pixel is the product of two integrals of the normal distribution.
 double alpha_through(
     const std::vector<double>& alpha, const PixelBox& patch, double sigma_px, int x, int y) {
   const auto landed = [&](int from, int to) {
@@ -258,14 +259,15 @@ double alpha_through(
   return sum;
 }
 
-// The covered box of the layer behind a point spread, against that of brute force.
+// Compares the covered box of the layer after a point spread with that of brute force.
 void compare_covered(const image::Layer& layer,
                      const std::vector<double>& oracle,
                      const View& view,
                      const std::string& where) {
   constexpr double kSigmaPx = 0.8;
   constexpr double kLimit = (composite::kCoveredAlpha - 0.5) / 255;
-  constexpr double kOff = 0.01;  // that near to the limit, either answer is right
+  // Within this distance from the limit, either answer is correct.
+  constexpr double kOff = 0.01;
   const auto covered = composite::covered_box(
       composite::spread(layer, kSigmaPx, 0, view.width, view.height), 0, nullptr);
   std::optional<PixelBox> surely, perhaps;
@@ -284,7 +286,8 @@ void compare_covered(const image::Layer& layer,
   EXPECT_EQ(bounds(*perhaps, *covered), *perhaps) << where;
 }
 
-// Every pixel of the patch: the box of what is seen and the centroid; the worst alpha is returned.
+// Compares every pixel of the patch, the box of the visible pixels and the centroid. Returns the
+// largest alpha error.
 double compare_all(const Setting& setting,
                    const aircraft::Mesh& mesh,
                    const Model& model,
@@ -305,12 +308,12 @@ double compare_all(const Setting& setting,
       worst = std::max(worst, std::abs(alpha - truth));
       sum += alpha, centroid += alpha * Pixel(x + 0.5, y + 0.5);
       oracle_sum += truth, oracle_centroid += truth * Pixel(x + 0.5, y + 0.5);
-      // What moves a code value: less than that is not seen.
+      // Least alpha that changes a code value; a smaller one is not visible.
       constexpr double kSeen = 1.0 / 64;
       const PixelBox one{x, y, 1, 1};
       if (alpha > kSeen) box = box ? bounds(*box, one) : one;
       if (truth > kSeen) oracle_box = oracle_box ? bounds(*oracle_box, one) : one;
-      // Where brute force itself is that near to the limit, either answer is right.
+      // Where brute force itself is this close to the limit, either answer is correct.
       if (truth > 1.5 * kSeen) surely = surely ? bounds(*surely, one) : one;
       if (truth > 0.5 * kSeen) perhaps = perhaps ? bounds(*perhaps, one) : one;
     }
@@ -322,7 +325,7 @@ double compare_all(const Setting& setting,
   if (!box || !oracle_box || !surely || !perhaps) return worst;
   EXPECT_EQ(bounds(*box, *surely), *box) << where;
   EXPECT_EQ(bounds(*box, *perhaps), *perhaps) << where;
-  // The exact box is the independent answer.
+  // The exact box is an independent result.
   const auto frame = [&](double v, int most) { return std::clamp(v, 0.0, double(most)); };
   EXPECT_LE(frame(scene.exact->x, scene.view.width), oracle_box->x + 1) << where;
   EXPECT_GE(frame(scene.exact->x, scene.view.width), oracle_box->x - 1.05) << where;
@@ -342,20 +345,20 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
   for (const Setting& setting : all) {
     for (const double size_px : {5.0, 20.0, 60.0})
       EXPECT_LT(compare_all(setting, mesh, model, size_px), 1.0 / 64) << setting.name;
-    // Takes long: once through every lens, with blur and rolling shutter.
+    // This comparison is slow, so each lens has it once, with blur and rolling shutter.
     if (setting.shutter.exposure_s > 0 && setting.shutter.readout_s > 0) {
       EXPECT_LT(compare_all(setting, mesh, model, 400), 1.0 / 64) << setting.name;
     }
   }
 }
 
-// An airliner as FlightGear has it, engines, fins and all.
+// An airliner from FlightGear with engines and fins.
 TEST(Exposure, ARealAircraftAgreesWithBruteForce) {
   const aircraft::Aircraft airliner = aircraft::load_aircraft("738/738-Ryanair");
   const Model model(airliner.mesh);
   const std::vector<Setting> all = settings();
   EXPECT_LT(compare_all(all[2], airliner.mesh, model, 20), 1.0 / 64);
-  // 64 of brute force's 4,096 places, which is the most that it may be.
+  // The tolerance is 64 of the 4,096 places of brute force, the largest permitted error.
   EXPECT_LE(compare_all(all[4], airliner.mesh, model, 60), 1.0 / 64);
 }
 

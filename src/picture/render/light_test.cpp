@@ -5,19 +5,21 @@
 
 #include "picture/render/renderer.h"
 
-// Scenes of light that have an answer.
+// Scenes whose light has a known answer.
 namespace airtruth::render {
 namespace {
 
 constexpr int kStageSide = 120;
 const Box kWhole{0, 0, kStageSide, kStageSide};
-constexpr float kCoat = 0.04f;  // what a clear coat mirrors along the normal
+// Share that a clear coat mirrors along the normal.
+constexpr float kCoat = 0.04f;
 
 struct Stage {
   lens::Lens lens{lens::Pinhole{{300, 300}, {kStageSide / 2.0, kStageSide / 2.0}},
                   {kStageSide, kStageSide}};
   View view{&lens,
-            Rigid{cam_from_body().conjugate(), Vector3::Zero()},  // looks north from the origin
+            // The camera looks north from the origin.
+            Rigid{cam_from_body().conjugate(), Vector3::Zero()},
             Homography::Identity(),
             kStageSide,
             kStageSide};
@@ -48,7 +50,7 @@ void add_triangles(aircraft::Mesh& mesh, const std::vector<std::array<Eigen::Vec
   }
 }
 
-// A square about the origin across x, of half-side h, its front to the south.
+// A square about the origin across x, with half-side h and its front to the south.
 aircraft::Mesh plate(float h) {
   aircraft::Mesh mesh;
   add_triangles(
@@ -58,7 +60,7 @@ aircraft::Mesh plate(float h) {
   return mesh;
 }
 
-// By longitude and latitude, with the sphere's own normals.
+// A sphere by longitude and latitude, with exact normals.
 aircraft::Mesh sphere(float radius) {
   aircraft::Mesh mesh;
   constexpr int kSteps = 48;
@@ -94,7 +96,8 @@ Environment even(float radiance) {
   return Environment::of([=](const Vector3&) { return Rgb{radiance, radiance, radiance}; });
 }
 
-// White in a white furnace: every ray that meets it finds what it would have found behind it.
+// A white sphere in a uniform white environment: each reflected ray finds the radiance that is also
+// behind the sphere.
 TEST(LightAround, AWhiteSphereInAFurnaceIsInvisible) {
   const Stage stage;
   const image::Layer layer = stage.whole(sphere(4), only(even(1)), at_distance(100));
@@ -106,7 +109,8 @@ TEST(LightAround, AWhiteSphereInAFurnaceIsInvisible) {
   EXPECT_GT(covered, 400);
 }
 
-// A black one mirrors (Schlick): 0.04 in its middle, nearly all at its rim.
+// A black coated sphere mirrors by Schlick's formula: 0.04 in its middle and nearly everything at
+// its rim.
 TEST(LightAround, ABlackSphereHasABrightRim) {
   aircraft::Mesh black = sphere(4);
   black.materials[0].diffuse = {0, 0, 0};
@@ -119,22 +123,23 @@ TEST(LightAround, ABlackSphereHasABrightRim) {
   EXPECT_NEAR(rim.green / rim.alpha, 0.04 + 0.96 * std::pow(1 - cosine, 5), 0.02);
 }
 
-// Light from below alone, radiance 1. A plate that looks down gets all of it, one that stands
-// half, one that looks up none; tilted by t from standing, (1 + sin t) / 2.
+// The only light comes from below, with a radiance of 1. A plate that faces down receives all of
+// it, a vertical one half, one that faces up nothing; one tilted by t from the vertical receives (1
+// + sin t) / 2.
 TEST(LightAround, APlateOverBrightGroundGetsWhatItFaces) {
   const Environment below = Environment::of([](const Vector3& d) {
     return d.z() > 0 ? Rgb{1, 1, 1} : Rgb{0, 0, 0};
   });
   const Stage stage;
   for (const double pitch_deg : {0.0, 30.0, 60.0, -30.0}) {
-    // Nose up turns the side that looks south upon the ground.
+    // A raised nose turns the side that faces south towards the ground.
     const double expected = (1 + std::sin(radians(pitch_deg))) / 2;
     const float got = stage.middle(plate(10), only(below), at_distance(100, pitch_deg)).blue;
     EXPECT_NEAR(static_cast<double>(got), expected, 0.06) << pitch_deg;
   }
 }
 
-// From 60 degrees aside, whose glint goes elsewhere.
+// The sun stands 60 degrees aside, so that its glint misses the camera.
 TEST(LightAround, APlateInTheSunGivesItsLightBack) {
   const Stage stage;
   Light light = only(even(0));
@@ -145,9 +150,9 @@ TEST(LightAround, APlateInTheSunGivesItsLightBack) {
   EXPECT_NEAR(pixel.blue, (1 - kCoat) * 0.5f * 0.6f, 0.002);
 }
 
-// A ball that mirrors all light sends the sun's evenly into all directions, so that its disc has a
-// mean radiance of the sun's irradiance over 4 pi. Of a clear coat's it has the share that is
-// mirrored where the disc shows the sun: at half the angle between sun and camera (Schlick 1994).
+// A ball that mirrors all light reflects the sun's evenly into all directions, so that its disc has
+// a mean radiance of the sun's irradiance over 4 pi. A clear coat reflects the share that it
+// mirrors at half the angle between sun and camera (Schlick 1994), where the disc shows the sun.
 TEST(LightAround, ABlackSphereMirrorsTheSun) {
   aircraft::Mesh black = sphere(4);
   black.materials[0].diffuse = {0, 0, 0};
@@ -169,8 +174,8 @@ TEST(LightAround, ABlackSphereMirrorsTheSun) {
   }
 }
 
-// At the foot of a wall that is far longer than it, a plate sees half of the light. The wall, which
-// the small plate hardly hides, gives back what a light paint does: 0.6 of what it hides.
+// A small plate at the foot of a very long wall sees half of the light. The plate hardly shades the
+// wall, which reflects like light paint: 0.6 of the light that it hides.
 TEST(LightAround, AWallHidesHalfOfTheLight) {
   aircraft::Mesh mesh = plate(0.5f);
   add_triangles(mesh,
@@ -187,8 +192,9 @@ TEST(LightAround, AWallHidesHalfOfTheLight) {
   EXPECT_NEAR(pixel.red, 0.5 + 0.5 * 0.6, 0.03);
 }
 
-// The sun shines along a plate, square on a wall at its edge that is half of what the plate looks
-// at: the plate gets half of the wall's 0.6. It is found to a sixteenth of all directions.
+// The sun shines along a plate and squarely on a wall at its edge. The wall fills half of the
+// plate's view, so the plate receives half of the wall's 0.6. The renderer finds it to a sixteenth
+// of all directions.
 TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
   aircraft::Mesh mesh = plate(0.5f);
   add_triangles(mesh,
@@ -207,7 +213,7 @@ TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
   EXPECT_NEAR(pixel.red, (1 - kCoat) * 0.5f * 0.6f, 0.6f / 16);
 }
 
-// Bare metal of albedo 1 mirrors all that comes: in a furnace it is invisible too.
+// Bare metal of albedo 1 mirrors all light, so it is invisible in a uniform environment as well.
 TEST(LightAround, AWhiteMetalSphereInAFurnaceIsInvisible) {
   aircraft::Mesh metal = sphere(4);
   metal.materials[0].finish = aircraft::Finish::kMetal;
@@ -216,7 +222,7 @@ TEST(LightAround, AWhiteMetalSphereInAFurnaceIsInvisible) {
   for (const image::LayerPixel& pixel : layer.pixels) EXPECT_NEAR(pixel.red, pixel.alpha, 0.001);
 }
 
-// And it gives back the sun by its colour, from wherever the sun shines.
+// It also reflects the sun in its own colour, wherever the sun stands.
 TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
   aircraft::Mesh copper = sphere(4);
   copper.materials[0].finish = aircraft::Finish::kMetal;
@@ -236,8 +242,8 @@ TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
   EXPECT_NEAR(blue / red, 0.4 / 0.9, 0.02);
 }
 
-// A pane that hides a quarter of what is behind it mirrors as much as one that hides all; what it
-// hides is a dark inside.
+// A pane that hides a quarter of its background mirrors as much as an opaque one. The share that it
+// hides shows a dark interior.
 TEST(LightAround, AClearPaneMirrorsAsAnOpaqueOneDoes) {
   const Stage stage;
   for (const float opacity : {0.25f, 1.0f}) {
@@ -250,7 +256,7 @@ TEST(LightAround, AClearPaneMirrorsAsAnOpaqueOneDoes) {
   }
 }
 
-// What stands for turning blades is mat.
+// The discs that represent turning blades are mat.
 TEST(LightAround, AMatPlateMirrorsNothing) {
   aircraft::Mesh mat = plate(10);
   mat.materials[0].finish = aircraft::Finish::kMat;
@@ -259,8 +265,8 @@ TEST(LightAround, AMatPlateMirrorsNothing) {
   EXPECT_EQ(stage.middle(mat, only(even(1)), at_distance(100)).red, 0);
 }
 
-// Light of one direction on a Lambert surface: order 2 keeps the cosine within 9 % of its height
-// (Ramamoorthi and Hanrahan 2001).
+// Light of one direction on a Lambert surface: order 2 approximates the cosine within 9 % of its
+// maximum (Ramamoorthi and Hanrahan 2001).
 TEST(Environment, IrradianceOfOneDirectionIsNearlyTheCosine) {
   const Vector3 from = Vector3(1, 2, -3).normalized();
   constexpr double kHalfDeg = 8;

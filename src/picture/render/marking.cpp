@@ -20,8 +20,8 @@ Bilinear scaled(const std::array<double, 4>& corner, double scale) {
           static_cast<float>((corner[0] - corner[1] - corner[2] + corner[3]) * scale)};
 }
 
-// The same instructions in vectors of 16, 8 or 4, as the machine has them. No product is fused with
-// its sum (-ffp-contract=off), so that the answers are the same bits on all of them.
+// The compiler emits these functions with vectors of 16, 8 or 4 numbers, as the machine supports
+// them. No product is fused with its sum (-ffp-contract=off), so all variants give the same bits.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define AIRTRUTH_VECTORS __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
@@ -29,7 +29,7 @@ Bilinear scaled(const std::array<double, 4>& corner, double scale) {
 #define AIRTRUTH_VECTORS
 #endif
 
-// Marks the samples that are inside; true where every sample is marked by now.
+// Marks the samples that are inside. Returns true where every sample is marked.
 template <typename Inside>
 [[gnu::always_inline]] inline bool mark_where(int n, std::int32_t* covered, const Inside& inside) {
   std::int32_t all = -1;
@@ -41,7 +41,8 @@ template <typename Inside>
   return all == -1;
 }
 
-// Inside: on the inner side of all three (an unused one is +1 everywhere).
+// A sample is inside where it is on the inner side of all three sides; an unused side is +1
+// everywhere.
 AIRTRUTH_VECTORS
 bool mark_all(
     const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
@@ -58,7 +59,7 @@ bool mark_all(
   });
 }
 
-// The same for the only side that crosses the pixel.
+// The same for a single side that crosses the pixel.
 AIRTRUTH_VECTORS
 bool mark_one(
     const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
@@ -67,8 +68,9 @@ bool mark_one(
       n, covered, [=](int i) { return (p.a + p.b * px[i]) + py[i] * (p.c + p.d * px[i]) >= 0; });
 }
 
-// A side that goes straight over a pixel and evenly through its exposure: a + b x + c y + d t.
-// Sides of what is seen from afar are such, to a fraction of what a sample can tell.
+// The linear form a + b x + c y + d t of a side, where the side is straight over the pixel and
+// moves uniformly during its exposure. Sides of distant objects are of this form to within a
+// fraction of the distance between samples.
 std::optional<Bilinear> even_side(const Swept& side) {
   constexpr float kNegligiblePx = 0.004F;
   const Bilinear& p = side.steady;
@@ -78,7 +80,8 @@ std::optional<Bilinear> even_side(const Swept& side) {
                          std::abs(r.a) + std::abs(r.b) + std::abs(r.c) + std::abs(r.d);
   const float slope = std::hypot(p.b + p.d / 2, p.c + p.d / 2);
   if (!(left_out < kNegligiblePx * slope)) return std::nullopt;
-  // About the pixel's middle: x y is (x + y) / 2 - 1/4 and u (b x + c y) is u (b + c) / 2, nearly.
+  // Linearised about the pixel's middle: x y is approximately (x + y) / 2 - 1/4 and u (b x + c y)
+  // is u (b + c) / 2.
   const float drift = q.a + (q.b + q.c) / 2 + q.d / 4;
   const float bend = (r.a + (r.b + r.c) / 2 + r.d / 4) / 3;
   return Bilinear{p.a - p.d / 4 - drift + bend, p.b + p.d / 2, p.c + p.d / 2, 2 * drift};
@@ -117,7 +120,7 @@ bool mark_one_even(const Bilinear* side,
       n, covered, [=](int i) { return (p.a + p.b * px[i]) + (p.c * py[i] + p.d * pt[i]) >= 0; });
 }
 
-// The same for sides that are not; an unused one is 1 everywhere.
+// The same for sides without a linear form; an unused one is 1 everywhere.
 AIRTRUTH_VECTORS
 void side_values(
     const Swept* side, const float* px, const float* py, const float* pt, int n, float* least) {
@@ -176,7 +179,7 @@ bool mark(const std::array<Bilinear, 3>& sides,
   return mark_them(sides.data(), places.x.data(), places.y.data(), samples, covered);
 }
 
-// By the cheapest way that is exact enough.
+// Chooses the cheapest method that is accurate enough.
 bool mark(const std::array<Swept, 3>& sides,
           int crossing,
           const Places& places,

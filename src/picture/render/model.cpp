@@ -11,9 +11,9 @@
 namespace airtruth::render {
 namespace {
 
-// No "threads=1" here: Embree would hold all of oneTBB, and so the whole pipeline, to one thread.
-// One instruction set for all machines, so that a frame has the same bytes on each: AVX2 (2013 and
-// later), or SSE4.2 where there is no AVX2.
+// The settings omit "threads=1": with it Embree would limit all of oneTBB, and so the whole
+// pipeline, to one thread. All machines use one instruction set, so that a frame has the same bytes
+// on each: AVX2 (2013 and later), or SSE4.2 where AVX2 is missing.
 RTCDevice new_device() {
   for (const char* settings : {"isa=avx2", "isa=sse4.2"}) {
     if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
@@ -55,7 +55,8 @@ RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::
   return scene;
 }
 
-// Texels per metre over a triangle: the square root of the ratio of its areas.
+// Texels per metre over a triangle: the square root of the ratio of its area in the texture to that
+// in space.
 float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   const int texture = mesh.materials[triangle.material].texture;
   if (texture < 0) return 0;
@@ -70,8 +71,7 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
 }
 
-// How many of a texture's texels are translucent, over any rectangle (a summed-area table: Crow
-// 1984).
+// Counts a texture's translucent texels in any rectangle (a summed-area table: Crow 1984).
 class TranslucentTexels {
  public:
   explicit TranslucentTexels(const aircraft::Texture& texture)
@@ -90,8 +90,8 @@ class TranslucentTexels {
     }
   }
 
-  // Any among those that a bilinear look-up within the triangle reads? Yes, to be sure, where it
-  // wraps round.
+  // True where a bilinear look-up within the triangle may read a translucent texel. Where the
+  // texture wraps round, the answer is true without a test.
   bool any(const std::array<Eigen::Vector2f, 3>& uvs) const {
     Eigen::Vector2f low = uvs[0].cwiseMin(uvs[1]).cwiseMin(uvs[2]);
     Eigen::Vector2f high = uvs[0].cwiseMax(uvs[1]).cwiseMax(uvs[2]);
@@ -121,8 +121,8 @@ class TranslucentTexels {
   std::vector<std::uint32_t> sums_;
 };
 
-// Which triangles nothing shines through. A livery's texture has holes for what is cut out
-// elsewhere in it.
+// By [part][triangle]: 1 where the whole triangle is opaque. A livery's texture has holes in
+// regions that other triangles use as cut-outs.
 std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& mesh) {
   std::vector<std::unique_ptr<TranslucentTexels>> tables;
   for (const aircraft::Texture& texture : mesh.textures)
@@ -174,7 +174,8 @@ std::optional<Hit> nearest_blocker(const Model::Impl& model,
   query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
   query.ray.dir_z = direction.z();
   query.ray.tnear = 0;
-  query.ray.tfar = reach_m;  // becomes that of the nearest hit so far
+  // Embree shortens it to the distance of the nearest hit so far.
+  query.ray.tfar = reach_m;
   query.ray.mask = 0xffffffffu;
   std::optional<Hit> best;
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {

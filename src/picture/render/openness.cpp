@@ -10,19 +10,28 @@
 namespace airtruth::render {
 namespace {
 
-constexpr std::size_t kMostRays = 1'500'000;  // of a model: under a second on two cores
-constexpr std::size_t kMostDirections = 64;   // of a corner: 1/64 of all light is one step
+// Rays for a whole model, which take under a second on two cores.
+constexpr std::size_t kMostRays = 1'500'000;
+// Directions for each corner: one step is 1/64 of all light.
+constexpr std::size_t kMostDirections = 64;
 constexpr std::size_t kFewestDirections = 8;
-constexpr std::size_t kFewer = 4;  // times, for insides and for what comes back
-constexpr float kInside = 0.1f;    // a side that is less open is likely the inside of a skin
-constexpr float kInset = 0.25f;    // from a corner towards the triangle's middle, as a share
-constexpr float kStartM = 0.02f;  // above the surface: files draw markings a centimetre above skins
-constexpr float kOwnPaint = 0.6f;         // albedo of what hides light: a light paint
-constexpr float kNothingHidden = 0.999f;  // share
-constexpr float kReachM = 60.0f;          // longer than any aircraft's half
+// Divisor of the number of directions for insides and for reflected light.
+constexpr std::size_t kFewer = 4;
+// A side with a smaller open share is probably the inside of a skin.
+constexpr float kInside = 0.1f;
+// Distance from a corner towards the triangle's middle, as a share.
+constexpr float kInset = 0.25f;
+// Start of a ray above the surface: model files draw markings a centimetre above skins.
+constexpr float kStartM = 0.02f;
+// Albedo of the hiding parts: a light paint.
+constexpr float kOwnPaint = 0.6f;
+// From this open share on, nothing counts as hidden.
+constexpr float kNothingHidden = 0.999f;
+// Reach of a ray, which exceeds half the length of any aircraft.
+constexpr float kReachM = 60.0f;
 
-// Directions about +z, distributed by cosine: Hammersley's points (Halton 1960) through Malley's
-// method.
+// Directions about +z with a cosine distribution: Hammersley's points (Halton 1960) mapped by
+// Malley's method.
 std::vector<Eigen::Vector3f> directions(std::size_t count) {
   std::vector<Eigen::Vector3f> result;
   for (std::size_t i = 0; i < count; ++i) {
@@ -38,7 +47,7 @@ std::vector<Eigen::Vector3f> directions(std::size_t count) {
   return result;
 }
 
-// Two axes across a unit normal (Duff et al. 2017).
+// Two axes perpendicular to a unit normal (Duff et al. 2017).
 std::array<Eigen::Vector3f, 2> axes_across(const Eigen::Vector3f& n) {
   const float sign = std::copysign(1.0f, n.z());
   const float a = -1 / (sign + n.z());
@@ -54,7 +63,7 @@ Eigen::Vector3f face_of(const aircraft::Mesh& mesh, const aircraft::Triangle& tr
   return face / face.norm();
 }
 
-// A point just off a side of a triangle.
+// A point slightly above a side of a triangle.
 struct Place {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
@@ -84,9 +93,10 @@ Openness openness_at(const Model::Impl& model,
   return {static_cast<float>(open) / count, towards / count, Eigen::Vector3f::Zero()};
 }
 
-// What is met there gives back, of a light paint: a share of the irradiance about the direction in
-// which it is itself open. Light that goes to and fro between it and others as open as it is
-// counted (of what leaves it the hidden share returns).
+// The light that the hit surface reflects, as that of a light paint: a share of the irradiance
+// about the direction in which the surface itself is open. Multiple reflections between surfaces
+// that are equally open are included: of the light that leaves the surface, the hidden share
+// returns.
 Eigen::Vector3f given_back_by(const Model::Impl& model,
                               const ModelOpenness& openness,
                               const Hit& hit,
@@ -102,7 +112,8 @@ Eigen::Vector3f given_back_by(const Model::Impl& model,
   return back / length * there.towards;
 }
 
-// Near each corner of all triangles of what does not spin: visit(point, face, front, back).
+// Calls visit(point, face, front, back) near each corner of all triangles of the parts that do not
+// spin.
 template <typename Visit>
 void each_corner(const Model::Impl& model, ModelOpenness& openness, const Visit& visit) {
   for (std::size_t p = 0; p < model.mesh.parts.size(); ++p) {
@@ -123,7 +134,7 @@ void each_corner(const Model::Impl& model, ModelOpenness& openness, const Visit&
   }
 }
 
-// Adds what comes back there, by what is known of what is open.
+// Adds the reflected light, from the known openness.
 void find_given_back(const Model::Impl& model,
                      const ModelOpenness& known,
                      const Place& place,
@@ -153,7 +164,8 @@ ModelOpenness model_openness(const Model::Impl& model) {
       directions(std::max(kFewestDirections, count / kFewer));
   each_corner(model, result, [&](const auto& point, const auto& face, auto& front, auto& back) {
     front = openness_at(model, Place(point, face), about_z);
-    const bool is_inside = front.share < kInside;  // triangles may be turned inside out
+    // Triangles may be turned inside out.
+    const bool is_inside = front.share < kInside;
     back = openness_at(model, Place(point, -face), is_inside ? about_z : few_about_z);
   });
   const ModelOpenness known = result;

@@ -46,7 +46,8 @@ RayGrid::RayGrid(const View& view, const PixelBox& patch)
     fill(view.at(span_.begin_s), 1);
     return;
   }
-  // Where the plane map stands still, a pixel's ray in the camera is asked of the lens once.
+  // Where the homography does not change over time, the lens is called once for each pixel's ray in
+  // the camera.
   const bool turns_alone = view.frame_from_nominal_per_s.isZero(0);
   if (!turns_alone) {
     for (int k = 0; k < 3; ++k) fill(view.at(span_.at(k)), k);

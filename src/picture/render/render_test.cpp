@@ -18,7 +18,7 @@ lens::Lens pinhole(double focal_px) {
                     {kSide, kSide});
 }
 
-// Looks north from the origin.
+// The camera looks north from the origin.
 View view_through(const lens::Lens& lens) {
   return {&lens,
           Rigid{cam_from_body().conjugate(), Vector3::Zero()},
@@ -45,8 +45,8 @@ void add_quad(aircraft::Mesh& mesh,
   mesh.parts[0].triangles.push_back({{base, base + 2, base + 3}, m});
 }
 
-// A square plate across the line of sight, `half` metres from its middle to its sides, at `north`
-// metres.
+// A square plate across the line of sight, at a distance of `north` metres. `half` is half its
+// side, in metres.
 aircraft::Mesh plate(float half, float north, float opacity = 1) {
   aircraft::Mesh mesh;
   aircraft::Material material;
@@ -68,15 +68,17 @@ double alpha_sum(const image::Layer& layer) {
 
 Light white() { return {{-1, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.3f, 0.3f, 0.3f}, {0.1f, 0.1f, 0.1f}}; }
 
-// A plate of half-side h at distance d spans 2 f h / d pixels: its edges fall inside pixels, whose
-// cover is exact.
+// A plate of half-side h at distance d spans 2 f h / d pixels. Its edges fall inside pixels, whose
+// coverage must be exact.
 TEST(Render, APlateCoversWhatProjectionSays) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
   const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
-  const double side = 2 * 300.0 * 10 / 100 * 1.0;  // 60 px: from 70 to 130
+  // 60 px, from 70 to 130.
+  const double side = 2 * 300.0 * 10 / 100 * 1.0;
   EXPECT_NEAR(alpha_sum(layer), side * side, 0.5);
-  const Model odd(plate(10.1f, 100));  // from 69.7 to 130.3
+  // The plate spans 69.7 to 130.3 px.
+  const Model odd(plate(10.1f, 100));
   const image::Layer other = render(view_through(lens), white(), {{&odd, {}, 0}}, {kAll});
   EXPECT_NEAR(other.pixels[other.index(69, 100)].alpha, 0.3, 1.0 / 64);
   EXPECT_NEAR(other.pixels[other.index(69, 69)].alpha, 0.09, 1.0 / 64);
@@ -103,7 +105,7 @@ aircraft::Mesh disc(int n, double r, float north) {
   return mesh;
 }
 
-// Its area is n/2 r^2 sin(2 pi / n), and (f / d)^2 of that in the picture.
+// The polygon's area is n/2 r^2 sin(2 pi / n); the picture scales it by (f / d)^2.
 TEST(Render, ADiscHasItsArea) {
   const lens::Lens lens = pinhole(300);
   for (const double diameter_px : {10.0, 40.0, 90.0}) {
@@ -116,8 +118,8 @@ TEST(Render, ADiscHasItsArea) {
   }
 }
 
-// The share of the unit square at (x, y) on the side of the line n . p <= c (Sutherland and Hodgman
-// 1974; shoelace).
+// The share of the unit square at (x, y) on the side of the line where n . p <= c (clipping by
+// Sutherland and Hodgman 1974, area by the shoelace formula).
 double share_below(double x, double y, const Eigen::Vector2d& normal, double c) {
   const std::array<Eigen::Vector2d, 4> square = {{{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
   std::vector<Eigen::Vector2d> kept;
@@ -138,14 +140,16 @@ double share_below(double x, double y, const Eigen::Vector2d& normal, double c) 
   return std::abs(twice) / 2;
 }
 
-// A plate rolled by 5 degrees, far larger than the picture but for one edge that crosses it.
+// The plate is rolled by 5 degrees and far larger than the picture, which only one of its edges
+// crosses.
 TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
   const lens::Lens lens = pinhole(300);
   for (const double slant_deg : {5.0, 31.0, 88.0}) {
     const double a = radians(slant_deg);
     const Eigen::Vector2d along(std::cos(a), std::sin(a));  // right, down
     const Eigen::Vector2d across(-std::sin(a), std::cos(a));
-    const auto corner = [&](double u, double v) {  // at 100 m: a third of a metre is a pixel
+    // At 100 m a third of a metre is one pixel.
+    const auto corner = [&](double u, double v) {
       const Eigen::Vector2d p = u * along + v * across;
       return Eigen::Vector3f(100, static_cast<float>(p.x()), static_cast<float>(p.y()));
     };
@@ -168,20 +172,22 @@ TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
 TEST(Render, ASunlitPlateShinesAsLambertSays) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
-  // The sun stands behind the camera, square to the plate; a vertical face sees half sky, half
-  // ground.
+  // The sun stands behind the camera and square to the plate. A vertical face sees half sky and
+  // half ground.
   const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.5 + 0.2, 1e-4);
   Light aslant = white();
   aslant.to_sun_in_world =
-      Vector3(-1, 0, -std::sqrt(3.0)).normalized();  // 60 degrees off its normal
+      // The sun stands 60 degrees off the plate's normal.
+      Vector3(-1, 0, -std::sqrt(3.0)).normalized();
   const image::Layer dimmer = render(view_through(lens), aslant, {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(dimmer.pixels[dimmer.index(100, 100)].red, 0.25 + 0.2, 1e-4);
 }
 
 TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
   aircraft::Mesh mesh = plate(10, 100);
-  // A smaller one off the line of sight, in the sun's way: the sun is up and behind the camera.
+  // A smaller plate beside the line of sight blocks the sun, which stands above and behind the
+  // camera.
   add_quad(mesh, {{{90, -3, -13}, {90, 3, -13}, {90, 3, -7}, {90, -3, -7}}}, {});
   Light light = white();
   light.to_sun_in_world = Vector3(-1, 0, -1).normalized();
@@ -204,7 +210,8 @@ TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
   EXPECT_NEAR(layer.coverage[0][middle], 0.75, 1e-5);
   EXPECT_NEAR(layer.coverage[1][middle], 0.25, 1e-5);
   EXPECT_NEAR(layer.pixels[middle].red, 0.25 * 0.7 + 0.75 * 0.7, 1e-3);
-  EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);  // what it would show alone
+  // The area that the plate alone would cover.
+  EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);
   EXPECT_NEAR(layer.area_alone_px[1], 0.25 * 3600, 2);
 }
 
@@ -229,7 +236,8 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
   const lens::Lens lens = pinhole(300);
   const Model model(plate(10, 100));
   const Rigid aside{Quaternion::Identity(),
-                    Vector3(0, 100.0 / 3, 0)};  // its middle on the right border
+                    // Its middle lies on the right border.
+                    Vector3(0, 100.0 / 3, 0)};
   const image::Layer layer =
       render(view_through(lens), white(), {{&model, aside, 0}}, {Box{169, 69, 62, 62}});
   EXPECT_NEAR(layer.area_alone_in_frame_px[0], 1800, 5);
@@ -263,7 +271,7 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
   return worst;
 }
 
-// An aircraft that flies past and through the eye: parts before and behind the lens's plane.
+// The aircraft passes through the eye: parts lie in front of and behind the plane of the lens.
 TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
   const Stand stand("733/733-AirBaltic");
   for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {40, 40}),

@@ -14,8 +14,8 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kNeighbourSamples =
-    128;  // of a pixel that looks whole beside an edge, before it is believed
+// Samples of a pixel beside an edge before it counts as fully covered or empty.
+constexpr int kNeighbourSamples = 128;
 constexpr int kAreaSamples = 64;  // per side, of the part of an aircraft that the frame cuts off
 
 // A patch's sums while it is refined.

@@ -86,11 +86,11 @@ SampleCounts counts_for(int quality, double size_px) {
     case 2:
       return {16, 128, 256, 8, 4};
     case 3:
-      // The smaller, the more of a livery is in one pixel, and the fewer pixels there are to pay
-      // for.
+      // In a smaller aircraft each pixel contains more of the livery, and fewer pixels need
+      // samples.
       if (size_px <= 24) return {64, 1024, 1024, 64, 64};
       if (size_px <= 64) return {16, 512, 512, 32, 16};
-      // The larger, the more pixels of outline there are for one to be unlucky.
+      // A larger aircraft has more pixels on its outline, and with them a larger worst error.
       return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8};
     case 4:
       return {64, 1024, 4096, 16, 16};

@@ -38,7 +38,7 @@ Texel bilinear(const aircraft::Texture& texture, std::size_t index, float u, flo
   return result;
 }
 
-// Trilinear (Williams 1983).
+// Trilinear texture look-up (Williams 1983).
 Texel texel_at(const Placed& placed, const Hit& hit, float footprint_m) {
   const aircraft::Mesh& mesh = placed.model->mesh;
   const auto part = static_cast<std::size_t>(hit.part);
@@ -79,10 +79,12 @@ float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
 
 namespace {
 
-// A point of the surface as light meets it, in body coordinates.
+// A point of the surface in body coordinates, as the shading uses it.
 struct Surface {
-  Eigen::Vector3f face;    // unit, towards the viewer
-  Eigen::Vector3f normal;  // unit, smooth, on the face's side
+  // Unit vector towards the viewer's side.
+  Eigen::Vector3f face;
+  // Unit vector of the smooth surface, on the same side as `face`.
+  Eigen::Vector3f normal;
   Openness openness;
 };
 
@@ -111,7 +113,7 @@ Surface surface_at(const Placed& placed, const BodyRay& ray, const Hit& hit) {
 
 Texel albedo_texel(const Placed& placed, const Hit& hit, float footprint_m) {
   Texel texel = texel_at(placed, hit, footprint_m);
-  // A coarse level mixes in the holes beside an opaque triangle's own texels.
+  // A coarse mip level mixes holes into an opaque triangle's own texels.
   const bool is_opaque =
       placed.model->opaque[static_cast<std::size_t>(hit.part)][hit.triangle] != 0;
   if (is_opaque && texel[3] > 0 && texel[3] < 1) {
@@ -121,7 +123,7 @@ Texel albedo_texel(const Placed& placed, const Hit& hit, float footprint_m) {
   return texel;
 }
 
-// Blinn-Phong, normalised so that a shinier surface is smaller and brighter, not brighter alone.
+// Blinn-Phong with a normalisation: a shinier surface has a smaller and brighter glint.
 float glint_of(const Surface& surface,
                const Eigen::Vector3f& to_sun,
                const Eigen::Vector3f& view,
@@ -132,13 +134,13 @@ float glint_of(const Surface& surface,
   return (exponent + 8) / 25.0f * std::pow(std::max(0.0f, surface.normal.dot(half)), exponent);
 }
 
-// Light from all around: what reaches the paint (over pi), and what its clear coat mirrors.
+// Light of the surroundings: what reaches the paint (over pi), and what its clear coat mirrors.
 struct Around {
   Rgb diffuse{};
   Rgb mirrored{};
 };
 
-// What the aircraft's own paint gives back to the surface, over pi.
+// Light that the aircraft's own paint reflects to the surface, over pi.
 Rgb given_back(const Placed& placed, const Eigen::Vector3f& share_towards, const Light& light) {
   const float share = share_towards.norm();
   if (!(share > 1e-3f)) return {};
@@ -149,13 +151,14 @@ Rgb given_back(const Placed& placed, const Eigen::Vector3f& share_towards, const
   return result;
 }
 
-// Of the light from all around an aircraft hides a share, and gives back some of its own. What
-// remains comes about a direction that leans away from what hides the rest.
+// The aircraft hides a share of the light of the surroundings and reflects some of its own. The
+// mean direction of the remaining light leans away from the hiding parts.
 Around light_around(const Placed& placed,
                     const Surface& surface,
                     const Eigen::Vector3f& mirror,
                     const Light& light) {
-  constexpr float kNothingHidden = 0.999f;  // share
+  // From this open share on, nothing counts as hidden.
+  constexpr float kNothingHidden = 0.999f;
   const float open = surface.openness.share;
   Around around;
   around.mirrored = light.surroundings->radiance(placed.world_from_body * mirror);
@@ -164,7 +167,7 @@ Around light_around(const Placed& placed,
         light.surroundings->irradiance_over_pi(placed.world_from_body * surface.normal);
     return around;
   }
-  // As the face's own directions lean from the face's normal, so do those of the smooth normal.
+  // The directions about the smooth normal lean in the same way as those about the face's normal.
   const Eigen::Vector3f lean =
       surface.openness.towards + 2 * open / 3 * (surface.normal - surface.face);
   const Eigen::Vector3f towards = lean.norm() > 1e-6f ? lean.normalized() : surface.normal;
@@ -177,7 +180,7 @@ Around light_around(const Placed& placed,
   return around;
 }
 
-// A sky that goes evenly from ground to zenith colour (hemisphere lighting).
+// A sky whose colour changes linearly from ground to zenith (hemisphere lighting).
 Rgb hemisphere(const Placed& placed, const Surface& surface, const Light& light) {
   const float upward = 0.5f * (1 + surface.normal.dot(placed.up_in_body));
   Rgb result;
@@ -186,7 +189,7 @@ Rgb hemisphere(const Placed& placed, const Surface& surface, const Light& light)
   return result;
 }
 
-// Irradiance over pi of the sun on the paint, of a sun of 1.
+// Irradiance over pi on the paint for a sun of 1.
 float sun_on(const Placed& placed, const Surface& surface, const Eigen::Vector3f& point) {
   const Eigen::Vector3f& to_sun = placed.to_sun_in_body;
   const float cosine = surface.normal.dot(to_sun);
@@ -201,8 +204,9 @@ Rgb as_opengl(const Placed& placed,
               float sun,
               const Eigen::Vector3f& view,
               const Light& light) {
-  constexpr float kGlossShare =
-      0.08f;  // painted metal; the files' own specular colours are the game's taste
+  // Specular reflectance of painted metal. The specular colours of the model files are not
+  // physical.
+  constexpr float kGlossShare = 0.08f;
   const float glint =
       sun > 0 ? sun * glint_of(surface, placed.to_sun_in_body, view, material.shininess) : 0;
   const Rgb around = hemisphere(placed, surface, light);
@@ -214,7 +218,7 @@ Rgb as_opengl(const Placed& placed,
   return rgb;
 }
 
-// A surface that mirrors a share of the light and scatters some of the rest. Premultiplied.
+// A surface that mirrors a share of the light and scatters part of the rest. Premultiplied.
 Rgb coated(const Placed& placed,
            const Surface& surface,
            const aircraft::Material& material,

@@ -13,13 +13,13 @@
 namespace airtruth::render {
 namespace {
 
-// More triangles than this over one pixel, and rays are faster.
+// Largest number of triangles over one pixel; with more, rays are faster.
 constexpr std::size_t kMostTriangles = 192;
-// More entries than this in the lists of a patch (an aircraft that closes round the eye), and rays
-// do all of it.
+// Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
+// and rays then do all the work.
 constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 25;
 constexpr double kMarginPx = 0.02;
-// A side shorter than this is as good as straight under any lens.
+// A side shorter than this many pixels counts as straight under any lens.
 constexpr double kStraightPx = 4;
 
 std::optional<Pixel> frame_pixel(const View& view,
@@ -38,8 +38,8 @@ std::optional<Pixel> frame_pixel(const View& view,
 struct Silhouette::Pencil {
   bool known = true;
   bool moves = false;
-  // Directions at a pixel's corners: in world at an instant (moment 1); in body, with e x d, at the
-  // three moments of the pixel's exposure (or moment 1 alone) while things move.
+  // Directions at a pixel's corners. At an instant: in world (moment 1). During a motion: in body,
+  // with e x d, at the three moments of the pixel's exposure (or at moment 1 alone).
   Thrice<std::array<Vector3, 4>> direction;
   Thrice<std::array<Vector3, 4>> moment;
   bool exposes = false;
@@ -110,7 +110,7 @@ void Silhouette::add_part(const Actor& actor,
       result.pixel = pixel ? *pixel : Pixel(nowhere.head<2>());
     }
   };
-  // A part that spins while the shutter is open is for rays.
+  // Rays handle a part that spins during the exposure.
   const bool spins = actor.moves && mesh.parts[part].spins;
   const std::optional<Reach> disc =
       spins ? std::optional(reach_of_disc(mesh, mesh.parts[part], eyes)) : std::nullopt;
