@@ -21,27 +21,29 @@ namespace airtruth::experiment {
 
 namespace fs = std::filesystem;
 
-// What is compared, ranked and given an interval: a number of a sequence's score.
+// One number of a sequence's score, by which trackers are compared and ranked, with an interval.
 struct Measure {
   const char* name;
   double evaluation::Score::*value;
   bool more_is_better;
-  bool weighs_by_frames;         // GOT-10k's are over all frames together
-  bool zero_is_unknown = false;  // sequences without the number are left out
+  // Sequences are weighted by their frames, as for GOT-10k's measures.
+  bool weighs_by_frames;
+  // A value of 0 means unknown; such sequences are left out.
+  bool zero_is_unknown = false;
 };
 const std::vector<Measure>& measures();
 
-// Where a tracker lost its object for the first time.
+// The first frame at which a tracker lost its object.
 struct Loss {
-  std::int64_t frame = 0;  // of the video
+  std::int64_t frame = 0;  // frame number in the video
   std::optional<double> time_s;
   std::optional<double> range_m;
 };
 
 struct ScoredSequence {
-  std::size_t truth = 0;  // index of its TruthClip
+  std::size_t truth = 0;  // index in Assessment::truths
   std::string name;
-  std::vector<std::optional<Box>> answers;  // of the one pass; empty without it
+  std::vector<std::optional<Box>> answers;  // answers of the one-pass run; empty without one
   std::optional<evaluation::Score> score;
   std::vector<evaluation::Outcome> outcomes;
   std::optional<Loss> loss;
@@ -52,12 +54,16 @@ struct ScoredSequence {
 struct ScoredTracker {
   std::string name;
   std::vector<ScoredSequence> sequences;
-  std::optional<evaluation::Score> overall;                              // of the one passes
-  std::map<std::string, std::optional<evaluation::Interval>> intervals;  // by measure
-  // Mean angle between the rays to the answers and to the truth.
+  // The score over all one-pass runs.
+  std::optional<evaluation::Score> overall;
+  // By the measure's name.
+  std::map<std::string, std::optional<evaluation::Interval>> intervals;
+  // Mean angle between the rays to the answered and to the true positions.
   std::optional<double> angle_mrad;
-  std::int64_t lost = 0;  // sequences in which it lost its object
-  // By "range_m", "size_px", "contrast"; and by the background's name.
+  // Number of sequences in which the tracker lost its object.
+  std::int64_t lost = 0;
+  // `bins` has the keys "range_m", "size_px" and "contrast"; `backgrounds` has the backgrounds'
+  // names.
   std::map<std::string, std::vector<evaluation::Bin>> bins;
   std::map<std::string, evaluation::Bin> backgrounds;
   std::optional<evaluation::Restart> restart;
@@ -66,50 +72,62 @@ struct ScoredTracker {
 
 struct Comparison {
   std::string a, b;
-  std::int64_t sequences = 0;  // that both have
+  std::int64_t sequences = 0;  // sequences that both trackers have
   evaluation::Paired auc;
 };
 
 struct Assessment {
   std::string set;  // name of the data set's folder
   std::vector<TruthClip> truths;
-  std::vector<ScoredTracker> trackers;  // best AUC first
-  std::vector<Comparison> comparisons;  // of each pair
-  std::pair<int, int> eao_range{};      // frames
-  bool until_loss = false;              // of the frames per second: AssessOptions
+  // In order of decreasing AUC.
+  std::vector<ScoredTracker> trackers;
+  std::vector<Comparison> comparisons;  // one for each pair of trackers
+  std::pair<int, int> eao_range{};      // in frames
+  // True where frames per second leave out lost frames (AssessOptions).
+  bool until_loss = false;
 };
 
 struct AssessOptions {
-  int origin_px = 0;                             // what the results call the first pixel, 0 or 1
-  std::optional<std::pair<int, int>> eao_range;  // else by the data set's lengths
-  bool until_loss = false;                       // frames per second without the frames from the
-                                                 // first loss on
-  bool with_film = true;                         // contrast and stills, for which videos are read
-  int jobs = 0;                                  // 0: one per core
+  // Coordinate that the results give to the first pixel, 0 or 1.
+  int origin_px = 0;
+  // Empty: the range follows from the lengths of the data set's sequences.
+  std::optional<std::pair<int, int>> eao_range;
+  // True: frames per second leave out the frames from the first loss on.
+  bool until_loss = false;
+  // True: contrast and stills are included, for which the videos are read.
+  bool with_film = true;
+  // Number of threads; 0 means one per core.
+  int jobs = 0;
   Warn warn;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;  // videos read
+  std::function<void(std::int64_t done, std::int64_t total)>
+      progress;  // counts videos that were read
   std::stop_token stop;
 };
 
-// Scores folders of results (trajectories.h; a folder's name is its tracker's) against a data set.
-// Warns of results for sequences that the set has not, and of sequences without a result, which are
-// left out of that tracker's score. Error for a folder without a result for any sequence, and for
-// two of one name.
+// Scores folders of results (trajectories.h) against a data set. A folder's name is the tracker's
+// name. Warns of results for sequences that the set lacks, and of sequences without a result, which
+// are left out of that tracker's score. Throws Error for a folder without a result for any
+// sequence, and for two folders of the same name.
 Assessment assess(const fs::path& set,
                   const std::vector<fs::path>& results,
                   const AssessOptions& options);
 
-// evaluation.json, trackers.csv, sequences.csv and breakdown.csv, in a folder.
+// Writes evaluation.json, trackers.csv, sequences.csv and breakdown.csv into a folder.
 void write_tables(const Assessment& assessment, const fs::path& out);
 
-// Kendall's tau of the AUCs of the trackers that this evaluation and another evaluation.json share.
+// Kendall's tau between the AUCs of this evaluation and of another evaluation.json, over the
+// trackers that both contain. tau is 1 for equal rankings and -1 for opposite ones.
+//
+// Example: three trackers have the AUCs 0.6, 0.5 and 0.4 here and 0.5, 0.6 and 0.4 there. Two of
+// the three pairs have the same order and one has the opposite order, so tau = (2 - 1) / 3 = 0.33.
 struct Agreement {
   std::vector<std::string> trackers;
   std::optional<double> tau;
 };
 Agreement agreement(const Assessment& assessment, const fs::path& other);
 
-// Error where the file is no evaluation.json: to know it before an evaluation, not after.
+// Throws Error where the file is not an evaluation.json, so that the fault shows before an
+// evaluation begins.
 void check_evaluation(const fs::path& file);
 
 }  // namespace airtruth::experiment

@@ -11,8 +11,8 @@
 
 namespace airtruth::experiment {
 
-// A video's frames by number, forward without holding more than one, backward in pieces of at most
-// kMostBytes that are decoded anew from the start.
+// Access to a video's frames by number. Forward reading holds one frame. Backward reading decodes
+// pieces of at most kMostBytes anew from the start of the video.
 class Frames {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
@@ -20,9 +20,9 @@ class Frames {
   Frames(std::filesystem::path video, Warn warn)
       : video_(std::move(video)), warn_(std::move(warn)) {}
 
-  // Valid until the next call; nullptr past the end.
+  // Returns the frame, which is valid until the next call, or nullptr beyond the end.
   const image::Picture* at(std::int64_t frame);
-  // How many there are, about; 0 where that is not known, and before the first is asked for.
+  // Estimated number of frames; 0 where it is unknown, and before the first call of at().
   std::int64_t count_estimate() const { return reader_ ? reader_->info().frame_count_estimate : 0; }
 
  private:
@@ -31,8 +31,8 @@ class Frames {
   std::filesystem::path video_;
   Warn warn_;
   std::optional<video::Reader> reader_;
-  std::int64_t next_ = 0;   // that the reader hands out
-  std::int64_t first_ = 0;  // of those held
+  std::int64_t next_ = 0;   // frame that the reader returns next
+  std::int64_t first_ = 0;  // number of the first frame in held_
   std::vector<video::Frame> held_;
 };
 

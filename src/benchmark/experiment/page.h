@@ -7,8 +7,9 @@
 
 namespace airtruth::experiment {
 
-// report.html in a folder: ranking, curves, breakdowns, pairs, and each sequence with X and Y over
-// its frames beside its pictures (the E-Vision paper's Figures 11 and 12). Self-contained.
+// Writes report.html into a folder: ranking, curves, breakdowns, pairs of trackers, and for each
+// sequence X and Y over its frames beside its pictures (Figures 11 and 12 of the E-Vision paper).
+// The page is self-contained.
 void write_page(const Assessment& assessment, const std::filesystem::path& out);
 
 }  // namespace airtruth::experiment

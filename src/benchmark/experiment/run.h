@@ -17,46 +17,54 @@ namespace airtruth::experiment {
 struct RunOptions {
   std::string tracker = "am3";  // tracking::make_tracker, or NAME=trax:COMMAND
   Protocol protocol = Protocol::kOnePass;
-  int repetitions = 1;   // of restarts; each with the next seed
-  int anchor_step = 50;  // frames between starts
+  // Repetitions of the restart protocol; each uses the next seed.
+  int repetitions = 1;
+  int anchor_step = 50;  // distance between starts in frames
   std::uint64_t seed = 1;
-  double start_s = 30;     // TraX: longest until a tracker is there
-  double answer_s = 30;    // TraX: longest until each answer
-  std::string only = "*";  // sequences whose name fits
-  int jobs = 1;            // sequences at a time; times a frame are honest with 1 alone
+  // TraX: time limit for a tracker's start.
+  double start_s = 30;
+  // TraX: time limit for each answer.
+  double answer_s = 30;
+  // Pattern for the names of the sequences that are run.
+  std::string only = "*";
+  // Number of sequences at the same time; times per frame are meaningful only with 1.
+  int jobs = 1;
   Warn warn;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;  // sequences, or frames
+  std::function<void(std::int64_t done, std::int64_t total)>
+      progress;  // counts sequences, or frames
   std::stop_token stop;
 };
 
 struct RunSummary {
-  fs::path folder;          // of the tracker's results
+  fs::path folder;          // folder of the tracker's results
   std::int64_t made = 0;    // runs
-  std::int64_t kept = 0;    // had been made by an earlier call
-  std::int64_t broken = 0;  // of those made, ended by a tracker that crashed or hung
-  std::int64_t frames = 0;  // with an answer
-  double seconds = 0;       // of the tracker alone, without its starts
+  std::int64_t kept = 0;    // runs that an earlier call had made
+  std::int64_t broken = 0;  // runs that ended because the tracker crashed or hung
+  std::int64_t frames = 0;  // frames with an answer
+  double seconds = 0;       // time of the tracker alone, without its starts
 };
 
-// Runs a tracker over every sequence of a data set, begun on its truth. Each object of a sequence
-// is tracked by itself, from the first frame that shows it whole to the last that shows it (NAME-1,
-// NAME-2, ... where there are several, as exports of single-object formats have them).
-//   one pass:   begun on the first frame and never helped again (OTB's OPE)
-//   restart:    after an answer that does not touch the truth, begun anew 5 frames later (VOT2013)
-//   multistart: from every anchor to the end or backward to the beginning (VOT2020)
-// Leaves results in out/TRACKER (trajectories.h), tracker.json that says how they came about, and
-// logs/SEQUENCE.log of what a TraX tracker said beside its answers. The seconds are the tracker's
-// own: from the picture in the form that it takes to its answer, without decoding, conversion and,
-// for TraX, writing the picture; reading it is in them. A run's results appear whole or not at all;
-// what is there is not made again. A tracker that breaks gives no more answers in that run; Error
-// where it cannot be started at all, or where `out` holds results of other settings.
+// Runs a tracker over every sequence of a data set; the truth gives the first box. Each object of a
+// sequence is tracked separately, from the first frame that shows it whole to the last frame that
+// shows it (NAME-1, NAME-2, ... where there are several objects, as in exports to single-object
+// formats).
+//   one pass:   starts on the first frame and is never restarted (OTB's OPE)
+//   restart:    restarts 5 frames after an answer that does not touch the truth (VOT2013)
+//   multistart: starts at every anchor and runs to the end, or backward to the beginning (VOT2020)
+// Writes results into out/TRACKER (trajectories.h), tracker.json with the settings of the run, and
+// logs/SEQUENCE.log with a TraX tracker's output beside its answers. The seconds are the tracker's
+// own: they begin with the picture in the tracker's own form and end with the answer. They exclude
+// decoding, conversion and, for TraX, writing the picture, but include reading it. The results of a
+// run appear whole or not at all, and existing results are kept. A tracker that fails gives no more
+// answers in that run. Throws Error where the tracker cannot be started at all, or where `out`
+// holds results of other settings.
 RunSummary run(const fs::path& set, const fs::path& out, const RunOptions& options);
 
-// Error for what run() would refuse before the first frame: no such tracker, or results of other
-// settings in `out`. A TraX tracker without a name is started to ask it for its own.
+// Throws Error in the cases in which run() fails before the first frame: no such tracker, or
+// results of other settings in `out`. A TraX tracker without a name is started to report its own.
 void check_run(const fs::path& out, const RunOptions& options);
 
-// The same, one pass, over a video without truth, from a box in `first_frame` to its end:
+// Runs one pass over a video without truth, from a box in `first_frame` to the end, and writes
 // out/TRACKER/VIDEO.txt.
 RunSummary run_on_video(const fs::path& video,
                         const Box& init,

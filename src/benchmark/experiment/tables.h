@@ -8,7 +8,7 @@
 // The evaluation as JSON, for its file and for its page.
 namespace airtruth::experiment {
 
-// All but its sequences.
+// Everything except the tracker's sequences.
 nlohmann::ordered_json json_of(const ScoredTracker& tracker);
 nlohmann::ordered_json json_of(const ScoredSequence& sequence);
 nlohmann::ordered_json json_of(const Comparison& comparison);

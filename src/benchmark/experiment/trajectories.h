@@ -29,7 +29,8 @@ enum class Protocol { kOnePass, kRestart, kMultiStart };
 Protocol protocol_from_name(std::string_view name);
 const char* name(Protocol protocol);
 
-// `number`: of the repetition from 1, or of the anchor's frame; nothing for one pass.
+// `number` is the number of the repetition from 1, or the anchor's frame; it is ignored for one
+// pass.
 fs::path trajectory_file(const fs::path& folder,
                          Protocol protocol,
                          const std::string& sequence,
@@ -40,29 +41,30 @@ fs::path times_file(const fs::path& trajectory, Protocol protocol);
 std::string text_of(const evaluation::Trajectory& trajectory);
 std::string text_of(const std::vector<double>& seconds);  // to the nanosecond
 
-// What a folder holds for a sequence.
+// The results of one sequence in a folder.
 struct Results {
   struct Run {
     evaluation::Trajectory frames;
-    std::vector<double> seconds;  // empty where there are none
+    std::vector<double> seconds;  // empty where no times exist
     fs::path file;
   };
   std::vector<Run> one_pass;  // at most one
   std::vector<Run> restart;
   std::vector<Run> multistart;
-  std::vector<std::int64_t> anchors;  // of multistart
+  std::vector<std::int64_t> anchors;  // anchor of each multistart run
   bool empty() const { return one_pass.empty() && restart.empty() && multistart.empty(); }
 };
 
-// `origin_px`: what the results call the first pixel, 0 or 1 (MOTChallenge's: always 1). Boxes that
-// have no area are answers without a box, those with a NaN too in one pass; in
-// VOT's runs they are kUnknown, as in its toolkit. Polygons and masks become the box that bounds
-// them. Of MOTChallenge's tracks it takes the one that overlaps the truth most where any first
-// does. Error at file and line for what is no result, for runs of another length than the clip, and
-// for times of another length than their run.
+// `origin_px` is the coordinate that the results give to the first pixel, 0 or 1 (always 1 for
+// MOTChallenge). In one pass, a box without area or with a NaN is an answer without a box. In VOT's
+// runs a box without area is an answer without a box, and a box with a NaN is kUnknown, as in VOT's
+// toolkit. Polygons and masks become their bounding box. Of MOTChallenge's tracks the function
+// takes the track that has the greatest overlap with the truth at the first frame on which any
+// track overlaps it. Throws Error with file and line for text that is not a result, for a run whose
+// length differs from the clip's, and for times whose number differs from their run's.
 Results read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
 
-// Sequences that a folder has results for, sorted.
+// Returns the sorted names of the sequences for which a folder has results.
 std::vector<std::string> sequences_in(const fs::path& folder);
 
 }  // namespace airtruth::experiment

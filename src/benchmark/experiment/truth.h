@@ -14,24 +14,30 @@
 
 namespace airtruth::experiment {
 
-// What trackers are held against: one object of a sequence, from the first frame that shows it
-// whole to the last that shows it, and what else is known of those frames.
+// The truth for one object of a sequence, from the first frame that shows it whole to the last
+// frame that shows it, with further facts about those frames.
 struct TruthClip {
   exchange::Clip clip;
-  std::string background;          // file name of the video that it was made over; an import's own
-  std::optional<lens::Lens> lens;  // of what was rendered
-  // By frame of the clip; empty where the object is not seen or nothing is known.
+  // File name of the background video; for an imported clip, of its own video.
+  std::string background;
+  // Set for rendered sequences.
+  std::optional<lens::Lens> lens;
+  // By frame of the clip; empty where the object is not visible or the value is unknown.
   std::vector<std::optional<double>> range_m;
-  std::vector<std::optional<double>> size_px;   // longer side of the box
-  std::vector<std::optional<double>> contrast;  // levels (show/report/thumbnails.h); by add_film()
+  std::vector<std::optional<double>> size_px;  // longer side of the box, px
+  // Contrast in grey levels (show/report/thumbnails.h), filled in by add_film().
+  std::vector<std::optional<double>> contrast;
 
-  // Small JPEGs of some frames, for the page.
+  // Small JPEGs of some frames for the page.
   struct Still {
-    std::size_t index = 0;  // in clip.frames
-    int width = 0;          // of the video's picture
-    std::string whole;      // it, at most kWholeWidth wide
-    std::string close;      // a square of kCloseSide about the truth; empty without one
-    double close_x = 0, close_y = 0, close_px = 0;  // where that square lies in the picture
+    std::size_t index = 0;  // index in clip.frames
+    int width = 0;          // width of the video's picture, px
+    // The whole picture, at most kWholeWidth pixels wide.
+    std::string whole;
+    // A square of kCloseSide pixels around the object; empty without a truth box.
+    std::string close;
+    // Position and side of that square in the picture, px.
+    double close_x = 0, close_y = 0, close_px = 0;
   };
   static constexpr int kWholeWidth = 400;
   static constexpr int kCloseSide = 200;
@@ -44,11 +50,12 @@ struct TruthClip {
   evaluation::VotTruth vot() const;
 };
 
-// Every object of every sequence, sorted by name, by its covered boxes (LabelledSet::usual_boxes).
+// Returns every object of every sequence, sorted by name, with its covered boxes
+// (LabelledSet::usual_boxes).
 std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn);
 
-// Reads the clip's video once, for the contrast of each frame and `stills` pictures spread over it.
-// A clip without a video keeps neither.
+// Reads the clip's video once and fills in the contrast of each frame and `stills` pictures spread
+// over the clip. A clip without a video gets neither.
 void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop);
 
 }  // namespace airtruth::experiment

@@ -7,15 +7,15 @@
 #include "truth/evaluation/vot.h"
 #include "truth/exchange/text.h"
 
-// Regions as VOT's toolkit writes them in results: text, a region a line, and since version 0.5
-// also binary (.bin). Rectangles; polygons and masks, which become the box that bounds them; and
-// the marks 0, 1 and 2. As in the toolkit a text region with a NaN is the mark 0.
+// Regions in the formats of VOT's toolkit: text with one region per line and, since version 0.5,
+// binary files (.bin). A region is a rectangle; a polygon or a mask, which becomes its bounding
+// box; or one of the marks 0, 1 and 2. As in the toolkit, a text region with a NaN is the mark 0.
 namespace airtruth::experiment {
 
-// "x,y,w,h"; "x0,y0,x1,y1,x2,y2,..."; "mx,y,w,h,n0,n1,...", a mask by run lengths along its rows,
-// the first of zeros; or a mark. `origin_px`: what the file calls the first pixel, 0 or 1. A box
-// without an area is an answer without a box. Error at the line for anything
-// else.
+// Reads one text region: "x,y,w,h"; "x0,y0,x1,y1,x2,y2,..."; "mx,y,w,h,n0,n1,...", a mask as run
+// lengths along its rows of which the first counts zeros; or a mark. `origin_px` is the coordinate
+// that the file gives to the first pixel, 0 or 1. A box without area is an answer without a box.
+// Throws Error at the line for any other text.
 evaluation::VotFrame region_of(const exchange::Line& line,
                                const std::filesystem::path& file,
                                int origin_px);

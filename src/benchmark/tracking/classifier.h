@@ -11,25 +11,25 @@
 
 namespace airtruth::tracking {
 
-// Top-left corner of a window at one level of a pyramid.
+// Top-left corner of a window at one level of a pyramid, in that level's pixels.
 struct Place {
   int x = 0;
   int y = 0;
   bool operator==(const Place&) const = default;
 };
 
-// One boosted classifier of windows of one size at one level: a pool of Haar-like features with a
-// Gaussian each for object and surroundings, and the few that were selected (am3.h has the
-// sources).
+// A boosted classifier for windows of one size at one level. It has a pool of Haar-like features,
+// each with a Gaussian for the object and one for the surroundings, and a selection of a few of
+// them (am3.h has the sources).
 class Classifier {
  public:
   Classifier(const Am3Options& options, int level, int width, int height, Random random);
 
-  // Sum of the selected weak classifiers at each place: positive where it is the object. Windows
-  // must lie in the pyramid's part.
+  // Returns the sum of the selected weak classifiers at each place; a positive sum means the
+  // object. Windows must lie in the pyramid's part of the picture.
   std::vector<float> scores(const Pyramid& pyramid, std::span<const Place> places) const;
 
-  // `distance_px[i]`: of positives[i] from the object, in full pixels.
+  // `distance_px[i]` is the distance of positives[i] from the object in pixels of full resolution.
   void learn(const Pyramid& pyramid,
              std::span<const Place> positives,
              std::span<const float> distance_px,
@@ -38,7 +38,7 @@ class Classifier {
  private:
   struct Rectangle {
     int x = 0, y = 0, width = 0, height = 0;
-    float weight = 0;  // over its area
+    float weight = 0;  // divided by its area
   };
   struct Gaussian {
     float mean = 0;
@@ -48,7 +48,7 @@ class Classifier {
     std::vector<Rectangle> rectangles;
     Gaussian object, surroundings;
   };
-  // A number for each weak classifier of the pool and each sample.
+  // A table with one number for each weak classifier of the pool and each sample.
   class Matrix {
    public:
     Matrix(std::size_t pool, std::size_t samples) : samples_(samples), values_(pool * samples) {}
@@ -76,7 +76,8 @@ class Classifier {
 
   Am3Options options_;
   int level_;
-  float unit_;  // of a pyramid's sums
+  // Unit of the pyramid's sums at this level.
+  float unit_;
   std::vector<Weak> pool_;
   std::vector<std::size_t> selected_;
   bool is_first_ = true;

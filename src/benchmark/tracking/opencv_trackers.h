@@ -9,8 +9,8 @@
 
 namespace airtruth::tracking {
 
-// OpenCV's own trackers that need no model file; nullptr for another name. Their random numbers are
-// seeded anew for each tracker.
+// Makes one of OpenCV's trackers that need no model file; returns nullptr for any other name. Each
+// tracker gets newly seeded random numbers.
 std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed);
 
 }  // namespace airtruth::tracking

@@ -9,12 +9,13 @@
 
 namespace airtruth::tracking {
 
-// Box sums of a part of a picture's luma at several resolutions, each half the one before (2x2
-// means). The part is aligned so that pixel (x, y) of level p covers full pixels from (2^p x +
-// left, 2^p y + top) on. Only the part is read: cost follows it, not the picture.
+// Box sums of a part of a picture's luma at several resolutions. Each level is half of the one
+// before (means of 2x2 pixels). Pixel (x, y) of level p begins at the full-resolution pixel (2^p x
+// + left, 2^p y + top). Only the part is read, so the cost depends on the part's size and not on
+// the picture's.
 class Pyramid {
  public:
-  // `part` is cut to the picture and grown to whole pixels of the coarsest level where it can.
+  // `part` is cut to the picture and grown, where possible, to whole pixels of the coarsest level.
   Pyramid(const image::Plane& luma, const PixelBox& part, int levels);
 
   int left() const { return left_; }
@@ -22,14 +23,15 @@ class Pyramid {
   int width(int level) const { return levels_[static_cast<std::size_t>(level)].width; }
   int height(int level) const { return levels_[static_cast<std::size_t>(level)].height; }
 
-  // Sum over [x, x + width) by [y, y + height) of a level, in grey levels times four to its power.
+  // Returns the sum over [x, x + width) by [y, y + height) of a level, in units of 1 / 4^level grey
+  // levels.
   float sum(int level, int x, int y, int width, int height) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
     const std::uint32_t* above = l.sums.data() + static_cast<std::ptrdiff_t>(y) * l.stride + x;
     const std::uint32_t* below = above + static_cast<std::ptrdiff_t>(height) * l.stride;
     return static_cast<float>(below[width] - below[0] - above[width] + above[0]);
   }
-  // Offsets of a box's corners from a position's, for many positions of one level.
+  // The row pitch and the sums of a level, to add fixed corner offsets to many positions.
   std::ptrdiff_t stride(int level) const { return levels_[static_cast<std::size_t>(level)].stride; }
   const std::uint32_t* sums(int level) const {
     return levels_[static_cast<std::size_t>(level)].sums.data();

@@ -13,18 +13,29 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// Single-object trackers: given an object's box in one frame, they say where it is in those that
-// follow.
+// Single-object trackers: a tracker receives the box of an object in one frame and reports its box
+// in the following frames.
+//
+// Example: an object of 20 x 8 px has its top-left corner at (100, 50) and moves right by 3 px per
+// frame. The caller loads the first frame, calls init() with that box, loads the second frame and
+// calls update(). A perfect tracker returns a box of 20 x 8 px with its corner at (103, 50). If the
+// tracker returns (101, 50) instead, the boxes share 18 x 8 = 144 px of a union of 176 px, an
+// overlap of 0.82.
 namespace airtruth::tracking {
 
 struct Answer {
-  Box box_px;             // docs/conventions.md
-  double confidence = 1;  // as the tracker has it; of no common scale
-  bool lost = false;      // the tracker itself says that it has lost the object; box_px is its last
-  std::optional<double> seconds;  // that it took, where the tracker knows better than its caller
+  // In pixels (docs/conventions.md).
+  Box box_px;
+  // The tracker's own confidence; trackers have no common scale.
+  double confidence = 1;
+  // True where the tracker reports that it has lost the object; box_px is then its last box.
+  bool lost = false;
+  // Time for this answer in seconds, where the tracker measures it better than its caller.
+  std::optional<double> seconds;
 };
 
-// A tracker is broken and gives no more answers: its process crashed, hung or broke the protocol.
+// Thrown where a tracker can give no more answers: its process crashed, did not answer in time, or
+// violated the protocol.
 class TrackerFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -33,40 +44,44 @@ class TrackerFailed : public std::runtime_error {
 class Tracker {
  public:
   virtual ~Tracker() = default;
-  // Takes a frame in the form that this tracker works on (grey, RGB). Of what a run measures, this
-  // is not the tracker's time.
+  // Converts a frame to the form that this tracker needs (grey, RGB). This time does not count as
+  // the tracker's.
   virtual void load(const image::Picture& picture) = 0;
-  // On the loaded frame; a second call begins anew. Throws Error for a box that has no area or lies
-  // outside the picture, and as update() does.
+  // Starts the tracker on the loaded frame; a second call starts it anew. Throws Error for a box
+  // that has no area or lies outside the picture, and TrackerFailed as update() does.
   virtual void init(const Box& box) = 0;
-  virtual Answer update() = 0;                    // throws TrackerFailed
-  virtual std::string log() const { return {}; }  // what its process said beside its answers
+  // Finds the object in the loaded frame. Throws TrackerFailed.
+  virtual Answer update() = 0;
+  // Output of the tracker's process other than its answers.
+  virtual std::string log() const { return {}; }
 };
 
 struct TrackerOptions {
-  std::uint64_t seed = 1;  // of the trackers that are within the program: one seed, one result
-  // Of a TraX tracker's process.
-  double start_s = 30;   // longest until it is there
-  double answer_s = 30;  // longest until each answer
+  // Seed of the built-in trackers; the same seed gives the same result.
+  std::uint64_t seed = 1;
+  // Time limits for the process of a TraX tracker, in seconds.
+  double start_s = 30;   // for its start
+  double answer_s = 30;  // for each answer
   std::stop_token stop;
 };
 
-// "am3", "am3s", "wmil", "mil"; OpenCV's "opencv-mil", "opencv-kcf", "opencv-csrt",
-// "opencv-boosting", "opencv-medianflow", "opencv-tld", "opencv-mosse"; "trax:COMMAND" for a
-// program that speaks TraX on its standard input and output, "trax-socket:COMMAND" for one that
-// connects to TRAX_SOCKET. Error with the nearest name otherwise; TrackerFailed where a command
-// cannot be run or does not say hello.
+// Makes a tracker by name: "am3", "am3s", "wmil", "mil"; OpenCV's "opencv-mil", "opencv-kcf",
+// "opencv-csrt", "opencv-boosting", "opencv-medianflow", "opencv-tld", "opencv-mosse";
+// "trax:COMMAND" for a program that speaks TraX on its standard input and output;
+// "trax-socket:COMMAND" for one that connects to TRAX_SOCKET. Throws Error with the nearest name
+// for any other name, and TrackerFailed where a command cannot be run or does not send TraX's hello
+// message.
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options);
 std::vector<std::string> tracker_names();
-bool is_trax(std::string_view tracker);  // also with a name before it
+bool is_trax(std::string_view tracker);  // also for "NAME=trax:COMMAND"
 
-// Under which results are kept: the name itself; of a TraX tracker what stands before "=" in
-// "NAME=trax:COMMAND", else its own name for itself (for which it is started once). `command` is
-// what make_tracker takes.
+// The name under which results are stored. It is the tracker's name itself; for a TraX tracker it
+// is the text before "=" in "NAME=trax:COMMAND", or else the name that the tracker reports (it is
+// started once to report it). `command` is the argument for make_tracker().
 struct TrackerName {
   std::string name;
   std::string command;
-  bool was_started = false;  // for its name, and ended well
+  bool was_started = false;  // started to report its name, and ended normally
 };
 TrackerName named(std::string_view tracker, const TrackerOptions& options);
 

@@ -8,11 +8,12 @@
 
 namespace airtruth::tracking {
 
-// A tracker in a process of its own, from "trax:COMMAND" or "trax-socket:COMMAND"; nullptr for
-// another name.
+// Makes a tracker that runs in its own process, from "trax:COMMAND" or "trax-socket:COMMAND";
+// returns nullptr for any other name.
 std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerOptions& options);
 
-// The name that the tracker gives itself, fit for a file; "trax" where it gives none.
+// Returns the name that the tracker reports, made valid as a file name; "trax" where it reports
+// none.
 std::string trax_name(std::string_view name, const TrackerOptions& options);
 
 }  // namespace airtruth::tracking

@@ -6,17 +6,18 @@
 
 namespace airtruth::tracking {
 
-// Part of a picture's luma, each of its pixels `scale` of the picture's wide, at several
-// resolutions.
+// Part of a picture's luma at several resolutions. Each of its pixels is `scale` pixels of the
+// picture wide.
 struct View {
   Pyramid pyramid;
-  double left = 0;  // of the pyramid's corner, in the picture
+  double left = 0;  // position of the pyramid's corner in the picture, px
   double top = 0;
   double scale = 1;
 };
 
-// `width` x `height` pixels from (left, top) on; the picture's border goes on beyond it. Made by
-// means of whole blocks and, between them, linearly.
+// Resamples `width` x `height` pixels, beginning at (left, top). Beyond the picture, its border
+// pixels are repeated. The result is made from means of whole blocks with linear interpolation
+// between them.
 image::Plane resampled(
     const image::Plane& luma, double left, double top, double scale, int width, int height);
 
