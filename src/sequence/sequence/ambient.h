@@ -12,27 +12,33 @@
 #include "truth/annotation/exact_box.h"
 #include "world/scene/scene.h"
 
-// What light falls on the intruder, taken from the background where the scene does not state it.
+// Estimates the light that falls on the intruder from the background, where the scene does not
+// state it.
 //
 // The picture is read as a grid of small blocks in linear light, without the own aircraft. Blocks
-// are ground where they lie below the horizon and are much darker than the brighter half, else sky;
-// sky is blue, cloud, or between. How bright the sky is there says how bright this exposure makes a
-// sky of known luminance (sky.h), and with it the sun: by day the sun, the blue sky and clouds have
-// ratios that depend on the sun's elevation alone. Where no ground is seen, a level ground under
-// that very light stands for it. One unknown, the exposure, and two shares (how clear the sky is,
-// how much of it is cloud) are measured; a sky that clips makes all of it too dark.
-// Blocks near the intruder count four times. Smoothed over time; a jump of the camera's exposure or
-// white balance (the median over the blocks of what each becomes from one frame to the next) is
-// followed at once.
+// below the horizon that are much darker than the brighter half are ground; all others are sky. Sky
+// is blue, cloud, or a mixture. The brightness of the sky gives the exposure, because the luminance
+// of such a sky is known (sky.h). The exposure gives the sun: by day the ratios between the sun,
+// the blue sky and clouds depend on the sun's elevation alone. Where no ground is visible, a level
+// ground under the same light takes its place. Three quantities are measured: the exposure, the
+// clearness of the sky, and the share of cloud in it. A clipped sky makes all results too dark.
+//
+// Blocks near the intruder have four times the weight. The result is smoothed over time. A jump of
+// the camera's exposure or white balance is followed at once; the jump is the median over the
+// blocks of their change from one frame to the next.
 namespace airtruth::sequence {
 
 struct Ambient {
-  std::array<float, 3> sun{};        // irradiance over pi on a surface square to it
-  std::array<float, 3> blue{};       // the clear part of the sky: the same on a level surface
-  std::array<float, 3> cloud{};      // its cloudy part
-  std::array<float, 3> ground{};     // radiance from below
-  std::array<float, 3> airlight{};   // the background around the intruder: where haze leads to
-  render::Environment surroundings;  // sky and ground by direction
+  // Irradiance over pi on a surface perpendicular to the sun's rays.
+  std::array<float, 3> sun{};
+  // The clear part of the sky: irradiance over pi on a level surface.
+  std::array<float, 3> blue{};
+  // The cloudy part of the sky, likewise.
+  std::array<float, 3> cloud{};
+  std::array<float, 3> ground{};  // radiance from below
+  // Radiance of the background around the intruder, which haze approaches.
+  std::array<float, 3> airlight{};
+  render::Environment surroundings;  // radiance of sky and ground by direction
 
   std::array<float, 3> sky() const {
     return {blue[0] + cloud[0], blue[1] + cloud[1], blue[2] + cloud[2]};
@@ -45,8 +51,9 @@ class AmbientEstimator {
                    const image::ToneCurve& tone,
                    const image::Mask* own_aircraft);
 
-  // Frames in order. `near`: the intruders' box, where one is in view. `begins_shot`: the light is
-  // another than before, and is not smoothed across.
+  // Takes the frames in order. `near` is the box of the intruders, where one is in view.
+  // `begins_shot` is true where the light differs from the previous frame's; the result is then not
+  // smoothed across the two.
   Ambient next(const image::Picture& picture,
                const annotation::Sight& sight,
                const std::optional<PixelBox>& near,

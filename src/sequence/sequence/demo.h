@@ -20,10 +20,10 @@ struct DemoOptions {
   std::function<void(const std::string& stage, std::int64_t done, std::int64_t total)> progress;
 };
 
-// Makes <out>/ from nothing but this program and the installed aircraft: flight.mp4 (a virtual
-// flight), flight.csv (its true camera), own_aircraft.png (its mask), demo.toml (the scene, a start
-// for one's own), demo/ (the sequence) and overlay.mp4. Error where <out>/demo exists and overwrite
-// is false.
+// Makes <out>/ from this program and the installed aircraft alone: flight.mp4 (a virtual flight),
+// flight.csv (its true camera), own_aircraft.png (its mask), demo.toml (the scene, a starting point
+// for the user's own), demo/ (the sequence) and overlay.mp4. Throws Error where <out>/demo exists
+// and overwrite is false.
 Summary make_demo(const fs::path& out, const DemoOptions& options);
 
 }  // namespace airtruth::sequence

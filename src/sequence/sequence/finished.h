@@ -13,7 +13,7 @@
 #include "truth/annotation/truth.h"
 #include "world/scene/scene.h"
 
-// A folder that `render` or `dataset import` has left, opened again.
+// Opens a folder that `render` or `dataset import` has made.
 namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
@@ -22,19 +22,21 @@ struct Finished {
   fs::path folder;
   std::string name;
   fs::path video;
-  std::optional<scene::Scene> scene;  // empty: imported; then truth holds boxes and ranges alone
+  // Empty for an imported clip, whose truth holds only boxes and ranges.
+  std::optional<scene::Scene> scene;
   annotation::Truth truth;
-  // Covered boxes were looked for when it was made. In what is older there are none to be had.
+  // True where the sequence was made with covered boxes. Older sequences have none.
   bool has_covered_boxes = false;
 };
 
-// Error where the folder is not whole: no sequence.json, or a file that it names is missing.
+// Throws Error where the folder is not whole: sequence.json or a file that it names is missing.
 Finished open_finished(const fs::path& folder);
 
-// Of every intruder that the truth names, in the order in which they come up.
+// Returns the id of every intruder in the truth, in order of first appearance.
 std::vector<std::string> intruder_ids(const annotation::Truth& truth);
 
-// Burns boxes, range and id into a copy of the video. mp4, mkv or avi by the extension of `out`.
+// Draws boxes, range and id into a copy of the video. The extension of `out` selects mp4, mkv or
+// avi.
 struct OverlayOptions {
   bool overwrite = false;
   std::stop_token stop;
@@ -42,9 +44,9 @@ struct OverlayOptions {
 };
 void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options);
 
-// Background, alpha and result of a frame around its intruder at `zoom`. `intruder_id` empty: the
-// first that is in view. Error where the frame does not exist, no intruder is in view in it, or the
-// clip was imported.
+// Returns background, alpha and result of a frame around its intruder, enlarged by `zoom`. An empty
+// `intruder_id` selects the first intruder in view. Throws Error where the frame does not exist, no
+// intruder is in view in it, or the clip was imported.
 image::Rgb8 inspect(const Finished& sequence,
                     std::int64_t frame,
                     const std::string& intruder_id,

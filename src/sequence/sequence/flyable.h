@@ -8,7 +8,7 @@
 
 namespace airtruth::sequence {
 
-// One limit of an aircraft's class that its path leaves, at the instant when it is farthest beyond.
+// A limit of an aircraft's class that its path exceeds, at the instant of the greatest excess.
 struct BeyondLimit {
   enum class Quantity { kFast, kSlow, kBank, kClimb, kDescent };
   Quantity quantity = Quantity::kFast;
@@ -17,17 +17,17 @@ struct BeyondLimit {
   double limit = 0;   // of the class (aircraft/fleet/flight_limits.h)
 };
 
-// Where the path of an aircraft of the list, from begin_s to end_s, leaves what its class can fly:
-// true airspeed in still air, the bank that its turn takes (tan bank = speed x turn rate / g,
-// whatever attitude is stated), climb and descent. At most one of each quantity. Empty where the
-// class of the aircraft is not known.
+// Returns the limits of its class that an aircraft of the list exceeds on its path from begin_s to
+// end_s. The quantities are true airspeed in still air; the bank of a coordinated turn (tan bank =
+// speed x turn rate / g, whatever attitude is stated); climb; and descent. Each quantity occurs at
+// most once. Returns an empty list where the aircraft's class is unknown.
 std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
                                        const trajectory::Path& path,
                                        double begin_s,
                                        double end_s);
 
-// The same as one line: "c172/news (light piston) cannot fly its path: at 1.20 s it flies 131.0
-// m/s, the fastest of its class 92 m/s; ..."; "" where it can.
+// Describes the same in one line: "c172/news (light piston) cannot fly its path: at 1.20 s it flies
+// 131.0 m/s, the fastest of its class 92 m/s; ...". Returns "" where the aircraft can fly its path.
 std::string words_beyond_limits(const std::string& aircraft,
                                 const trajectory::Path& path,
                                 double begin_s,

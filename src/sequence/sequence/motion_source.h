@@ -16,8 +16,8 @@
 #include "picture/video/reader.h"
 #include "world/scene/scene.h"
 
-// Where a frame's homography comes from: the cache, a pass made before, or an estimator that runs
-// along.
+// Provides the homography of each frame from one of three sources: the cache, a preceding pass over
+// the clip, or an estimator that runs frame by frame.
 namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
@@ -26,14 +26,13 @@ namespace fs = std::filesystem;
 // numbered images.
 std::string sha256_of_video(const fs::path& video);
 
-// Every number of a lens, so that two lenses never share what is cached for one of them.
+// Text with every number of a lens, so that two lenses never share an entry of the cache.
 std::string words_of(const lens::Lens& lens);
 
 class MotionSource {
  public:
-  // model "none": identity for every frame.
-  // `needs_change`: next() must know how the shake goes on within a frame, which takes the frame
-  // after it, and so a pass before.
+  // The model "none" gives the identity for every frame. `needs_change`: next() must know how the
+  // shake continues within a frame. This needs the following frame, and therefore a preceding pass.
   MotionSource(const scene::Scene& scene,
                const lens::Lens& lens,
                bool needs_change,
@@ -41,12 +40,13 @@ class MotionSource {
                const image::Mask* mask,
                const fs::path& cache);  // empty: none
 
-  // True when frames must be seen once before the first motion is known (reference "smoothed", a
-  // shutter, a gyroscope; not cached).
+  // True where a preceding pass over the frames is required (reference "smoothed", a shutter or a
+  // gyroscope, and no entry in the cache).
   bool needs_pass() const {
     return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
   }
-  // That pass, over all the frames of a reader; `seen` after each. Throws Interrupted on stop.
+  // Makes that pass over all frames of a reader and calls `seen` after each frame. Throws
+  // Interrupted on stop.
   void measure(video::Reader& reader,
                const std::stop_token& stop,
                const std::function<void(std::int64_t)>& seen);
@@ -57,8 +57,8 @@ class MotionSource {
     Shake shake;
   };
   Measured next(const video::Frame& frame);
-  // After the last frame: keeps what was measured for the next run. A cache that cannot be written
-  // is no error.
+  // Stores the measured motion for the next run, after the last frame. A cache that cannot be
+  // written is no error.
   void store() const;
   bool from_cache() const { return from_cache_; }
 
@@ -86,20 +86,21 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
-// The scene's model of motion, with "auto" made out: "rotation", since a scene states its lens, but
-// "homography" for chroma-key, the paper's method.
+// The scene's motion model with "auto" resolved: "rotation", since a scene states its lens, but
+// "homography" for chroma-key, which is the paper's method.
 std::string motion_model(const scene::Scene& scene);
 
-// What a video's own gyroscope told (a GoPro's telemetry); empty where it has none.
+// Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
 std::vector<motion::GyroSample> gyro_of(const fs::path& video);
 
-// Bridges what could not be measured by a gyroscope that agrees with what was; rotations only.
-// Says how it fits; empty, and nothing changed, where it does not.
+// Replaces rotations that could not be measured by the gyroscope's, where the gyroscope agrees with
+// the measured ones. Returns how well it fits. Returns empty and changes nothing where it does not
+// agree.
 std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
                                               std::vector<motion::FrameMotion>& motion);
 
-// Motion of a whole clip against its first frame, as a rotation where a lens is given; `seen` after
-// each frame. Throws Interrupted on stop.
+// Measures the motion of a whole clip against its first frame, as a rotation where a lens is given.
+// Calls `seen` after each frame. Throws Interrupted on stop.
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 motion::Estimator estimator,
                                                 std::stop_token stop,

@@ -19,7 +19,7 @@
 #include "truth/annotation/truth.h"
 #include "world/scene/scene.h"
 
-// What a run leaves (docs/formats/output.md), written frame by frame into the staged folder.
+// Writes the output of a run (docs/formats/output.md) frame by frame into the staged folder.
 namespace airtruth::sequence {
 
 // An input or output file with its SHA-256, for sequence.json.
@@ -39,9 +39,9 @@ class Outputs {
   void write(const video::Frame& frame,
              const annotation::Frame& truth,
              const std::vector<MaskFile>& masks);
-  // Closes everything and writes the annotation, the preview and, last, sequence.json.
-  // `scene` is the one that was drawn: its camera model may have been measured since the outputs
-  // were opened.
+  // Closes all files and writes the annotation, the preview and, last, sequence.json. `scene` is
+  // the scene that was rendered: its camera model may have been measured after the outputs were
+  // opened.
   void finish(const scene::Scene& scene,
               const std::vector<Checksum>& inputs,
               const Summary& summary);
@@ -58,9 +58,9 @@ class Outputs {
   video::Writer writer_;
   std::ofstream truth_;
   std::vector<Vector3> camera_ned_m_;
-  std::vector<std::vector<std::optional<annotation::EvisionFrame>>>
-      evision_;  // [intruder][frame]; of a scene
-                 // without intruders one without positions
+  // Indexed by [intruder][frame]. A scene without intruders has one entry whose frames have no
+  // position.
+  std::vector<std::vector<std::optional<annotation::EvisionFrame>>> evision_;
   report::ContactSheet sheet_;
 };
 

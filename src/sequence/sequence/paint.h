@@ -18,26 +18,30 @@
 namespace airtruth::sequence {
 
 struct Painted {
-  image::Layer layer;  // what the ray tracer drew (for chroma-key: what it would draw)
-  std::vector<composite::Visible> visible;  // per intruder; empty where none is in view
-  double render_s = 0;                      // of the time that painting took, the ray tracer's
+  // The ray tracer's layer; for chroma-key, the layer that the ray tracer would draw.
+  image::Layer layer;
+  // By intruder; empty where none is in view.
+  std::vector<composite::Visible> visible;
+  // Seconds of ray tracing within the time of painting.
+  double render_s = 0;
 };
 
 class Painter {
  public:
   virtual ~Painter() = default;
-  // The layer of a moment. matte: any thread, any order. chroma-key: one thread.
+  // Renders the layer of a moment. matte: in any thread and order; chroma-key: in one thread.
   Painted draw(const Moment& moment, const Ambient& ambient) const;
-  // Puts what was drawn into the picture, and adds what it did there to `painted`.
+  // Composites the layer into the picture and adds the resulting changes to `painted`.
   virtual void compose(image::Picture& picture,
                        const Moment& moment,
                        const Ambient& ambient,
                        Painted& painted) = 0;
-  // True where a frame's picture depends on the one before it (a codec's mark): compose() then
-  // takes every frame, in order, one at a time. Known once the scene's values are.
+  // True where a frame's picture depends on the previous one (a codec's mark). compose() must then
+  // receive every frame, one at a time and in order. The value is known once the scene's values
+  // are.
   virtual bool is_in_order() const { return false; }
 
-  // Both, for a picture by itself.
+  // Draws and composites a single picture.
   Painted paint(image::Picture& picture, const Moment& moment, const Ambient& ambient);
 
  protected:
@@ -67,8 +71,8 @@ std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
 // The scene's mask of the own aircraft, if it has one.
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);
 
-// The layer of one moment, as the matte uses it; unfinished once `stop` is asked for.
-// `own_aircraft`, if there is one, takes its share of the layer's area_free_px alone.
+// Renders the layer of one moment for the matte method. The layer is incomplete once `stop` is
+// requested. `own_aircraft`, where present, only reduces the layer's area_free_px.
 image::Layer render_layer(const scene::Scene& scene,
                           const World& world,
                           const Moment& moment,

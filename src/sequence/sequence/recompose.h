@@ -10,10 +10,10 @@
 
 namespace airtruth::sequence {
 
-// Draws every n-th frame of a finished sequence anew, from its record, its background and the
-// motion that its truth states, and compares: the line of truth must come out the same, a lossless
-// video sample by sample, a lossy one no further off around the intruder than its codec is
-// elsewhere. Each fault is one line. `compared`: frames that were.
+// Renders every n-th frame of a finished sequence again, from its record, its background and the
+// motion in its truth, and compares the results. The truth line must be equal; a lossless video
+// must be equal sample by sample; a lossy video may differ around the intruder no more than its
+// codec's error elsewhere. Each fault is one line. `compared` counts the compared frames.
 struct Recomposition {
   std::int64_t compared = 0;
   std::vector<std::string> faults;

@@ -44,13 +44,13 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
   return file;
 }
 
-// Where calibrations are kept; empty: nowhere.
+// The folder of the cached calibrations; empty: none are cached.
 fs::path calibrations_of(const Options& options) {
   if (!options.use_cache) return {};
   return (options.cache.empty() ? cache_folder() : options.cache) / "calibration";
 }
 
-// On the whole clip, so that all scenes over one clip have one camera.
+// Measures the whole clip, so that all scenes over one clip have the same camera.
 calibration::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
                                      const image::Mask* mask,
@@ -88,8 +88,8 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
   return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
 }
 
-// A clip may show no edges of colour, as many do, and a decoder may not tell its quantiser where
-// [realism] auto asks for it: such a clip is measured in all else.
+// Many clips show no edges of colour, and a decoder may not report its quantiser. Where [realism]
+// auto asks for these, such a clip is measured in all other quantities.
 bool may_be_missing(std::string_view key, const scene::Realism& realism) {
   return key == "sensor.chroma_spread_px" || (key == "sensor.codec_step" && realism.automatic);
 }
@@ -103,8 +103,8 @@ bool is_wanted(const scene::Scene& scene, const std::string& key) {
   return is_named(scene, key) || scene.realism.automatic;
 }
 
-// Fills what the scene does not state from its camera file; is a value that is wanted still
-// missing?
+// Fills in unstated values from the camera file. Returns whether a requested value is still
+// missing.
 bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
   bool is_missing = false;
   scene::CameraModel& model = scene.camera_model;
@@ -120,7 +120,8 @@ bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
   return is_missing;
 }
 
-// The chroma-key method has no place for what a camera and its air do; half of it would be worse.
+// The chroma-key method cannot model a camera and its air; modelling a part of them would be worse
+// than none.
 void refuse_with_chroma_key(const scene::Scene& scene) {
   if (scene.composite.method != "chroma-key") return;
   scene::CameraModel model = scene.camera_model;
@@ -146,7 +147,7 @@ void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
   model.angle_deg.reset();
 }
 
-// A named profile has its word on what is measured, so something must be measured.
+// A named profile is applied to measured values, so at least one value must be measured.
 void check_profile(const scene::Realism& realism,
                    const video::StreamInfo& info,
                    bool is_any_to_measure) {
@@ -162,8 +163,8 @@ void check_profile(const scene::Realism& realism,
         realism.where);
 }
 
-// What was measured, with the word of the camera's profile; where none is named, of cameras in the
-// median.
+// The measured values, combined with the camera's profile; where no profile is named, by the median
+// of cameras.
 calibration::Calibration with_camera(calibration::Calibration measured,
                                      const scene::Realism& realism) {
   return calibration::with_profile(
@@ -172,13 +173,13 @@ calibration::Calibration with_camera(calibration::Calibration measured,
                       : calibration::usual_camera());
 }
 
-// Takes what the scene wants to be measured: from the clip, as far as it can tell, and from the
-// camera's profile.
+// Takes the requested values from the clip, as far as it can be measured, and from the camera's
+// profile.
 void take_measured(scene::Scene& scene,
                    const StatedScene& stated,
                    calibration::Calibration measured,
                    const Warn& to_warn) {
-  const std::map<std::string, std::string> untold = measured.missing;  // by the clip
+  const std::map<std::string, std::string> untold = measured.missing;  // not measured on the clip
   const calibration::Calibration found = with_camera(std::move(measured), stated.realism);
   const scene::CameraModel from_clip = calibration::model_of(found);
   scene::for_each_camera_key(
@@ -211,7 +212,7 @@ void take_measured(scene::Scene& scene,
   scene.light.sun_elevation_deg = found.values.at("light.sun_elevation_deg")[0].value;
 }
 
-// The keys that are wanted and that neither the scene nor its camera file states.
+// The requested keys that neither the scene nor its camera file states.
 std::vector<std::string> left_to_measure(const scene::Scene& filled) {
   std::vector<std::string> keys;
   scene::for_each_camera_key(

@@ -13,24 +13,25 @@
 
 namespace airtruth::sequence {
 
-// A scene with what it states itself and what its camera file says; a shutter angle is in seconds.
-// Keys that say "auto" are listed apart, so that all but them can be read and checked before the
-// clip is measured.
+// A scene combined with its camera file; a shutter angle is converted to seconds. Keys with the
+// value "auto" are listed separately, so that all others can be checked before the clip is
+// measured.
 struct StatedScene {
   scene::Scene scene;      // no [realism] and no "auto" left
-  scene::Realism realism;  // as the scene has it
+  scene::Realism realism;  // as the scene states it
   std::vector<std::string>
-      to_measure;             // camera keys ("shutter.exposure_s") that the clip must tell
-  bool sun_is_known = false;  // stated, or in the camera file
+      // Camera keys ("shutter.exposure_s") that must be measured on the clip.
+      to_measure;
+  bool sun_is_known = false;  // stated in the scene or in the camera file
 };
 
-// Error where the camera file cannot be read or is of another size or lens, and where the method
-// has no place for a camera model. Reads no frame.
+// Reads no frame. Throws Error where the camera file cannot be read or is for another size or lens,
+// and where the method does not support a camera model.
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info);
 
-// The scene with its camera model complete: what sequence.json records, and what drawing a frame
-// again needs. Measures the clip where a key is left to measure, which takes long. Error where one
-// cannot be measured and [realism] fallback does not allow to leave it out.
+// Returns the scene with its camera model complete, as sequence.json records it and as rendering a
+// frame again requires it. Measures the clip where a key is still unknown, which takes long. Throws
+// Error where a key cannot be measured and [realism] fallback does not allow leaving it out.
 scene::Scene resolved(const StatedScene& stated,
                       const lens::ImageSize& size,
                       const image::Mask* mask,

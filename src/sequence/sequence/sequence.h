@@ -12,7 +12,11 @@
 #include "foundation/base/log.h"
 #include "world/scene/scene.h"
 
-// One video end to end: read, move, render, composite, annotate, write.
+// Renders one video from beginning to end: read, move, render, composite, annotate, write.
+//
+// Example: the demo's scene has 322 frames. If Summary::seconds is 46 after render(), the run
+// processed 322 / 46 = 7.0 frames per second. If 3 of the frames have an unmeasured camera motion,
+// frames_bridged is 3, and frames is still 322.
 namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
@@ -20,58 +24,64 @@ namespace fs = std::filesystem;
 struct Progress {
   std::int64_t frames_done = 0;
   std::int64_t frames_total = 0;    // 0: unknown
-  const char* stage = "rendering";  // or "measuring the camera"
+  const char* stage = "rendering";  // or another stage, such as "measuring the camera"
 };
 
 struct Options {
   bool overwrite = false;
-  int threads = 0;  // 0: one per core. The annotation's bytes do not depend on it.
+  // Number of threads; 0 means one per core. The annotation's bytes do not depend on it.
+  int threads = 0;
   bool use_cache = true;
-  fs::path cache;  // of motion and calibrations; empty: the user's own (foundation/base/files.h)
-  std::optional<int> gpu;  // for chroma-key's OpenGL
+  // Folder of the cache for motion and calibrations; empty: the user's own
+  // (foundation/base/files.h).
+  fs::path cache;
+  // The GPU for the OpenGL of the chroma-key method.
+  std::optional<int> gpu;
   bool software_gl = false;
   Warn warn;
   std::function<void(const Progress&)> progress;
   std::stop_token stop;
 };
 
-// Where the time of a run went: seconds inside each stage, summed over its frames. The stages
-// overlap, so that their sum is more than the wall time. The codecs' own threads are not in it,
-// only the wait for them.
+// Time of a run by stage: the seconds inside each stage, summed over its frames. The stages
+// overlap, so their sum exceeds the wall time. The time of the codecs' own threads is excluded; the
+// wait for them is included.
 struct StageSeconds {
-  double read = 0;       // decode
-  double move = 0;       // the camera's motion, the light around the intruder, where everything is
-  double render = 0;     // the intruder's rays
-  double composite = 0;  // into the picture, and its truth
+  double read = 0;  // decode
+  // The camera's motion, the light around the intruder, and the geometry of the frame.
+  double move = 0;
+  double render = 0;     // ray tracing of the intruders
+  double composite = 0;  // compositing into the picture, and the truth
   double write = 0;      // encode, truth.jsonl, preview
 };
 
 struct Summary {
   fs::path folder;  // <out>/<name>
   std::int64_t frames = 0;
-  std::int64_t frames_visible = 0;  // at least one intruder visible
-  std::int64_t frames_bridged = 0;  // motion not measured
+  std::int64_t frames_visible = 0;  // frames with at least one visible intruder
+  std::int64_t frames_bridged = 0;  // frames whose motion was not measured
   std::int64_t frames_damaged = 0;
-  double seconds = 0;  // of the frames: without opening the inputs and loading the aircraft
+  // Wall time of the frames in seconds, without opening the inputs and loading the aircraft.
+  double seconds = 0;
   StageSeconds stages;
   bool motion_from_cache = false;
 };
 
-// Leaves <out>/<name>/ whole (docs/formats/output.md) or not at all: everything is written in a
-// hidden folder beside it and renamed at the end. Throws Error for what the user gave, Interrupted
-// after options.stop.
+// Writes <out>/<name>/ (docs/formats/output.md) whole or not at all: all files are written to a
+// hidden folder beside it, which is renamed at the end. Throws Error for faults in the user's
+// input, and Interrupted after options.stop.
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options);
 
-// Measures the motion of the scene's background and leaves it in the cache, where the cache does
-// not hold it already.
+// Measures the motion of the scene's background and stores it in the cache, unless the cache holds
+// it already.
 void measure_ahead(const scene::Scene& scene, const Options& options);
 
-// Does the scene ask for values of its camera that neither it nor its camera file states? They are
-// measured on the whole clip, whatever part of it the scene uses.
+// True where the scene asks for camera values that neither the scene nor its camera file states.
+// They are measured on the whole clip, whatever part of it the scene uses.
 bool needs_calibration(const scene::Scene& scene);
 
-// Calibrates the scene's background and leaves the result in the cache, where the cache does not
-// hold it already. Nothing where the scene does not need it.
+// Calibrates the scene's background and stores the result in the cache, unless the cache holds it
+// already. Does nothing where the scene needs no calibration.
 void calibrate_ahead(const scene::Scene& scene, const Options& options);
 
 }  // namespace airtruth::sequence

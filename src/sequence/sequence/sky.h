@@ -3,12 +3,12 @@
 
 #include "picture/render/environment.h"
 
-// How bright sky, sun and ground are beside one another. Luminances in kcd/m2, illuminances in klx;
-// only their ratios are used. Shapes of skies are those of the CIE's models, brightnesses those of
-// the IES (1984, "Recommended practice for the calculation of daylight availability").
+// Relative brightness of sky, sun and ground. Luminances are in kcd/m2 and illuminances in klx;
+// only their ratios are used. The sky distributions are the CIE's models, the levels those of the
+// IES (1984, "Recommended practice for the calculation of daylight availability").
 namespace airtruth::sequence {
 
-// By the sun's elevation, which is taken as 1 degree where it is less.
+// Illuminance by the sun's elevation; elevations below 1 degree count as 1 degree.
 double sun_illuminance_klx(double elevation_deg);        // square to the sun, clear sky
 double clear_sky_illuminance_klx(double elevation_deg);  // level surface, without the sun
 double overcast_illuminance_klx(double elevation_deg);   // level surface
@@ -16,7 +16,7 @@ double overcast_illuminance_klx(double elevation_deg);   // level surface
 // Luminance of the clear sky relative to its zenith (Perez et al. 1993; Preetham et al. 1999, table
 // 2, turbidity 2.5), of directions at or above the horizon.
 double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg);
-// The same of the overcast sky (Moon and Spencer 1942).
+// Luminance of the overcast sky relative to its zenith (Moon and Spencer 1942).
 double overcast_over_zenith(double elevation_deg);
 
 // Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface.
@@ -25,7 +25,7 @@ struct Skies {
   render::Environment overcast;
   render::Environment ground;  // radiance 1 from all below the horizon
   Vector3 to_sun{0, 0, -1};    // unit, in world axes
-  // Of a luminance relative to the zenith: its irradiance over pi on a level surface.
+  // Irradiance over pi on a level surface of a sky whose luminance at the zenith is 1.
   double clear_level = 1;
   double overcast_level = 1;
 

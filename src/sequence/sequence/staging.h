@@ -10,15 +10,15 @@ namespace airtruth::sequence {
 
 namespace fs = std::filesystem;
 
-// A folder that appears whole or not at all: files go into a hidden folder beside it
-// (".NAME.part"), and commit() renames that into place. Destroyed before commit(), it leaves
-// nothing, and what was there before is untouched. Two runs over one folder: the second is refused
-// at once (a lock that the kernel drops when a process dies, so that what a killed run left is
-// simply cleared away).
+// A folder that appears whole or not at all. Files are written to a hidden folder beside it
+// (".NAME.part"), which commit() renames to the final name. Destruction before commit() removes the
+// hidden folder and leaves the previous contents untouched. Of two runs over one folder, the second
+// is refused at once. The kernel releases the lock when a process ends, so the next run can remove
+// the files of a killed run.
 class StagedFolder {
  public:
-  // Error where `final` exists and overwrite is false, is no folder of ours to replace, or cannot
-  // be written.
+  // Throws Error where `final` exists and overwrite is false, is a folder that this program did not
+  // make, or cannot be written.
   StagedFolder(fs::path final_folder, bool overwrite);
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -34,10 +34,12 @@ class StagedFolder {
 
   fs::path final_;
   fs::path part_;
-  fs::path old_;  // what is replaced, until it is removed
+  // The previous folder, until it is removed.
+  fs::path old_;
   int lock_ = -1;
   bool committed_ = false;
-  fs::path first_made_;  // the uppermost of the folders that were made for it; empty: none
+  // The uppermost of the parent folders that were created; empty: none.
+  fs::path first_made_;
   std::optional<Unfinished> unfinished_;
 };
 

@@ -91,7 +91,7 @@ Box grown(const Box& box, double margin) {
   return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
 }
 
-// The whole frame, for an aircraft so near that part of it has no pixel.
+// Returns the whole frame, for an aircraft so near that a part of it has no pixel.
 Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
 
 std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::ImageSize& size) {
@@ -167,7 +167,7 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
   const double rate_hz = info.frame_rate.value();
   const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
   const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
-  // A container's length is that of its longest stream: sound may outlast the picture.
+  // A container's length is that of its longest stream; its sound may be longer than its picture.
   constexpr double kLengthError_s = 1;
   if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
   if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);

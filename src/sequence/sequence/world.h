@@ -19,7 +19,7 @@
 #include "world/scene/scene.h"
 #include "world/trajectory/path.h"
 
-// A scene with everything it names loaded: lens, paths, aircraft.
+// A scene after everything that it names has been loaded: lens, paths, aircraft.
 namespace airtruth::sequence {
 
 struct Actor {
@@ -38,47 +38,52 @@ struct World {
   Shutter shutter;
 };
 
-// An intruder's aircraft as it flies at the beginning of its path: the airspeed and the height
-// there decide on gear and flaps.
+// Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
+// and the height there determine gear and flaps.
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-// The scene has no "auto" keys left (resolve.h). Throws Interrupted on stop.
+// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
                  const std::stop_token& stop = {});
 
-// Error where the camera's path begins after the clip, or ends before it by more than the clip's
-// stated length may be wrong.
+// Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
+// than the uncertainty of the clip's stated length.
 void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info);
 
-// The same for a scene that is not loaded, with the intruders' paths and aircraft: Error where one
-// cannot be read or is not there.
+// Makes the same check for a scene that is not loaded, including the intruders' paths and aircraft.
+// Throws Error where one of them is missing or cannot be read.
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info);
 
-// Where everything is in one frame, from geometry alone.
+// The geometry of one frame, without its pixels.
 struct Moment {
   std::int64_t frame = 0;
   double time_s = 0;
   trajectory::State camera;
   annotation::Sight sight;
-  std::vector<std::optional<trajectory::State>> states;  // per actor; empty: not in the world
-  std::vector<Twist> twists;                             // per actor: how it goes on
+  // By actor; empty: the actor is not in the world at this time.
+  std::vector<std::optional<trajectory::State>> states;
+  // By actor: its motion after this moment.
+  std::vector<Twist> twists;
   std::vector<annotation::ExactBox> boxes;
   std::vector<std::optional<Box>>
-      search;  // where to look for pixels: boxes with a margin, if in view
+      // By actor: the box in which its pixels are searched (its box with a margin); empty: it is
+      // not in view.
+      search;
 };
 
-// Around all the places to look.
+// The bounding box of all the search boxes.
 std::optional<PixelBox> search_bounds(const Moment& moment);
 
-// Error where the camera's path does not reach that time.
+// Throws Error where the camera's path does not reach that time.
 Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake);
 
-// Where an actor comes nearest to being in view: for the warning about an intruder that never is.
+// The moment at which an actor is nearest to being in view, for the warning about an intruder that
+// is never visible.
 struct NearestApproach {
   double time_s = 0;
   double off_view_deg = 0;  // angle from the nearest edge of the view
