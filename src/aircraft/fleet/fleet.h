@@ -12,67 +12,81 @@
 #include "aircraft/model/mesh.h"
 #include "foundation/base/log.h"
 
-// The aircraft of Debian's flightgear-data-ai, by name ("738/738-Ryanair"), and bare model files.
+// Aircraft by name from Debian's package flightgear-data-ai ("738/738-Ryanair"), and aircraft from
+// single model files.
+//
+// Example: load_aircraft("738/738-Ryanair") reads AI/Aircraft/738/738-Ryanair.xml and everything
+// that this wrapper names. load_aircraft("models/drone.obj") reads that file. A catalogue model
+// whose wings span 9.63 m, where 11.00 m is published for its type, gets a catalogue_scale of
+// 11.00 / 9.63 = 1.142 if its length is too short as well (scale.h).
 namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
 
 struct Entry {
-  std::string name;  // "738/738-Ryanair": the wrapper XML under AI/Aircraft, without its extension
+  // The path of the wrapper XML below AI/Aircraft without its extension: "738/738-Ryanair".
+  std::string name;
   std::filesystem::path file;
-  std::filesystem::path catalogue_folder = {};  // the one of the folders searched that holds it
+  // The searched folder that holds the wrapper.
+  std::filesystem::path catalogue_folder = {};
 };
 
-// Where Debian's package flightgear-data-ai puts its aircraft.
+// The folder in which Debian's package flightgear-data-ai installs its aircraft.
 constexpr const char* kDebianAircraft = "/usr/share/games/flightgear/AI/Aircraft";
 
-// FlightGear's data root of a folder of aircraft: what holds its AI/Aircraft, or the folder itself.
+// FlightGear's data root for a folder of aircraft: the folder that holds its AI/Aircraft, or the
+// folder itself where its path has no such part.
 std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder);
 
-// Folders searched: $AIRTRUTH_AIRCRAFT_PATH (colon-separated), else kDebianAircraft. Sorted by
-// name. Throws Error, saying which package to install, where there is no such folder.
+// All aircraft of the catalogue, sorted by name. The function searches the folders of
+// $AIRTRUTH_AIRCRAFT_PATH (colon-separated), or kDebianAircraft where that is not set. Throws Error
+// where there is no such folder; the message states which package to install.
 std::vector<Entry> list_aircraft();
 
-// The names that a word means, sorted: those it fits as a pattern over the whole name where it
-// holds
-// * or ?, else those that contain it. Letter case does not matter. Empty where none does.
+// The names that match a word, sorted. A word with * or ? is a pattern for the whole name; any
+// other word matches the names that contain it. Letter case does not matter. The result is empty
+// where no name matches.
 std::vector<std::string> aircraft_named_like(const std::string& word);
 
-// The names that a pattern with * and ? fits as a whole, sorted. Letter case matters where it
-// decides: a pattern that fits no name as it is written fits whatever the case of its letters.
+// The names that a pattern with * and ? matches as a whole, sorted. Letter case matters first; a
+// pattern that matches no name as it is written is matched again without regard to letter case.
 std::vector<std::string> aircraft_fitting(const std::string& pattern);
 
-// Names for a message about a word that is no name, at most `count`: first those that contain the
-// word in whatever case, then those nearest in spelling.
+// At most `count` names to suggest in a message about an unknown name: first the names that contain
+// the word without regard to letter case, then the names nearest in spelling.
 std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t count);
 
-// The entry of that name; Error with the nearest names otherwise.
+// The entry of that name. Throws Error with the nearest names where there is none.
 Entry find_aircraft(const std::string& name);
 
-// The file of the aircraft that `name` means: the model file itself where is_model_file(name)
-// (aircraft/wrapper/reader.h), else the wrapper of that catalogue name. Error where the model file
-// does not exist, or no aircraft has that name; the message holds the nearest names.
+// The file of an aircraft: the model file itself where is_model_file(name)
+// (aircraft/wrapper/reader.h), else the wrapper of that catalogue name. Throws Error where the
+// model file does not exist, or where no aircraft has that name; the message then holds the nearest
+// names.
 std::filesystem::path aircraft_file(const std::string& name);
 
 struct Aircraft {
   std::string name;
   std::filesystem::path file;
   Mesh mesh;
-  double catalogue_scale = 1;                  // that the catalogue's model was scaled by
-  std::vector<std::filesystem::path> sources;  // every file read, for checksums
+  // The factor by which the catalogue's model was scaled.
+  double catalogue_scale = 1;
+  // Every file that was read, for checksums.
+  std::vector<std::filesystem::path> sources;
 };
 
 // `name` is a catalogue name, or a path to a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb
-// .fbx, or a FlightGear .xml) when it has one of those endings. All that it names lies in its own
-// folder or below. Debian's own aircraft are read here, all other files in a child process that can
-// do nothing but hand back triangles and pixels. Throws Error for what is unknown (nearest names),
-// unreadable, without triangles, or lacks a texture, and Interrupted where options.stop is
-// requested. Animations and properties that are not understood are named once in a warning.
+// .fbx, or a FlightGear .xml) when it has one of those endings. All files that a model file names
+// must lie in its own folder or below. Debian's own aircraft are read in this process. All other
+// files are read in a confined child process that can only return triangles and pixels. Throws
+// Error for an unknown name (with the nearest names), an unreadable file, a model without
+// triangles, or a missing texture. Throws Interrupted where options.stop is requested. One warning
+// names the animations and properties that are not supported.
 Aircraft load_aircraft(const std::string& name,
                        const LoadOptions& options = {},
                        const Warn& warn = {});
 
-// The other liveries of the same model folder: names that differ in the livery alone.
+// The other liveries in the same model folder: the names that differ in the livery alone.
 std::vector<std::string> liveries(const std::string& name);
 
 }  // namespace airtruth::aircraft

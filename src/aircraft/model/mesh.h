@@ -9,29 +9,37 @@
 #include "aircraft/model/finish.h"
 #include "foundation/geometry/transform.h"
 
-// An aircraft as triangles with what they look like. Body frame: x forward, y right, z down,
-// metres, double-free floats (an aircraft is small). The origin is the model's own reference point,
-// which the path moves along.
+// An aircraft as triangles with materials and textures. Coordinates are in the body frame (x
+// forward, y right, z down; metres) and in single precision, which suffices for the size of an
+// aircraft. The origin is the model's own reference point; the flight path moves this point.
+//
+// Example: a Cessna 172P is 11.00 m wide and 8.28 m long. A mesh whose positions lie between
+// (-6, -5.5, -1) and (2.28, 5.5, 1) has extents of length_m() = 8.28, span_m() = 11 and
+// height_m() = 2. A propeller part with 10 revolutions per second has turned by a third of a
+// revolution, 120 degrees, at time_s = 1/30.
 namespace airtruth::aircraft {
 
-// sRGB texture, decoded to linear and premultiplied before its mip chain is built (level 0 is the
-// full size, each further level half of it, down to 1x1).
+// A texture in linear light with premultiplied alpha. Its sRGB samples are decoded and
+// premultiplied before the mip chain is built. Level 0 has the full size; each further level has
+// half the size of the level before, down to 1x1.
 struct Texture {
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::array<float, 4>>
-        texels;  // linear premultiplied RGBA; row 0 is v = 0 (the bottom, as OpenGL's)
+    // Linear premultiplied RGBA. Row 0 is v = 0, the bottom of the picture, as in OpenGL.
+    std::vector<std::array<float, 4>> texels;
     bool operator==(const Level&) const = default;
   };
   std::vector<Level> levels;
   bool repeat_u = true;
   bool repeat_v = true;
-  bool has_translucency = false;  // some texel has alpha below kOpaque
+  // Whether the alpha of any texel is below kOpaque.
+  bool has_translucency = false;
   bool operator==(const Texture&) const = default;
 };
 
-// Opacity at which a surface counts as opaque: 254 / 255, since files round.
+// The opacity from which on a surface counts as opaque: 254 / 255, because files round alpha to 8
+// bits.
 constexpr float kOpaque = 0.996f;
 
 struct Material {
@@ -40,7 +48,8 @@ struct Material {
   std::array<float, 3> specular = {0, 0, 0};  // linear
   float shininess = 0;                        // Blinn-Phong exponent, 0..128
   float opacity = 1;
-  int texture = -1;  // index into Mesh::textures, -1: none
+  // Index into Mesh::textures; -1 for a material without a texture.
+  int texture = -1;
   Finish finish = Finish::kPaint;
   bool operator==(const Material&) const = default;
 };
@@ -51,8 +60,8 @@ struct Triangle {
   bool operator==(const Triangle&) const = default;
 };
 
-// Triangles that move together. part 0 is the airframe; a spinning part (propeller, rotor) turns
-// about its axis.
+// Triangles that move together. Part 0 is the airframe. A part that spins (propeller, rotor) turns
+// about its axis through its centre.
 struct Part {
   std::string name;
   std::vector<Triangle> triangles;
@@ -65,7 +74,8 @@ struct Part {
 
 struct Mesh {
   std::vector<Eigen::Vector3f> positions;  // in body
-  std::vector<Eigen::Vector3f> normals;    // unit, one per position, averaged over smooth edges
+  // Unit vectors, one per position, averaged over smooth edges.
+  std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector2f> uvs;
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -75,16 +85,17 @@ struct Mesh {
   bool operator==(const Mesh&) const = default;
 };
 
-// body_from_part at a time: the identity for the airframe, a rotation about the axis for a spinning
-// part.
+// The transform from a part to the body at a time: the identity for the airframe, and a rotation
+// about the axis for a part that spins.
 Eigen::Affine3f body_from_part(const Part& part, double time_s);
 
-// The points whose projections bound what can be seen: vertices of opaque triangles, and for
-// translucent ones (a propeller disc drawn on a square) points on the border of the texels with
-// alpha >= 1/255, dense enough for 0.05 px at 400 px. One list per part, in part coordinates.
+// The points whose projections bound the visible silhouette, as one list per part in part
+// coordinates. An opaque triangle contributes its vertices. A translucent triangle (a propeller
+// disc drawn on a square) contributes points on the border of the texels with alpha >= 1/255. These
+// are dense enough for an error of 0.05 px on an aircraft of 400 px.
 std::vector<std::vector<Eigen::Vector3f>> silhouette_points(const Mesh& mesh);
 
-// Extents in metres.
+// The axis-parallel bounds of a mesh in body, in metres.
 struct Extents {
   Vector3 low_in_body = Vector3::Zero();
   Vector3 high_in_body = Vector3::Zero();

@@ -7,13 +7,18 @@
 
 #include "foundation/geometry/transform.h"
 
-// Lenses map directions in the camera frame (x right, y down, z forward) to pixels and back.
-// Conventions: docs/conventions.md. Pixel (0, 0) is the corner of the image; a calibration made
-// with OpenCV's integer-centred pixels is moved by half a pixel where it is read
-// (calibration_file.h).
+// A lens maps points in the camera frame (x right, y down, z forward; metres) to pixels, and pixels
+// to rays. docs/conventions.md defines the frames. Pixel (0, 0) is the top-left corner of the
+// image. A calibration with OpenCV's integer-centred pixels is shifted by half a pixel when it is
+// read (calibration_file.h).
 //
-// Example: 1920 x 1080 with a horizontal view of 60 degrees is a focal length of 960 / tan(30 deg)
-// = 1662.8 px; an aircraft 10 m long, side-on and 500 m ahead, spans 33.3 px.
+// Example: a pinhole camera of 1920 x 1080 pixels with a horizontal field of view of 60 degrees has
+// a focal length of 960 / tan(30 deg) = 1662.8 px.
+//   const Lens lens(Pinhole{{1662.8, 1662.8}, {960, 540}}, {1920, 1080});
+//   lens.pixel_from_cam({0, 0, 500})   -> (960, 540)     a point 500 m straight ahead
+//   lens.pixel_from_cam({10, 0, 500})  -> (993.3, 540)   a point 10 m to the right of it
+//   lens.pixel_from_cam({0, 0, -500})  -> empty          a point behind the camera
+// An aircraft 10 m long that is seen side-on at 500 m therefore spans 33.3 px.
 namespace airtruth::lens {
 
 struct ImageSize {
@@ -22,46 +27,51 @@ struct ImageSize {
   bool operator==(const ImageSize&) const = default;
 };
 
-// u = fx x/z + cx, v = fy y/z + cy. Valid for z > 0.
+// The pinhole model: u = fx x/z + cx, v = fy y/z + cy. It is valid for z > 0.
 struct Pinhole {
   Pixel focal_px{0, 0};
   Pixel principal_point_px{0, 0};
 };
 
-// Brown (1966) and Conrady (1919), as OpenCV's calib3d: k1 k2 p1 p2 [k3 [k4 k5 k6]] (rational).
-// Valid up to the largest field angle to which the radial curve still rises.
+// The radial and tangential model of Brown (1966) and Conrady (1919) with the coefficients of
+// OpenCV's calib3d: k1 k2 p1 p2 [k3 [k4 k5 k6]]. Eight coefficients form the rational model. The
+// model is valid up to the largest field angle at which the radial curve still rises.
 struct BrownConrady {
   Pixel focal_px{0, 0};
   Pixel principal_point_px{0, 0};
-  std::vector<double> distortion;  // 4, 5 or 8 numbers, in OpenCV's order
+  // 4, 5 or 8 coefficients in OpenCV's order.
+  std::vector<double> distortion;
 };
 
-// Kannala and Brandt (2006), as OpenCV's fisheye: theta_d = theta (1 + k1 theta^2 + ... + k4
-// theta^8). Valid up to the largest angle from the axis to which theta_d still rises, at most 180
-// degrees.
+// The fisheye model of Kannala and Brandt (2006) with the coefficients of OpenCV's fisheye module:
+// theta_d = theta (1 + k1 theta^2 + ... + k4 theta^8), theta in radians from the axis. The model is
+// valid up to the largest angle at which theta_d still rises, at most 180 degrees.
 struct Fisheye {
   Pixel focal_px{0, 0};
   Pixel principal_point_px{0, 0};
-  std::vector<double> distortion;     // 4 numbers (missing ones are 0)
-  double stated_max_angle_rad = kPi;  // a calibration may know that its curve ends earlier
+  // k1 to k4; missing coefficients are 0.
+  std::vector<double> distortion;
+  // The angle at which the calibration states that its curve ends.
+  double stated_max_angle_rad = kPi;
 };
 
 using Model = std::variant<Pinhole, BrownConrady, Fisheye>;
 
-// A lens with the size of the image it was calibrated for. Immutable; safe to share between
-// threads.
+// A lens with the size of the image for which it was calibrated. A Lens is immutable, and threads
+// may share it.
 class Lens {
  public:
-  // Throws Error where the parameters are nonsense (focal length not positive or not finite, wrong
-  // number of distortion coefficients, a radial curve that falls from the axis on).
+  // Throws Error for a focal length that is not positive or not finite, a wrong number of
+  // distortion coefficients, or a radial curve that falls from the axis on.
   Lens(Model model, ImageSize size);
 
-  // Empty where the model has no image: behind a pinhole, beyond the valid field, at the origin.
-  // Not clipped to the image: pixels outside it are answers too. Continuous over the valid field.
+  // The pixel that shows a point. It is empty where the model has no image: behind a pinhole,
+  // beyond the valid field, and at the origin. The result is not clipped: it may lie outside the
+  // image. It is continuous over the valid field.
   std::optional<Pixel> pixel_from_cam(const Vector3& p_in_cam) const;
 
-  // Unit vector in cam; empty where no direction of the valid field reaches the pixel. Inverse of
-  // pixel_from_cam within 1e-9 rad over the valid field.
+  // The ray of a pixel as a unit vector in cam. It is empty where no direction of the valid field
+  // reaches the pixel. The function inverts pixel_from_cam within 1e-9 rad over the valid field.
   std::optional<Vector3> ray_from_pixel(const Pixel& pixel) const;
 
   const Model& model() const { return model_; }
@@ -72,7 +82,7 @@ class Lens {
   double focal_px() const;
   // "pinhole", "brown_conrady" or "fisheye".
   const char* name() const;
-  // Full view angles through the principal point along rows and columns, degrees.
+  // The full field of view through the principal point along rows and along columns, in degrees.
   double horizontal_fov_deg() const;
   double vertical_fov_deg() const;
 
@@ -80,13 +90,16 @@ class Lens {
   Model model_;
   ImageSize size_;
   double max_angle_rad_ = 0;
-  double max_radius_ = 0;  // bound on the distorted radius, for a quick "no" outside it
+  // An upper bound on the distorted radius: a pixel beyond it is rejected without inversion.
+  double max_radius_ = 0;
 };
 
-// A pinhole with the axis through the image's centre and square pixels. 0 < fov < 180, else Error.
+// A pinhole with square pixels whose axis passes through the centre of the image. Throws Error
+// unless 0 < fov < 180 degrees.
 Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size);
 
-// The equidistant fisheye (all distortion 0) with this vertical view. 0 < fov <= 360, else Error.
+// An equidistant fisheye (all distortion coefficients are 0) with this vertical field of view.
+// Throws Error unless 0 < fov <= 360 degrees.
 Lens fisheye_from_vertical_fov(double vertical_fov_deg, ImageSize size);
 
 }  // namespace airtruth::lens

@@ -3,12 +3,18 @@
 
 #include <Eigen/Geometry>
 
-// Rotations and rigid motions. Frames, axes and units: docs/conventions.md.
+// Rotations, rigid motions and plane maps. docs/conventions.md defines frames, axes and units:
 //
-//   world  north-east-down, metres       body  x forward, y right, z down      cam  x right, y
-//   down, z forward
+//   world  x north, y east, z down; metres
+//   body   x forward, y right, z down; metres
+//   cam    x right, y down, z forward; metres
 //
-// Names say both ends: p_in_cam = cam_from_world * p_in_world.
+// A transform's name states both of its frames: p_in_cam = cam_from_world * p_in_world.
+//
+// Example: an aircraft at (0, 0, -100) in world heads east.
+//   const Rigid world_from_aircraft{world_from_body({90, 0, 0}), {0, 0, -100}};
+//   world_from_aircraft * Vector3(10, 0, 0) == (0, 10, -100)
+// A point 10 m ahead of it lies 10 m east of the origin, at the same height of 100 m.
 namespace airtruth {
 
 using Vector3 = Eigen::Vector3d;
@@ -19,7 +25,9 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
 constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
 
-// b_from_a: p_in_b = rotation * p_in_a + translation.
+// A rigid motion b_from_a: p_in_b = rotation * p_in_a + translation. The rotation is a unit
+// quaternion; the translation is the origin of a in b, in metres. The product c_from_b * b_from_a
+// is c_from_a.
 struct Rigid {
   Quaternion rotation = Quaternion::Identity();
   Vector3 translation = Vector3::Zero();
@@ -34,8 +42,8 @@ struct Rigid {
   }
 };
 
-// Attitude in files: yaw from north towards east, then pitch nose up, then roll right wing down;
-// degrees.
+// An attitude as files state it, in degrees: yaw from north towards east, then pitch nose up, then
+// roll right wing down.
 struct YawPitchRoll {
   double yaw_deg = 0;
   double pitch_deg = 0;
@@ -46,21 +54,23 @@ struct YawPitchRoll {
 //   world_from_body({90, 0, 0}) * (1, 0, 0) = (0, 1, 0): the nose points east.
 Quaternion world_from_body(const YawPitchRoll& attitude);
 
-// The inverse. Yaw in (-180, 180], pitch in [-90, 90], roll in (-180, 180]; at pitch = +-90 roll is
-// 0.
+// The inverse of world_from_body(attitude). Yaw lies in (-180, 180], pitch in [-90, 90] and roll in
+// (-180, 180]. At a pitch of +-90 degrees yaw and roll cannot be separated, and roll is 0.
 YawPitchRoll yaw_pitch_roll(const Quaternion& world_from_body);
 
-// A camera that looks along the body's x axis: x_cam = y_body, y_cam = z_body, z_cam = x_body.
+// The rotation of a camera that looks along the body's x axis: x_cam = y_body, y_cam = z_body,
+// z_cam = x_body.
 Quaternion cam_from_body();
 
-// A pixel's place. (0, 0) is the top-left corner of the image, the first pixel's centre is (0.5,
-// 0.5).
+// A position in the image, in pixels. (0, 0) is the top-left corner of the image; the centre of the
+// first pixel is (0.5, 0.5).
 using Pixel = Eigen::Vector2d;
 
-// A 3x3 projective map of pixel to pixel, b_from_a.
+// A 3x3 projective map b_from_a from pixels of image a to pixels of image b.
 using Homography = Eigen::Matrix3d;
 
-// Where H takes p. At the horizon of H (denominator 0) the result is not finite.
+// The pixel to which H maps p. Where the third homogeneous coordinate is 0, the result is not
+// finite.
 inline Pixel apply(const Homography& h, const Pixel& p) {
   const Vector3 q = h * Vector3(p.x(), p.y(), 1.0);
   return {q.x() / q.z(), q.y() / q.z()};
