@@ -15,9 +15,12 @@ namespace {
 
 constexpr int kSide = 12;
 constexpr int kBins = 24;
-constexpr double kFlatShare = 0.12;        // of the blocks of one brightness
-constexpr std::size_t kFewestBlocks = 12;  // of one brightness
-constexpr double kRounding = 1.0 / 12;     // variance of whole code values
+// Share of the blocks of one brightness that are taken as flat.
+constexpr double kFlatShare = 0.12;
+// Fewest flat blocks of one brightness.
+constexpr std::size_t kFewestBlocks = 12;
+// Variance of rounding to whole code values, squared code values.
+constexpr double kRounding = 1.0 / 12;
 
 struct Statistics {
   double mean = 0;
@@ -26,8 +29,8 @@ struct Statistics {
   bool clipped = false;
 };
 
-// Of a block with its best plane taken off. A plane has three degrees of freedom, and a little of
-// the noise goes with it: (n - 3) makes up for that.
+// Statistics of a block after the best-fitting plane is subtracted. The plane has three degrees of
+// freedom and takes a little of the noise with it; the divisor n - 3 corrects for that.
 Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
   constexpr double kHalf = (kSide - 1) / 2.0;
   constexpr double kCount = kSide * kSide;
@@ -62,7 +65,8 @@ Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
   return result;
 }
 
-// Correlation of neighbours that white noise has under a Gaussian of that width.
+// Correlation between neighbouring pixels of white noise after a Gaussian blur with the standard
+// deviation `sigma_px`.
 double neighbour_correlation(double sigma_px) {
   const std::vector<float> kernel = composite::gaussian(sigma_px);
   double same = 0, beside = 0;
@@ -107,7 +111,7 @@ void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
     }
 }
 
-// The flattest of each brightness.
+// The flattest blocks of each brightness.
 std::vector<NoiseMeter::Block> NoiseMeter::chosen() const {
   std::array<std::vector<Block>, kBins> bins;
   for (const Block& block : blocks_)
@@ -134,8 +138,8 @@ std::vector<NoisePoint> NoiseMeter::points() const {
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const std::vector<double>& v = variances[bin];
     if (v.empty()) continue;
-    // The median of a chi-square with so many degrees lies a little below its mean (Wilson and
-    // Hilferty 1931).
+    // The median of a chi-square distribution with kDegrees degrees of freedom lies a little below
+    // its mean (Wilson and Hilferty 1931).
     constexpr double kDegrees = kSide * kSide - 3;
     const double down = std::pow(1 - 2 / (9 * kDegrees), 3);
     const double variance = std::max(0.0, median(v) / down - kRounding);
@@ -152,8 +156,8 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
           " brightnesses; a noise curve takes two";
     return std::nullopt;
   }
-  // variance in linear light = gain x + floor, least squares weighted by how sure each point is,
-  // neither below 0.
+  // The model is: variance in linear light = gain x + floor. The fit is weighted least squares, and
+  // neither parameter is negative.
   struct Row {
     double x, y, blocks;
   };
@@ -164,18 +168,21 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
     const double codes = double(composite::noise_sigma(
         static_cast<float>(p.luma), static_cast<float>(codes_per_unit_), unit));
     const double y = p.sigma_codes * p.sigma_codes / (codes * codes);
-    constexpr int kEnough = 40;  // so that the sky does not outvote what is dark
+    // Upper bound of the weight of a point, so that the many blocks of sky do not dominate the dark
+    // points.
+    constexpr int kEnough = 40;
     rows.push_back({x, y, double(std::min(p.blocks, kEnough))});
   }
-  // Texture can only add to what is seen: points above the curve by more than the rest count ever
-  // less, those below it do not.
+  // Texture only increases the measured variance. Points that lie above the curve by more than the
+  // others therefore lose weight in each round; points below the curve keep theirs.
   double gain = 0, floor = 0, sw = 0, sxx = 0, det = 0, chi = 0;
   for (int round = 0; round < 30; ++round) {
     double sx = 0, sy = 0, sxy = 0;
     sw = sxx = 0;
     for (const auto& [x, y, blocks] : rows) {
       const double expected = round == 0 ? y : gain * x + floor;
-      const double error = std::max(expected, 1e-9);  // of a variance: in proportion to itself
+      // The error of a variance is proportional to the variance.
+      const double error = std::max(expected, 1e-9);
       const double above = round == 0 ? 0 : (y - expected) / error;
       constexpr double kTextured = 0.04;
       const double trust = above > kTextured ? std::pow(kTextured / above, 3) : 1;
@@ -193,7 +200,8 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
       chi += blocks * std::min(e * e, 0.02);
     }
   }
-  constexpr double kNone = 1e-9;  // a hundredth of a code value
+  // Below this variance the noise is taken as 0; it corresponds to a hundredth of a code value.
+  constexpr double kNone = 1e-9;
   if (gain < kNone) gain = 0;
   if (floor < kNone) floor = 0;
   const double scale = chi / std::max<double>(1, double(rows.size()) - 2);
@@ -213,7 +221,8 @@ std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
     const double width = width_from_correlation(middle);
     const double off = std::max(std::abs(width_from_correlation(middle + error) - width),
                                 std::abs(width_from_correlation(middle - error) - width));
-    // Where neither neighbour has another width, blocks are too alike to tell one.
+    // If the correlation one error to either side gives the same width, the blocks do not determine
+    // the width.
     result.correlation_px = {width, off > 0 ? off : std::max(1.0, width)};
   } else {
     result.correlation_px = {0, 1};

@@ -16,18 +16,23 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kLongSide = 640;  // pixels that it is worked on
+// Long side of the reduced picture on which the method works, px.
+constexpr int kLongSide = 640;
 constexpr std::size_t kMostKept = 48;
 constexpr std::size_t kFewestKept = 6;
-constexpr double kLeastMotionPx = 2;  // at the working size, between frames that are compared
-constexpr float kBlack = 10;          // code values
+// Least motion between frames that are compared, px at the working size.
+constexpr double kLeastMotionPx = 2;
+// A pixel that never exceeds this value is black, code values.
+constexpr float kBlack = 10;
 
 struct Kept {
-  cv::Mat grey;                                        // float, small, a little soft
-  Homography from_reference = Homography::Identity();  // of the full-size picture
+  // Luma at the working size, slightly blurred, float.
+  cv::Mat grey;
+  // In pixels of the full-size picture.
+  Homography from_reference = Homography::Identity();
 };
 
-// What every kept frame adds up to, at full size.
+// Sums over the kept frames at full size.
 struct Sums {
   cv::Mat rgb, squares;  // float; squares of grey
   int count = 0;
@@ -55,7 +60,8 @@ struct Sums {
     return result;
   }
 
-  // Grey, how much it changes over time, and blue against red, as a picture for GrabCut.
+  // The picture for GrabCut. Its channels are the mean grey, the standard deviation of grey over
+  // time, and the difference between blue and red.
   cv::Mat features() const {
     const cv::Mat mean = rgb / double(count);
     cv::Mat grey, planes[3];
@@ -72,7 +78,7 @@ struct Sums {
   }
 };
 
-// The reader of the pass: every n-th frame, small, with the world's motion.
+// Reads the video and keeps every n-th frame at the working size, with the motion of the world.
 std::vector<Kept> keep_frames(video::Reader& reader,
                               const MaskOptions& options,
                               double scale,
@@ -102,7 +108,8 @@ std::vector<Kept> keep_frames(video::Reader& reader,
   return kept;
 }
 
-// H between two kept frames, at the working size in OpenCV's integer-centred pixels.
+// The homography between two kept frames at the working size, in OpenCV's pixels with integer
+// centres.
 cv::Matx33d small_step(const Kept& to, const Kept& from, double scale) {
   Homography down = Homography::Identity();
   down(0, 0) = down(1, 1) = scale;
@@ -125,8 +132,10 @@ double mean_motion_px(const cv::Matx33d& h, const cv::Size& size) {
 }
 
 struct Evidence {
-  cv::Mat still;   // mean difference at the same place
-  cv::Mat moving;  // and where the world went
+  // Mean difference between the frames of a pair at the same place.
+  cv::Mat still;
+  // Mean difference between a place and the place to which the world moved.
+  cv::Mat moving;
   cv::Mat brightest;
   int pairs = 0;
 };
@@ -184,8 +193,8 @@ float middle_of(const cv::Mat& values, const cv::Mat& where) {
   return median_or_0(std::move(chosen));
 }
 
-// A region is kept where it reaches the picture's border (it carries the camera) and enough of it
-// was seen to stay while the world moved.
+// Keeps the regions that reach the border of the picture, since the aircraft carries the camera,
+// and of which enough was seen to stay still while the world moved.
 void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure, const cv::Mat& spread) {
   cv::Mat labels, statistics, centres;
   const int count = cv::connectedComponentsWithStats(aircraft, labels, statistics, centres, 8);
@@ -197,10 +206,11 @@ void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure, const cv::Mat& s
       largest = area;
       main_part = i;
     }
-  // Cloud may look like the aircraft, and hardly move; but it moves more.
+  // Cloud may have the colour of the aircraft and hardly move, but it changes more over time.
   constexpr float kAsSteady = 1.6F;
   const float steady = main_part > 0 ? middle_of(spread, labels == main_part) : 0;
-  constexpr int kOfLargest = 20;  // a smaller share of it is a corner of sky
+  // A region smaller than the largest one divided by this number is a corner of sky.
+  constexpr int kOfLargest = 20;
   constexpr double kSeenShare = 0.25;
   for (int i = 1; i < count; ++i) {
     const int* s = statistics.ptr<int>(i);
@@ -213,15 +223,15 @@ void keep_what_was_seen(cv::Mat& aircraft, const cv::Mat& sure, const cv::Mat& s
         middle_of(spread, here) > kAsSteady * steady + 0.3F)
       aircraft.setTo(0, here);
   }
-  // And small holes in it are part of it.
+  // Small holes in the aircraft are part of it.
   const cv::Mat free = aircraft == 0;
   const int holes = cv::connectedComponentsWithStats(free, labels, statistics, centres, 4);
   for (int i = 1; i < holes; ++i)
     if (statistics.at<int>(i, cv::CC_STAT_AREA) < least) aircraft.setTo(1, labels == i);
 }
 
-// More change over time than this, and it is not the aircraft: some times what most of what looks
-// like it shows.
+// The largest change over time that a pixel of the aircraft may have: a multiple of the change that
+// most of the candidate pixels have.
 float steady_limit(const cv::Mat& spread, const cv::Mat& candidates) {
   return std::max(5.0F, 3 * middle_of(spread, candidates));
 }
@@ -233,7 +243,8 @@ cv::Mat cut(const cv::Mat& features, cv::Mat labels) {
   return labels & 1;
 }
 
-// The border to the pixel: what was found at the working size decides all but a band along it.
+// Refines the border of the mask to full-size pixels. Only a band along the border is decided anew;
+// the result at the working size holds elsewhere.
 cv::Mat refined(const cv::Mat& coarse,
                 const cv::Mat& features,
                 const cv::Mat& spread,
@@ -252,7 +263,7 @@ cv::Mat refined(const cv::Mat& coarse,
   labels.setTo(cv::GC_BGD, spread > 2 * steady);
   labels.setTo(cv::GC_FGD, inner);
   cv::Mat found = cv::countNonZero(inner) > 0 ? cut(features, labels) : large;
-  // The border's own pixels are part aircraft: nothing clean is seen through them.
+  // Pixels on the border show aircraft in part, so the mask includes them.
   cv::dilate(found, found, cv::getStructuringElement(cv::MORPH_CROSS, {3, 3}));
   return found;
 }
@@ -276,7 +287,8 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
         "is too still to tell the own aircraft from the world: the picture moves less than " +
             std::to_string(static_cast<int>(kLeastMotionPx / scale)) + " px",
         {video.string()});
-  // What differs at the same place by less than where the world went, in units of the clip's noise.
+  // A pixel shows the aircraft if it differs less at the same place than at the place to which the
+  // world moved. Differences are compared with the noise of the clip.
   std::vector<float> values(e.still.begin<float>(), e.still.end<float>());
   std::nth_element(values.begin(),
                    values.begin() + static_cast<std::ptrdiff_t>(values.size() / 10),
@@ -298,8 +310,8 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
       else if (m > 1.2F * s + 0.3F * noise)
         label = cv::GC_PR_FGD;
     }
-  // Where the world's place was hidden by the aircraft in the other frame, the world fits badly
-  // too; but the world changes over the whole clip, and the aircraft does not.
+  // A pixel of the world also fits badly if the aircraft hides its place in the other frame. But
+  // the world changes over the whole clip, and the aircraft does not.
   cv::Mat spread;
   cv::resize(sums.spread(), spread, labels.size(), 0, 0, cv::INTER_AREA);
   const float steady = steady_limit(spread, labels == cv::GC_FGD);

@@ -12,24 +12,28 @@ namespace {
 
 constexpr std::size_t kFewestSeen = 300;
 
-// How far a square's light may be from the model: a share of its own light, and at the least. What
-// all squares have in common counts, not how many they are: views of one square share its error,
-// and so in part do squares.
+// Error of a square's light relative to the model: kUneven is a share of the square's own light,
+// and kLeastError is the lower bound in linear light. Views of one square share its error, and
+// squares share it in part, so the number of independent measurements is smaller than their count.
 constexpr double kUneven = 0.05, kLeastError = 0.004;
 constexpr double kApart = 4, kShare = 0.3;
-// Far ground's light, of the mean ground's, and at the least; and what is known of that mean.
+// Error of the light of far ground: as a share of the light of the mean ground, and its lower bound
+// in linear light. kMeanTrust is the relative error of that mean.
 constexpr double kFarUneven = 0.25, kLeastFarError = 0.006, kMeanTrust = 0.05;
-// How near airlight is to the sky's at the horizon, where that was seen in the sector and where
-// not.
+// Standard deviation of the prior that the airlight equals the light of the sky at the horizon: for
+// sectors in which the sky was seen, and for the others.
 constexpr double kSkyTrust = 0.03, kOtherSkyTrust = 0.15;
-// Squares look more alike from so far (heights): pixels and errors of the way mix them.
+// Range in heights at which the loss of contrast among squares is stated, and the prior error of
+// that loss. Large pixels and errors of the path mix the light of neighbouring squares.
 constexpr double kMixedAt = 15, kMixedTrust = 0.03;
 constexpr double kUsualSlope = 0.5, kSlopeSpread = 0.5, kMostSlope = 2, kSlopeStep = 0.1;
 constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
-constexpr double kModelError = 0.1;  // of the value
-constexpr double kLeastKnown = 0.3;  // of the value: a larger error is no answer
+// Relative error that is added to the extinction: its scatter over virtual flights (same_ground.h).
+constexpr double kModelError = 0.1;
+// Largest relative error of an extinction that is returned.
+constexpr double kLeastKnown = 0.3;
 
-// Extinctions that are tried, per km.
+// Number and range of the extinctions that are tried, per km, in equal ratios.
 constexpr int kTried = 240;
 constexpr double kWeakest = 0.01, kStrongest = 2;
 double tried(double i) { return kWeakest * std::pow(kStrongest / kWeakest, i / (kTried - 1)); }
@@ -37,21 +41,23 @@ double place_of(double per_km) {
   return std::log(per_km / kWeakest) / std::log(kStrongest / kWeakest) * (kTried - 1);
 }
 
-// The airlight of each sector; the light of the ground on the whole; the share of contrast among
-// squares that is gained at kMixedAt, by the range squared.
+// The unknowns of one channel: the airlight of each sector, the mean light of the ground, and the
+// relative change of contrast among squares at the range kMixedAt, which grows with the range
+// squared.
 constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-// A square in a view, or a band of far ground: one channel.
+// One channel of a square in a view, or of a band of far ground.
 struct Row {
   int square = 0, sector = 0;
   double range = 0, light = 0;
-  double weight = 1, contrast = 0;  // of squares: own light over the mean
+  // `contrast` is used for squares alone: their own light minus the mean.
+  double weight = 1, contrast = 0;
 };
 
-// Weighted least squares for one extinction; the squares' own light is eliminated, since each
-// stands in its own rows alone.
+// Weighted least squares for one extinction. The squares' own light is eliminated, since each
+// occurs only in the rows of its own square.
 struct System {
   struct Square {
     double tt = 0, ty = 0;
@@ -76,12 +82,14 @@ struct System {
 struct Channel {
   std::vector<Row> squares, far;
   std::array<double, kSectors> sky{}, sky_trust{};
-  double mean_light = 0.2;   // that most ground is near
-  std::vector<double> cost;  // of each extinction that is tried
+  // Starting value of the mean light of the ground.
+  double mean_light = 0.2;
+  // The cost of each extinction that is tried.
+  std::vector<double> cost;
 
   System system(double per_height) const;
   void weigh(double per_height);
-  // With weights that fit the best of them.
+  // Computes the cost of every extinction, with the weights that belong to the best one.
   void try_all(double altitude_m);
 };
 
@@ -155,7 +163,7 @@ void Channel::try_all(double altitude_m) {
   }
 }
 
-// A guess of all channels' extinction, and how well it fits.
+// One hypothesis of the extinctions of all channels, with its cost.
 struct Guess {
   std::array<double, 3> per_km{};
   double cost = 0;
@@ -182,7 +190,7 @@ std::vector<Guess> guesses(const std::array<Channel, 3>& channels) {
   return result;
 }
 
-// Mean and spread of the guesses, each by exp(-cost / 2).
+// Mean and spread of the hypotheses, each weighted by exp(-cost / 2).
 ColourEstimate mean_of(const std::vector<Guess>& guesses) {
   const double least =
       std::min_element(guesses.begin(), guesses.end(), [](const Guess& a, const Guess& b) {
@@ -206,7 +214,7 @@ ColourEstimate mean_of(const std::vector<Guess>& guesses) {
   return result;
 }
 
-// Mean over the sectors that were looked into.
+// Mean over the sectors that the views cover.
 Estimate airlight_ahead(const Channel& channel, const System& system) {
   const Unknowns airlight = system.solution(), sigma = system.sigma();
   std::array<bool, kSectors> seen{};

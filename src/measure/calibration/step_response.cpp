@@ -15,14 +15,21 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr std::array kRadii = {0.6, 0.75, 0.9, 1.05, 1.25, 1.5, 1.8, 2.2, 2.7};  // px
-constexpr double kUsualRadius = 1.1, kUsualRadiusSpread = 0.3;  // px, and of its logarithm
-constexpr double kSure = 2;                                     // of its error an amount is a mask
-constexpr double kLeastRms = 0.0005;  // heights: better no edge fits but by luck
-constexpr double kAmountLuck = 0.15;  // that edges' amounts differ by anyway
-constexpr double kSoft = 0.5;         // over the camera's logarithm: such an edge counts half
-// Samples beside one another are wrong together, and so are edges of one world: of an edge's rms
-// heights' logarithms, these many count.
+// Radii of the unsharp mask that are tried, px.
+constexpr std::array kRadii = {0.6, 0.75, 0.9, 1.05, 1.25, 1.5, 1.8, 2.2, 2.7};
+// Prior of the radius: its median, px, and the standard deviation of its logarithm.
+constexpr double kUsualRadius = 1.1, kUsualRadiusSpread = 0.3;
+// An amount of sharpening is significant above this multiple of its standard error.
+constexpr double kSure = 2;
+// Lower bound of the rms residual of an edge, in heights 0 to 1. A smaller residual is accidental.
+constexpr double kLeastRms = 0.0005;
+// Scatter of the amounts of edges beyond their fitted errors.
+constexpr double kAmountLuck = 0.15;
+// Excess of the logarithm of an edge's spread over the camera's at which the edge has half weight.
+constexpr double kSoft = 0.5;
+// Effective number of independent residuals of an edge in the likelihood of its rms. It is much
+// smaller than the number of samples, since neighbouring samples and edges of one scene have
+// correlated errors.
 constexpr double kCounts = 6;
 
 struct Likely {
@@ -50,7 +57,7 @@ struct Weighted {
   double value = 0, weight = 0;
 };
 
-// The least value that half of the weights is not above.
+// The weighted median: the least value at which the weights up to it reach half of their sum.
 double median_of(std::vector<Weighted> values) {
   std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
     return a.value < b.value;
@@ -62,9 +69,9 @@ double median_of(std::vector<Weighted> values) {
   return values.back().value;
 }
 
-// Of the sum of what the world adds and a normally distributed error. Of the edges one half is
-// within `world` or so of a step (exponentially: Meeusen and van den Broeck 1977), the other
-// anything.
+// Likelihood of `sum`, the sum of the excess spread that an edge has in the world and of a normally
+// distributed error. The excess of one half of the edges is exponentially distributed with the mean
+// `world` (Meeusen and van den Broeck 1977); the excess of the other half is arbitrary.
 double sum_likelihood(double sum, double world, double error) {
   constexpr double kSoftest = 1.5;
   const auto above = [](double deviations) {
@@ -76,15 +83,16 @@ double sum_likelihood(double sum, double world, double error) {
   return 0.5 * near + 0.5 * above(sum / error) / kSoftest;
 }
 
-// Of an edge's spread, by logarithms. Lines along an edge and whatever else the fit does not know
-// of change it by luck, now and then by more luck.
+// Likelihood of the logarithm of an edge's spread relative to the camera's. Lines along an edge and
+// other effects outside the model change the spread by a random amount, which is occasionally
+// larger.
 double likelihood(double over_camera, double world, double error) {
   constexpr double kLuck = 0.05, kMoreLuck = 0.2, kMore = 0.1, kAtLeast = 1e-4;
   return (1 - kMore) * sum_likelihood(over_camera, world, std::hypot(error, kLuck)) +
          kMore * sum_likelihood(over_camera, world, std::hypot(error, kMoreLuck)) + kAtLeast;
 }
 
-// The mean of all that it may be, whatever the world may add.
+// The posterior mean of the camera's spread, marginalised over the mean excess in the world.
 Estimate camera_spread(const std::vector<EdgeFit>& fits) {
   std::vector<double> spreads;
   for (const EdgeFit& fit : fits) spreads.push_back(std::log(fit.spread_px));
@@ -103,7 +111,8 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
   return from_logarithm(mean_of(all));
 }
 
-// What the camera does shows on sharp edges; softer ones are no Gaussian's, and look softened.
+// Reduces the weight of soft edges. The effect of the camera shows on sharp edges; softer ones do
+// not have a Gaussian profile and imply a negative amount of sharpening.
 void weigh(std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
   const std::vector<EdgeFit> fits = fit_edges(edges, kUsualRadius, 0, tone);
   const double camera_px = camera_spread(fits).value;
@@ -113,8 +122,8 @@ void weigh(std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
   }
 }
 
-// Of a mask of that radius: what most edges have of it. Lines in the world look like masks on some
-// edges, soft ones like the contrary: their median.
+// The amount of an unsharp mask of the given radius: the median over the edges, since lines in the
+// world imitate a mask on some edges and soft edges imitate the opposite.
 Estimate common_amount(const std::vector<GatheredEdge>& edges,
                        double radius_px,
                        const image::ToneCurve& tone) {
@@ -131,13 +140,13 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges,
     a.value = std::abs(a.value - middle);
   }
   constexpr double kSigmaFromMedian = 1.4826;
-  // A median has the error of a mean of two thirds as many (of a Gaussian).
+  // The median of Gaussian values has the error of a mean of 2 / pi as many values.
   const double many = total * total / squares * 2 / kPi;
   const double scatter = std::hypot(kSigmaFromMedian * median_of(amounts), kAmountLuck);
   return {middle, scatter / std::sqrt(many)};
 }
 
-// How well a mask suits all edges, and how usual it is.
+// The logarithm of the likelihood of a mask on all edges times the prior of its radius.
 double log_likelihood(const std::vector<GatheredEdge>& edges,
                       double radius_px,
                       double amount,
@@ -164,7 +173,8 @@ Mask likely_mask(const std::vector<GatheredEdge>& edges, const image::ToneCurve&
   }
   Mask mask{{}, from_logarithm(mean_of(log_radii))};
   mask.amount = common_amount(edges, mask.radius_px.value, tone);
-  // No camera's mask softens; and a weak one looks much like none with a little less spread.
+  // A camera's mask does not soften. A weak mask is hardly distinguishable from no mask with a
+  // slightly smaller spread.
   if (mask.amount.value <= kSure * mask.amount.sigma)
     return {{0, mask.amount.sigma}, {kUsualRadius, kUsualRadius * kUsualRadiusSpread}};
   mask.amount.sigma = std::hypot(mask.amount.sigma, mean_of(amounts).sigma);
@@ -196,7 +206,7 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   };
   const std::vector<EdgeFit> fits = under(mask.amount.value);
   StepResponse response{camera_spread(fits), mask.amount, mask.radius_px, {}};
-  // A stronger mask would go with more spread.
+  // The errors are coupled: a stronger mask implies a larger spread.
   const Estimate other = camera_spread(under(mask.amount.value + mask.amount.sigma));
   Estimate& spread = response.point_spread_px;
   spread.sigma = std::hypot(spread.sigma, other.value - spread.value);
