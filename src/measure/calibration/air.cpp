@@ -11,12 +11,15 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kFirstSky = 1, kSkyStep = 6;  // pixels
+// The grid of pixels at which the sky is sampled: first pixel and spacing.
+constexpr int kFirstSky = 1, kSkyStep = 6;
+// Lowest elevation of the sky that is used for the sun.
 constexpr double kLowestSkyDeg = 2.5;
-// Where the true horizon is known the sky is read down to it.
+// Elevations of the sky that are used if the true horizon is known.
 constexpr SkyReach kOverTrueHorizon{0.6, 6};
 constexpr std::size_t kFewest = 200;
-constexpr std::size_t kSunStep = 3;  // glimpses of the sky that one is taken of for the sun
+// Every kSunStep-th sample of the sky is used for the sun.
+constexpr std::size_t kSunStep = 3;
 
 struct SkySample {
   Vector3 direction;
@@ -118,8 +121,8 @@ std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {
         toward * toward;
     return row;
   };
-  // Asymmetric least squares (Newey and Powell 1987): clouds are brighter than the sky behind them,
-  // and count little.
+  // Asymmetric least squares (Newey and Powell 1987). Clouds are brighter than the sky behind them
+  // and have a small weight.
   constexpr double kTau = 0.12;
   const auto cost_of = [&](const Vector3& sun) {
     std::vector<Row> rows;
@@ -140,7 +143,7 @@ std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {
       }
       solution = normal.ldlt().solve(right);
     }
-    // A sun that darkens the sky is none.
+    // A fit in which the sky is darker towards the sun is rejected.
     const double glow = solution[4] + solution[5] + solution[6] + solution[7];
     return glow > 0 ? cost : 1e300;
   };
@@ -170,7 +173,7 @@ std::optional<AirMeter::Sun> AirMeter::sun(std::string& why) const {
         if (cost < best) best = cost, azimuth = a, elevation = e;
       }
   }
-  // How far off directions lie that explain the sky nearly as well.
+  // The uncertainty: the largest angle to a direction that explains the sky nearly as well.
   const Vector3 found = direction(azimuth, elevation);
   double spread_deg = 4;
   for (const auto& [d, cost] : all)

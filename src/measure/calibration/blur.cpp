@@ -16,13 +16,16 @@ namespace {
 constexpr std::size_t kMostFrames = 300;
 constexpr int kCropWidth = 448;
 constexpr int kCropHeight = 336;
-constexpr double kFastPx = 4;        // a frame
-constexpr double kSlowShare = 0.35;  // of the fast one's speed
-constexpr std::size_t kNear = 4;     // frames apart, at most
+// Least speed of a frame in motion, px per frame.
+constexpr double kFastPx = 4;
+// Largest speed of a frame at rest, as a share of the speed of the frame in motion.
+constexpr double kSlowShare = 0.35;
+// Largest distance between the two, frames.
+constexpr std::size_t kNear = 4;
 constexpr std::size_t kMostPairs = 60;
 constexpr std::size_t kFewestPairs = 8;
 
-// Energy of the picture's slopes along a direction over that across it.
+// Energy of the gradients of the picture along a direction divided by that across it.
 double slope_ratio(const cv::Mat& grey, const Pixel& along) {
   cv::Mat soft, gx, gy;
   cv::GaussianBlur(grey, soft, {}, 1.0);
@@ -33,8 +36,8 @@ double slope_ratio(const cv::Mat& grey, const Pixel& along) {
   return a.dot(a) / std::max(1e-6, b.dot(b));
 }
 
-// Cubic convolution (Keys 1981, a = -1/2) from the pixel before to the second one after: unlike a
-// straight line between two pixels it does not blur.
+// Weights of cubic convolution (Keys 1981, a = -1/2) for four pixels, from the one before the place
+// to the second one after it. Linear interpolation would blur.
 std::array<double, 4> cubic(double f) {
   return {((-0.5 * f + 1) * f - 0.5) * f,
           (1.5 * f - 2.5) * f * f + 1,
@@ -42,7 +45,7 @@ std::array<double, 4> cubic(double f) {
           (0.5 * f - 0.5) * f * f};
 }
 
-// Blur along a straight line of that length.
+// The picture blurred along a straight line of the given length.
 cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   if (length_px < 0.05) return grey;
   const int half = static_cast<int>(std::ceil(length_px / 2)) + 2;
@@ -63,7 +66,8 @@ cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   return result;
 }
 
-// How long a blur gives the still picture the moving one's ratio; empty where none does.
+// The length of the blur that gives the still picture the gradient ratio of the moving one; empty
+// if no length up to `most_px` does.
 std::optional<double> length_of(const cv::Mat& still,
                                 const cv::Mat& moving,
                                 const Pixel& along,
@@ -105,7 +109,7 @@ void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& mov
   const int y0 = (luma.rows - height) / 2;
   cv::Mat crop = luma(cv::Rect(x0, y0, width, height)).clone();
   const double sum = cv::sum(crop)[0];
-  // The own aircraft is never blurred by the camera's shake: it is made even.
+  // The shake of the camera does not blur the own aircraft, so its pixels are set to the mean.
   if (own_aircraft_ != nullptr)
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
@@ -139,7 +143,7 @@ std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares)
     shot.crops[k].convertTo(moving, CV_32F);
     const auto length = length_of(still, moving, along, 1.3 * fast->norm());
     if (!length) continue;
-    // The neighbour is blurred a little too; variances add.
+    // The neighbour is slightly blurred as well; variances add.
     const double own = slowest * slowest / fast->squaredNorm();
     shares.push_back(*length / fast->norm() / std::sqrt(std::max(0.2, 1 - own)));
   }

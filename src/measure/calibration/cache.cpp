@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kCalibrationVersion = 6;  // raise it whenever the numbers of a calibration change
+// Version of the methods. It must be increased whenever the values of a calibration change.
+constexpr int kCalibrationVersion = 6;
 
 Json json_of(const Calibration& c) {
   Json values = Json::object();
@@ -51,7 +52,7 @@ Calibration calibration_from(const Json& json) {
   return c;
 }
 
-// Held while a clip is measured; none where the folder takes no file.
+// A lock that is held while a clip is measured; null if the folder cannot be written.
 std::unique_ptr<WaitingLock> lock_in(const fs::path& folder,
                                      const CacheKey& key,
                                      const std::stop_token& stop) {
@@ -82,7 +83,7 @@ std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;
   try {
-    // The SHA-256 of the rest, then the rest.
+    // The first line is the SHA-256 of the rest of the file.
     const std::string text = read_file(file);
     const auto line = text.find('\n');
     if (line == std::string::npos) return std::nullopt;
@@ -115,7 +116,8 @@ Calibration calibrate_once(const fs::path& video,
   Calibration measured = calibrate(video, options);
   try {
     store(folder, key, measured);
-  } catch (const std::exception&) {  // read-only home, full disk: the next run measures again
+  } catch (const std::exception&) {
+    // The folder is read-only or the disk is full: the next run measures again.
   }
   return measured;
 }

@@ -32,9 +32,10 @@ GroundRange ground_range(const Options& options) {
 
 constexpr std::int64_t kSampledFrames = 40;
 constexpr std::int64_t kFewestFrames = 8;
-constexpr double kAssumedFovDeg = 60;  // where no lens is given, to look for the horizon
+// Field of view that is assumed for finding the horizon when no lens is given.
+constexpr double kAssumedFovDeg = 60;
 
-// A frame that is looked at closely.
+// A frame that is used for horizon, sky and ground.
 struct Sampled {
   image::Picture picture;
   std::int64_t frame = 0;
@@ -99,7 +100,7 @@ class Session {
       if (options_.stop.stop_requested()) throw Interrupted();
       const motion::FrameMotion moved =
           planar_.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
-      // What most corners are followed into is no cut.
+      // A frame into which most corners can be tracked does not begin a shot.
       if (frame->begins_shot && !is_measured(moved)) cut(frame->index, before);
       std::optional<Homography> step;
       if (moved.state == motion::State::kMeasured && last)
@@ -124,15 +125,15 @@ class Session {
                               turned ? *turned->rotation : Quaternion::Identity(),
                               turned && is_measured(*turned) && result_.cuts.empty()});
       }
-      // The next sampled frame needs the one before it.
+      // The measurements of the next sampled frame also use the frame before it.
       before = std::move(frame->picture);
       ++result_.frames;
       if (options_.progress) options_.progress(result_.frames, total_);
     }
   }
 
-  // Nothing is linked across: no pair of frames, no motion. How the camera is turned after a cut
-  // against how it was before is not known either.
+  // Begins a new shot. No pair of frames and no motion crosses a cut, and the attitude of the
+  // camera after the cut relative to the one before it is not known.
   void cut(std::int64_t frame, std::optional<image::Picture>& before) {
     result_.cuts.push_back(frame);
     before.reset();
@@ -159,7 +160,8 @@ class Session {
     }
   }
 
-  // H.264's quantiser: the step doubles with every 6 (ITU-T H.264, 8.5.9).
+  // Measures the step of the H.264 quantiser, which doubles when the quantisation parameter rises
+  // by 6 (ITU-T H.264, 8.5.9).
   void take_codec() {
     if (quantisers_.empty()) {
       lack("sensor.codec_step",
@@ -173,7 +175,7 @@ class Session {
     put("sensor.codec_step", {{steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}});
   }
 
-  // In code values; 0: none is known.
+  // The step of the quantiser in code values; 0 if it is not known.
   double codec_step() const {
     const auto found = result_.values.find("sensor.codec_step");
     return found == result_.values.end() ? 0 : found->second[0].value;
@@ -234,7 +236,8 @@ class Session {
         options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
     const motion::HorizonFinder finder(lens, options_.own_aircraft);
     const auto found = horizons_of(finder);
-    std::vector<Vector3> ups;  // in the first frame's camera
+    // The upward directions in the camera frame of the first frame.
+    std::vector<Vector3> ups;
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (!found[i]) continue;
       const YawPitchRoll attitude = motion::attitude_from_up(found[i]->up_in_cam);
@@ -247,7 +250,8 @@ class Session {
     AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
     const auto first_from_level = levelled(ups);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
-      // With a lens all frames share one attitude; without, each has its own horizon.
+      // With a known rotation, the attitude of the frame follows from the common one; otherwise the
+      // frame has the attitude of its own horizon.
       if (first_from_level && sampled_[i].turn_known)
         air.add(sampled_[i].picture, sampled_[i].cam_from_first * *first_from_level);
       else if (!options_.lens && found[i])
@@ -269,7 +273,7 @@ class Session {
       return yaw_pitch_roll(world_from_cam * cam_from_body()).yaw_deg;
     };
     for (const Quaternion& cam_from_first : cam_from_first_) {
-      // After a cut the heading is not known.
+      // The heading is not known after a cut.
       if (!result_.cuts.empty() &&
           static_cast<std::int64_t>(result_.yaw_from_first_deg.size()) >= result_.cuts.front())
         break;
@@ -278,7 +282,7 @@ class Session {
     }
   }
 
-  // cam_from_world of the first frame, by the median of what its horizons say.
+  // cam_from_world of the first frame, from the median of the upward directions.
   std::optional<Quaternion> levelled(const std::vector<Vector3>& ups) const {
     if (ups.empty()) return std::nullopt;
     Vector3 middle;
@@ -297,10 +301,10 @@ class Session {
       put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
       return;
     }
-    // Nothing unmeasured is applied as if it were known: air that may be clear is drawn clear. The
-    // error is that of a visibility of 50 km, beyond which the international visibility code calls
-    // it exceptionally clear (Koschmieder's 3.912 over it). A horizon that looks hazy makes a
-    // prior.
+    // An extinction that is not measured is not applied: air that may be clear is rendered clear.
+    // The error is the extinction of a visibility of 50 km (Koschmieder: 3.912 / visibility),
+    // beyond which the international visibility code calls the air exceptionally clear. A horizon
+    // that appears hazy gives a prior.
     constexpr double kKoschmieder = 3.912, kClearKm = 50;
     if (air.visibility_km && *air.visibility_km < kClearKm) {
       const double per_km = kKoschmieder / *air.visibility_km;
@@ -339,8 +343,8 @@ class Session {
     }
   }
 
-  // The horizons that are trusted. Where most frames have a sky that parts from something without a
-  // sharp line, the line of the others is a chance one too, and none is taken.
+  // The horizons that are accepted. If most frames show a sky whose boundary is not a sharp line,
+  // the lines in the other frames are accidental too, and no horizon is accepted.
   std::vector<std::optional<motion::HorizonFinder::Found>> horizons_of(
       const motion::HorizonFinder& finder) {
     std::vector<std::optional<motion::HorizonFinder::Found>> found;
@@ -375,7 +379,7 @@ class Session {
     return found;
   }
 
-  // The sampled frame in the middle of those with a horizon, sky tinted.
+  // Keeps the middle one of the sampled frames with a horizon, with its sky tinted.
   void tint_sky(const lens::Lens& lens,
                 const std::vector<std::optional<motion::HorizonFinder::Found>>& found) {
     std::vector<std::size_t> with;
@@ -402,9 +406,11 @@ class Session {
   BlurMeter blur_;
   motion::Estimator planar_;
   std::optional<motion::Estimator> turning_;
-  std::vector<Steps> steps_ = std::vector<Steps>(1);  // by shot
+  // One entry per shot.
+  std::vector<Steps> steps_ = std::vector<Steps>(1);
   std::vector<double> quantisers_;
-  std::vector<Quaternion> cam_from_first_;  // of every frame; empty without a lens
+  // One rotation per frame; empty without a lens.
+  std::vector<Quaternion> cam_from_first_;
   std::vector<Sampled> sampled_;
   std::int64_t total_ = 0;
   std::int64_t every_ = 2;

@@ -15,21 +15,29 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kReach = 10;        // px from the edge that chroma is looked at
-constexpr double kLevel = 6.5;       // px from the edge that its two levels begin
-constexpr double kLeastHeight = 6;   // code values: a codec keeps the shape of no smaller step
-constexpr double kMostUneven = 0.2;  // of the height, either level's standard deviation
+// Distance from the edge up to which chroma samples are used, px.
+constexpr double kReach = 10;
+// Distance from the edge at which the two levels begin, px.
+constexpr double kLevel = 6.5;
+// Least height of a step, code values. A codec does not preserve the shape of smaller steps.
+constexpr double kLeastHeight = 6;
+// Largest standard deviation of a level, as a share of the height of the step.
+constexpr double kMostUneven = 0.2;
 constexpr std::size_t kFewestSamples = 24;
-constexpr double kWidest = 6;    // px, a standard deviation: its levels would begin further off
-constexpr double kSharpest = 2;  // times the camera's spread, an edge is the world's softness
+// Largest standard deviation of a step, px. The levels of a wider step would begin beyond kLevel.
+constexpr double kWidest = 6;
+// Largest spread of luma across an edge, as a multiple of the camera's. The spread of a softer edge
+// is mostly that of the world.
+constexpr double kSharpest = 2;
 constexpr std::size_t kFewest = 12;
-constexpr double kPixel = 1.0 / 12;  // px^2, variance of a whole pixel
+// Variance of a box of one pixel, px^2.
+constexpr double kPixel = 1.0 / 12;
 
 struct Sample {
   double place = 0, value = 0;
 };
 
-// Of a level, over its mean.
+// The mean of one level and the standard deviation about it.
 struct Level {
   double mean = 0, deviation = 0;
 };
@@ -43,11 +51,13 @@ std::optional<Level> level_of(const std::vector<Sample>& samples, bool high) {
   return Level{sum / count, std::sqrt(std::max(0.0, squares / count - sum / count * sum / count))};
 }
 
-// Chroma samples stand for means of pixels (picture/composite/matte.h): the variance of that, and
-// of the whole sample that a Gaussian of samples has.
+// The chroma grid along one axis. A chroma sample is a weighted mean of pixels
+// (picture/composite/matte.h). `variance_px2` is the variance of that mean plus that of the box of
+// one sample, over which the fitted Gaussian is integrated.
 struct Grid {
   int log2_size = 0;
-  double first_px = 0;  // place of the first sample
+  // Place of the first sample.
+  double first_px = 0;
   double variance_px2 = 0;
 };
 
@@ -80,8 +90,8 @@ std::vector<Sample> samples_across(const image::Plane& plane,
   return samples;
 }
 
-// A Gaussian's step with its two levels, place and width (Gauss and Newton; the levels by variable
-// projection, Golub and Pereyra 1973).
+// Fits the two levels, the place and the width of a Gaussian step by Gauss-Newton; the levels are
+// eliminated by variable projection (Golub and Pereyra 1973).
 std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
   constexpr int kMostRounds = 20;
   constexpr double kMostChange = 0.4, kLeastChange = 1e-3, kMostPlace = 4;
@@ -170,7 +180,8 @@ std::optional<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
   };
   const double scatter = (root_at(84) - root_at(16)) / 2;
   const double many = double(std::clamp<std::size_t>(at_once, 1, beyond.size()));
-  constexpr double kOfAMedian = 1.25;  // its error over that of a Gaussian's mean
+  // Error of the median of Gaussian values relative to the error of their mean.
+  constexpr double kOfAMedian = 1.25;
   return Estimate{root_at(50), kOfAMedian * scatter / std::sqrt(many)};
 }
 

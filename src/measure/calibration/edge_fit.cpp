@@ -13,16 +13,22 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kLeastSpread = 0.05, kMostSpread = 5;  // px
+// Bounds of the spread, px, and of the amount of the mask.
+constexpr double kLeastSpread = 0.05, kMostSpread = 5;
 constexpr double kLeastAmount = -0.9, kMostAmount = 3;
-constexpr double kAcross = 6;           // half the width of an edge, px
-constexpr double kTogether = 0.25;      // px: samples so near are one
-constexpr double kFiner = 0.01;         // of a spread's logarithm, or an amount
-constexpr double kMostChange = 0.3;     // of one round
-constexpr double kLeastChange = 0.001;  // the last round's
+// Half the width of the profile of an edge, px.
+constexpr double kAcross = 6;
+// Width of the bins in which samples are averaged, px.
+constexpr double kTogether = 0.25;
+// Step of the numerical derivatives, in the logarithm of the spread and in the amount.
+constexpr double kFiner = 0.01;
+// Largest change of an unknown in one round.
+constexpr double kMostChange = 0.3;
+// The iteration ends when all changes are smaller than this.
+constexpr double kLeastChange = 0.001;
 constexpr int kMostRounds = 12;
 
-// Columns: plateau, height, place, spread; amount, if it is one of the unknowns.
+// The Jacobian. Its columns are plateau, height, place, spread and, if it is unknown, the amount.
 Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
                           const EdgeFit& fit,
                           double radius_px,

@@ -17,45 +17,55 @@
 namespace airtruth::calibration {
 namespace {
 
-// Half the length of an edge, px: a long one has less of what lies beside it by chance, but not
-// every clip shows enough of them.
+// Half the length of an edge, px. The profile of a long edge is less affected by what happens to
+// lie beside the edge, but not every clip has enough long edges.
 constexpr int kLong = 15, kShort = 5;
 constexpr std::size_t kEnoughLong = 60;
-constexpr double kAcross = 6;      // half the width of its profile, px
-constexpr double kPlateau = 3.5;   // px from the edge its two levels begin
-constexpr double kLeastStep = 24;  // code values
-constexpr double kStraight = 0.2;  // px that the edge's places along it may stray
+// Half the width of the profile of an edge, px.
+constexpr double kAcross = 6;
+// Distance from the edge at which its two levels begin, px.
+constexpr double kPlateau = 3.5;
+// Least height of a step, code values.
+constexpr double kLeastStep = 24;
+// Largest deviation of the places along an edge from a straight line, px.
+constexpr double kStraight = 0.2;
 constexpr int kMostPerFrame = 60;
-constexpr int kApart = 8;  // px, at least
+// Least distance between two edges, px.
+constexpr int kApart = 8;
 constexpr std::size_t kMostEdges = 6000;
 constexpr std::size_t kFewestEdges = 12;
-// Of the sharp edges the most symmetric: a line along one side of an edge looks like half a mask.
-constexpr double kSharp = 1.4;  // times the sharpest
+// Sharp edges are those up to kSharp times as wide as the sharpest one. Only the most symmetric of
+// them are used, since a line along one side of an edge looks like half an unsharp mask.
+constexpr double kSharp = 1.4;
 constexpr double kSymmetricShare = 0.25;
 constexpr std::size_t kFewestSymmetric = 60;
 constexpr std::size_t kMostFitted = 150;
-// Height of an edge, in steps of the codec's quantiser, that rounding leaves as sharp as it is. In
-// a transform of 8 x 8 samples a step of height h through a spread of 0.7 px has a coefficient of
-// 0.55 h at a quarter of a cycle a pixel (closed form of the DCT-II); half a quantiser's step is a
-// sixth of that.
+// Least height of an edge, in steps of the codec's quantiser, at which quantisation does not change
+// its sharpness. In a transform of 8 x 8 samples a step of height h through a spread of 0.7 px has
+// a coefficient of 0.55 h at a quarter of a cycle a pixel (closed form of the DCT-II); half a
+// quantiser's step is a sixth of that.
 constexpr double kStepsForSharpness = 6;
-constexpr double kShown = 1.1;  // times the camera's spread
+// The profile for the plots shows edges with a spread up to kShown times the camera's.
+constexpr double kShown = 1.1;
 constexpr std::size_t kFewestShown = 8;
-// Between frames, across the edge: what that blurs is not sharp.
-constexpr double kMostMoved = 10;          // px
-constexpr double kSamePlace = 1;           // px
-constexpr double kSameDirection = 0.9994;  // cosine: 2 degrees
-constexpr double kBin = 0.2;               // px
-// By how much, as a share, the edges of the world are softer than the sharpest: of n different ones
-// the sharpest is softer than the camera by 1 / n of it, the least of n exponential ones.
+// Largest motion across an edge between frames, px. Faster edges are blurred by motion.
+constexpr double kMostMoved = 10;
+// Edges within this distance, px, and this cosine of their directions (2 degrees) are one edge.
+constexpr double kSamePlace = 1;
+constexpr double kSameDirection = 0.9994;
+// Width of the bins of a profile, px.
+constexpr double kBin = 0.2;
+// Mean relative excess of the spread of edges in the world over the sharpest. The sharpest of n
+// different edges exceeds the camera's spread by 1 / n of it: the expected minimum of n exponential
+// values.
 constexpr double kSofterInWorld = 0.7;
 
 struct Found {
-  double x, y;    // on the edge
-  double nx, ny;  // across it, towards the bright side
+  double x, y;    // a point on the edge
+  double nx, ny;  // unit vector across the edge, towards the bright side
 };
 
-// Where the derivative along the row (or column) through (x, y) has its middle.
+// The centroid of the derivative along the row (or column) through (x, y).
 std::optional<double> middle_of(const cv::Mat& grey, int x, int y, bool along_x) {
   double sum = 0, weighted = 0;
   for (int i = -4; i <= 4; ++i) {
@@ -70,12 +80,15 @@ std::optional<double> middle_of(const cv::Mat& grey, int x, int y, bool along_x)
   return weighted / sum;
 }
 
-// A straight line through the edge's places on the rows (columns) beside it.
+// A straight line through the places of the edge on the neighbouring rows (or columns); empty if
+// the edge is not straight.
 std::optional<Found> straight_edge(
     const cv::Mat& grey, int x, int y, double gx, double gy, int half_length) {
-  const bool along_x = std::abs(gx) >= std::abs(gy);  // the step goes along x: walk along y
+  // If the step is along x, the walk along the edge is along y.
+  const bool along_x = std::abs(gx) >= std::abs(gy);
   double n = 0, sum_t = 0, sum_p = 0, sum_tt = 0, sum_tp = 0, sum_pp = 0;
-  const double slope = along_x ? -gy / gx : -gx / gy;  // of the edge, places over steps
+  // Slope of the edge: change of place per row (or column).
+  const double slope = along_x ? -gy / gx : -gx / gy;
   if (std::abs(slope) > 1) return std::nullopt;
   for (int t = -half_length; t <= half_length; ++t) {
     const int shift = static_cast<int>(std::lround(slope * t));
@@ -104,7 +117,7 @@ struct Strong {
   cv::Point2d slope;
 };
 
-// Where luma is steep, the steepest first.
+// The places with a steep gradient of luma, the steepest first.
 std::vector<Strong> strong_places(const cv::Mat& grey) {
   cv::Mat gx, gy, size;
   cv::Sobel(grey, gx, CV_32F, 1, 0);
@@ -126,7 +139,8 @@ std::vector<Strong> strong_places(const cv::Mat& grey) {
   return places;
 }
 
-struct Side {  // of an edge
+// Sums of one side of an edge.
+struct Side {
   double sum = 0, squares = 0;
   int count = 0;
   void add(double v) { sum += v, squares += v * v, ++count; }
@@ -136,12 +150,12 @@ struct Side {  // of an edge
 
 struct Step {
   double low = 0, high = 0;                        // code values
-  double width_px = 0;                             // standard deviation of its derivative
-  double asymmetry = 0;                            // rms height that its two halves differ by
-  std::vector<std::pair<double, double>> samples;  // place px from its middle, height 0..1
+  double width_px = 0;                             // standard deviation of the derivative
+  double asymmetry = 0;                            // rms difference of the two halves, heights
+  std::vector<std::pair<double, double>> samples;  // place, px from the middle; height 0 to 1
 };
 
-// Heights averaged by place, from -kHalf to kHalf.
+// Heights averaged in bins of their place, from -kHalf to kHalf.
 class Profile {
  public:
   void add(double place, double height) {
@@ -153,14 +167,15 @@ class Profile {
   bool whole() const {
     return std::none_of(counts_.begin(), counts_.end(), [](int n) { return n == 0; });
   }
-  // Where the step has its middle; of a whole profile.
+  // The middle of the step; the profile must be complete.
   double middle() const {
     double below = 0;
     for (std::size_t b = 0; b < kBins; ++b) below += kWide * (1 - sums_[b] / counts_[b]);
     return below - kHalf;
   }
-  // How far from its own image turned about its middle, which a step's is through any symmetric
-  // spread and mask; a line along one of its sides' is not.
+  // The rms difference between the profile and itself rotated by half a turn about its middle. It
+  // is 0 for a step through any symmetric spread and mask, but not for a step with a line along one
+  // side.
   double asymmetry() const {
     double squares = 0;
     for (std::size_t b = 0; b < kBins / 2; ++b) {
@@ -170,7 +185,7 @@ class Profile {
     }
     return std::sqrt(squares / (kBins / 2));
   }
-  // By the integral of |height - step|: for a Gaussian sigma * sqrt(2 / pi).
+  // The width from the integral of |height - step|, which is sigma * sqrt(2 / pi) for a Gaussian.
   double width_px() const {
     double area = 0;
     for (std::size_t b = 0; b < kBins; ++b)
@@ -185,8 +200,8 @@ class Profile {
   std::array<int, kBins> counts_{};
 };
 
-// What stands across an edge, if it is a clean step. Whole pixels alone, so that nothing is
-// interpolated: the place is the pixel's own.
+// The step across an edge; empty if it is not clean. The samples are whole pixels at their own
+// places, so that nothing is interpolated.
 std::optional<Step> step_across(const cv::Mat& grey, const Found& line, int half_length) {
   Step step;
   Side low, high;
@@ -234,7 +249,7 @@ struct FoundStep {
   int half_length = 0;
 };
 
-// The longest one there is.
+// The step over the longest usable length of the edge.
 std::optional<FoundStep> step_at(const cv::Mat& grey, const Strong& place) {
   for (const int half_length : {kLong, kShort}) {
     const auto line =
@@ -252,7 +267,7 @@ double moved_across(const Found& line, const Homography& frame_from_before) {
   return std::abs((here.x() - before.x()) * line.nx + (here.y() - before.y()) * line.ny);
 }
 
-// Those that have most of their spread from the camera; the sharpest few, if there are fewer.
+// The edges whose spread is mostly the camera's; at least the sharpest kFewestShown ones.
 std::vector<const StepEdge*> nearest_to_camera(const std::vector<const StepEdge*>& edges,
                                                const StepResponse& response) {
   std::vector<double> sorted = response.edge_spreads_px;
@@ -265,7 +280,7 @@ std::vector<const StepEdge*> nearest_to_camera(const std::vector<const StepEdge*
   return nearest;
 }
 
-// Edges laid over one another, for the eye.
+// The mean profile of the edges, for the plots.
 EdgeProfile profile_of(const std::vector<const StepEdge*>& edges,
                        const StepResponse& response,
                        const image::ToneCurve& tone) {
@@ -322,8 +337,8 @@ void EdgeMeter::add(const image::Picture& frame,
     edge.height = step.high - step.low;
     edge.is_long = found->half_length == kLong;
     edge.step = {(step.low - dark) / unit, (step.high - dark) / unit, std::move(step.samples)};
-    // The own aircraft's edges are as good as others for sharpness; its mask says that they do not
-    // move.
+    // Edges of the own aircraft are as useful for sharpness as others; the mask shows that they do
+    // not move.
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
     edge.moved_px = own                 ? 0
                     : frame_from_before ? moved_across(found->line, *frame_from_before)
@@ -341,7 +356,8 @@ void EdgeMeter::add(const image::Picture& frame,
   most_chroma_at_once_ = std::max(most_chroma_at_once_, with_chroma);
 }
 
-// What stays where it is in the picture, as the own aircraft does, is one edge in all frames.
+// Whether the edge was added before. An edge that stays at its place in the picture, such as one of
+// the own aircraft, is the same edge in all frames.
 bool EdgeMeter::is_known(const Edge& edge) const {
   return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& known) {
     const double dx = edge.x - known.x, dy = edge.y - known.y;
@@ -380,7 +396,7 @@ std::vector<const StepEdge*> EdgeMeter::sharp_ones(double codec_step) const {
     return a->asymmetry < b->asymmetry;
   };
   std::sort(edges.begin(), edges.end(), by_width);
-  // Those that are narrower than the camera by luck.
+  // The sharpest hundredth is dropped: these edges are accidentally narrower than the camera's.
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 100));
   keep(narrower_than(kSharp * edges[0]->width_px), kFewestSymmetric);
   std::sort(edges.begin(), edges.end(), by_asymmetry);
