@@ -12,7 +12,7 @@
 namespace airtruth::composite {
 namespace {
 
-// OpenCV sees the samples in place, as red, green, blue: none of what it does here asks for the
+// OpenCV uses the samples in place, as red, green, blue. None of its operations here depends on the
 // order.
 cv::Mat3b cv_view(const image::Rgb8& rgb) {
   return {rgb.height, rgb.width, reinterpret_cast<cv::Vec3b*>(rgb.samples.get())};
@@ -24,7 +24,7 @@ image::Rgb8 rgb8_from_cv(const cv::Mat3b& mat) {
   return rgb;
 }
 
-// OpenCV's pixels are centred at whole numbers, ours at halves.
+// OpenCV's pixel centres have integer coordinates; airtruth's have half-integer ones.
 cv::Matx33d cv_from_homography(const Homography& h) {
   Homography to_corner = Homography::Identity();
   to_corner.topRightCorner<2, 1>().setConstant(0.5);

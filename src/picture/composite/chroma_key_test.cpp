@@ -78,15 +78,16 @@ TEST(ChromaKey, HomographyCarriesTheIntruderFromReferenceToFrame) {
     for (int x = 16; x < 24; ++x) set(expected, x, y, 200, 30, 90);
   }
   EXPECT_TRUE(image::identical(frame, image::picture_from_rgb8(expected, kRgbPlanes)));
-  EXPECT_EQ(images.a.at(20, 20)[0], ramp().at(26, 16)[0]);  // the background came back by H^-1
+  // The background comes back by H^-1.
+  EXPECT_EQ(images.a.at(20, 20)[0], ramp().at(26, 16)[0]);
   EXPECT_EQ(images.b.at(12, 22)[0], 200);
   EXPECT_EQ(images.c.at(18, 18)[0], 200);
   EXPECT_EQ(images.d.at(18, 18)[1], 30);
   EXPECT_EQ(images.d.at(40, 40)[1], 255);
 }
 
-// Twice as large about the image's corner: pixels 10..15 become 20..31 when the origin is the
-// corner; were it the first pixel's centre they would be 19.5..30.5.
+// H doubles the size about the image's corner. Pixels 10..15 become 20..31 because the origin is
+// the corner; with the origin at the first pixel's centre they would become 19.5..30.5.
 TEST(ChromaKey, HomographyIsInPixelsFromTheCorner) {
   Picture frame = image::picture_from_rgb8(ramp(), kRgbPlanes);
   Homography twice = Homography::Identity();
@@ -108,7 +109,8 @@ TEST(ChromaKey, HalfAPixelMixesTheEdgeHalfAndHalf) {
       frame, virtual_image({20, 20, 12, 12}, 200, 200, 200), shift(0.5, 0), {}, &images);
   EXPECT_NEAR(images.d.at(20, 26)[0], 100, 2);
   EXPECT_NEAR(images.d.at(32, 26)[0], 100, 2);
-  EXPECT_NEAR(frame.planes[2].row(26)[20], (200 + 3 * 19.5) / 2, 4);  // red: intruder and ramp
+  // Red: the mean of intruder and ramp.
+  EXPECT_NEAR(frame.planes[2].row(26)[20], (200 + 3 * 19.5) / 2, 4);
 }
 
 TEST(ChromaKey, SamplesThatAreNotReplacedKeepTheirBitsInEveryLayout) {
@@ -143,8 +145,9 @@ TEST(ChromaKey, SamplesThatAreNotReplacedKeepTheirBitsInEveryLayout) {
   }
 }
 
-// Lanczos rings: beyond a white edge D swings a few levels off pure green. The default tolerance
-// ends the replaced region within two pixels of the edge; with none it reaches three or more.
+// Lanczos filtering rings: beyond a white edge D deviates from pure green by a few levels. With the
+// default tolerance the replaced region ends within two pixels of the edge; without a tolerance it
+// reaches three or more.
 TEST(ChromaKey, ToleranceKeepsTheRingingOut) {
   const auto leftmost = [](int tolerance) {
     Picture frame = image::picture_from_rgb8(ramp(), kRgbPlanes);

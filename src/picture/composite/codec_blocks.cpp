@@ -34,7 +34,7 @@ std::optional<PixelBox> in_macroblocks(const PixelBox& box, const image::Picture
                        even(frame.height, image::log2_chroma_height(frame.colour.chroma))});
 }
 
-// Adds a box, and makes it one with those that it overlaps.
+// Adds a box and merges it with those that it overlaps.
 void add_merged(std::vector<PixelBox>& boxes, PixelBox box) {
   for (std::size_t i = 0; i < boxes.size();) {
     if (!intersection(boxes[i], box)) {

@@ -20,7 +20,7 @@ image::Picture grainy_sky(image::Chroma chroma) {
   return picture;
 }
 
-// Opaque and black within `solid`; the patch goes `margin_px` further.
+// A layer that is opaque and black within `solid`. Its patch extends `margin_px` further.
 image::Layer black_box(const PixelBox& solid, int margin_px) {
   image::Layer layer;
   layer.patch = {solid.x - margin_px,
@@ -41,7 +41,7 @@ TEST(CodedWindows, AreWholeMacroblocksWithinTheFrame) {
   const image::Picture sky = grainy_sky(image::Chroma::k420);
   const auto windows = coded_windows(sky, black_box({50, 30, 9, 5}, 4), 0);
   ASSERT_EQ(windows.size(), 1u);
-  // 8 px around 50..58 and 30..34 is 42..66 and 22..42.
+  // A margin of 8 px turns 50..58 and 30..34 into 42..66 and 22..42.
   EXPECT_EQ(windows[0].box, (PixelBox{32, 16, 48, 32}));
   EXPECT_TRUE(image::identical(windows[0].background, image::crop(sky, {32, 16, 48, 32})));
   const auto corner = coded_windows(sky, black_box({90, 74, 4, 4}, 2), 0);
@@ -63,9 +63,11 @@ TEST(CodedWindows, OfIntrudersFarApartAreTwoAndOfNearOnesOne) {
 }
 
 TEST(InMarkedBlocks, MarksTheRestOfTheFramesOwnBlocksAndNoOther) {
-  const PixelBox patch{5, 3, 20, 14};  // blocks begin at 8 and 16
+  // Blocks begin at 8 and 16.
+  const PixelBox patch{5, 3, 20, 14};
   std::vector<std::uint8_t> marked(20 * 14, 0);
-  marked[static_cast<std::size_t>(9 - 3) * 20 + (17 - 5)] = 1;  // the block of x 16..23, y 8..15
+  // The block of x 16..23, y 8..15.
+  marked[static_cast<std::size_t>(9 - 3) * 20 + (17 - 5)] = 1;
   const auto result = in_marked_blocks(patch, marked);
   for (int y = patch.y; y < patch.bottom(); ++y)
     for (int x = patch.x; x < patch.right(); ++x)
@@ -74,7 +76,7 @@ TEST(InMarkedBlocks, MarksTheRestOfTheFramesOwnBlocksAndNoOther) {
           << x << ',' << y;
 }
 
-// Takes every picture to one level, as the coarsest codec would: the background's grain is lost.
+// Reduces every picture to one level, as the coarsest codec does: the background's grain is lost.
 class Levelling : public PatchCoder {
  public:
   Coded code(const PixelBox&,
@@ -93,13 +95,14 @@ class Levelling : public PatchCoder {
   }
 };
 
-// The formula of codec_blocks worked out by hand: the codec's own where the layer hides everything,
-// and the codec's change of level upon the background's grain beside it.
+// The formula of codec_blocks, computed by hand: the codec's own samples where the layer hides
+// everything, and elsewhere the codec's change of level added to the background's grain.
 TEST(Codec, ReplacesWhatIsHiddenAndShiftsWhatIsNotAndLeavesTheOtherBlocksAlone) {
   for (const auto chroma : {image::Chroma::kNone, image::Chroma::k420, image::Chroma::k444}) {
     const image::Picture before = grainy_sky(chroma);
     image::Picture after = before.clone();
-    const PixelBox solid{42, 34, 4, 3};  // within the block of x 40..47, y 32..39
+    // Within the block of x 40..47, y 32..39.
+    const PixelBox solid{42, 34, 4, 3};
     Levelling codec;
     MatteOptions options;
     options.coder = &codec;
@@ -118,7 +121,8 @@ TEST(Codec, ReplacesWhatIsHiddenAndShiftsWhatIsNotAndLeavesTheOtherBlocksAlone) 
     EXPECT_EQ(seen.covered, solid);
     if (chroma == image::Chroma::kNone) continue;
     const int log2 = image::log2_chroma_width(chroma);
-    EXPECT_EQ(after.planes[1].row(34 >> log2)[44 >> log2], 40);  // its whole block is hidden
+    // The layer hides the sample's whole block.
+    EXPECT_EQ(after.planes[1].row(34 >> log2)[44 >> log2], 40);
     EXPECT_EQ(after.planes[2].row(40 >> log2)[44 >> log2],
               before.planes[2].row(40 >> log2)[44 >> log2]);
   }

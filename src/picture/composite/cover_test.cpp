@@ -15,7 +15,7 @@ namespace {
 constexpr int kCoverWidth = 90;
 constexpr int kCoverHeight = 70;
 
-// An opaque grey rectangle, by the share of each pixel that it covers.
+// An opaque grey rectangle; a pixel's alpha is the share that the rectangle covers.
 image::Layer rectangle(const Box& box) {
   image::Layer layer;
   layer.patch = pixels_of(box);
@@ -37,8 +37,8 @@ image::Layer rectangle(const Box& box) {
   return layer;
 }
 
-// The share of [x, x + 1) under [from, to) seen through a Gaussian: the Gaussian's second integral
-// at four places.
+// The share of [x, x + 1) under [from, to) after a Gaussian blur: the Gaussian's second integral at
+// four places.
 double seen_share(double x, double from, double to, double sigma) {
   const auto ramp = [sigma](double u) {
     if (sigma == 0) return std::max(0.0, u);
@@ -48,7 +48,7 @@ double seen_share(double x, double from, double to, double sigma) {
   return ramp(x + 1 - from) - ramp(x - from) - ramp(x + 1 - to) + ramp(x - to);
 }
 
-// Bounds of the pixels of at least this alpha, all in closed form.
+// Bounds of the pixels of at least this alpha, in closed form.
 std::optional<PixelBox> bounds_in_closed_form(const Box& box, double sigma, double alpha) {
   std::optional<PixelBox> found;
   for (int y = 0; y < kCoverHeight; ++y)
@@ -61,9 +61,9 @@ std::optional<PixelBox> bounds_in_closed_form(const Box& box, double sigma, doub
   return found;
 }
 
-// Coverage is by pixel, and the kernel is the Gaussian's integral over each pixel: a variance of
-// 1/12 px^2 more than the ideal edge has. What is left differs by less than 0.03 of alpha, so the
-// box lies between those of the two thresholds.
+// Coverage is computed by pixel, and the kernel is the Gaussian's integral over each pixel, which
+// adds a variance of 1/12 px^2. The remaining difference of alpha is below 0.03, so the box lies
+// between those of the two thresholds.
 TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
   constexpr double kAlpha = (kCoveredAlpha - 0.5) / 255;
   constexpr double kOff = 0.03;
@@ -121,11 +121,12 @@ TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
   const auto covered = covered_box(layer, 0, &own);
   ASSERT_TRUE(covered);
   EXPECT_EQ(covered->x, 30);
-  EXPECT_EQ(covered->right(), 46);  // the first pixel beyond the edge at 45 has 0.31, the next 0.07
+  // The first pixel beyond the edge at 45 has 0.31, the next 0.07.
+  EXPECT_EQ(covered->right(), 46);
   EXPECT_TRUE(covered_box(layer, 0, nullptr)->x < 25);
 }
 
-// The alpha that is stated: 20 of 255.
+// The documented alpha: 20 of 255.
 TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
   EXPECT_EQ(kCoveredAlpha, 20);
   EXPECT_EQ(alpha_code(0.08F), 20);
@@ -136,7 +137,7 @@ TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
   EXPECT_EQ(covered_box(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (PixelBox{10, 10, 1, 1}));
 }
 
-// A codec that leaves ripple in every sample that it is given.
+// A codec that leaves ripple in every sample of its input.
 class Rippling : public PatchCoder {
  public:
   Coded code(const PixelBox&,
@@ -152,7 +153,7 @@ class Rippling : public PatchCoder {
   }
 };
 
-// A codec's ripple moves samples all around and no box of what is covered.
+// A codec's ripple changes samples all around but no covered box.
 TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
   const image::Layer layer =
       spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kCoverWidth, kCoverHeight);

@@ -17,7 +17,7 @@
 namespace airtruth::composite {
 namespace {
 
-// Made once for each curve.
+// Each curve's table is made once.
 const TransferCurve& transfer_curve(const image::ToneCurve& tone) {
   static std::mutex mutex;
   static std::map<double, TransferCurve> curves;
@@ -29,8 +29,8 @@ std::uint8_t code(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5f, 0.0f, 255.0f));
 }
 
-// Which pixels a chroma sample stands for along one axis: `count` pixels from block_size * sample +
-// first.
+// The pixels that a chroma sample represents along one axis: `count` pixels from block_size *
+// sample + first.
 struct Footprint {
   int block_size = 1;
   int first = 0;
@@ -44,8 +44,8 @@ Footprint footprint(int log2_size, bool on_a_pixel) {
   return {2, 0, 2, {0.5f, 0.5f, 0}};
 }
 
-// What of a kernel about `place` is on an axis of `count` samples: a picture goes on beyond its
-// rim.
+// The sum of a kernel's weights, centred at `place`, that lie on an axis of `count` samples. The
+// scene continues beyond the rim of the picture.
 float weight_inside(const std::vector<float>& kernel, int place, int count) {
   const int reach = static_cast<int>(kernel.size()) / 2;
   float sum = 0;
@@ -54,7 +54,7 @@ float weight_inside(const std::vector<float>& kernel, int place, int count) {
   return sum;
 }
 
-// One call of composite_matte: the patch's own picture of what is under the layer and what has
+// The state of one call of composite_matte(): what lies under the layer in its patch, and what has
 // changed.
 class Matte {
  public:
@@ -66,10 +66,10 @@ class Matte {
   bool drawn(int x, int y) const {
     return layer_.patch.contains(x, y) && drawn_[layer_.index(x, y)] != 0;
   }
-  // What the layer adds to a pixel whose background has this chroma.
+  // The change that the layer causes in a pixel whose background has this chroma.
   image::Ycc change(std::size_t index, float cb, float cr) const;
   image::Ycc chroma_at(int cx, int cy) const;
-  // Does `holds` hold for any pixel of a chroma sample's block?
+  // True where `holds` is true for any pixel of a chroma sample's block.
   template <typename Holds>
   bool any_of_block(int cx, int cy, const Holds& holds) const;
   bool block_is_drawn(int cx, int cy) const;
@@ -83,7 +83,8 @@ class Matte {
   void take_coded_chroma(const CodedWindow& window, const Coded& coded);
   float chroma_alpha(int cx, int cy) const;
   image::Ycc chroma_change(int cx, int cy) const;
-  bool chroma_is_soft() const {  // red, green and blue planes are alike
+  // Red, green and blue planes are equally sharp.
+  bool chroma_is_soft() const {
     return options_.sensor.chroma_spread_px > 0 && picture_.colour.matrix != image::Matrix::kRgb;
   }
   void soften(std::vector<float>& plane, const PixelBox& samples) const;
@@ -101,11 +102,16 @@ class Matte {
   int log2_height_;
   Footprint across_;
   Footprint down_;
-  std::vector<std::uint8_t> free_;     // 1: not the own aircraft
-  std::vector<std::uint8_t> drawn_;    // 1: alpha > 0 and free
-  std::vector<std::uint8_t> changed_;  // 1: drawn, and a sample differs
-  std::vector<std::uint8_t> luma_;     // the background's, before the blend
-  std::vector<image::Ycc> change_;     // with the chroma of the pixel's own block
+  // 1: not the own aircraft.
+  std::vector<std::uint8_t> free_;
+  // 1: alpha > 0 and free.
+  std::vector<std::uint8_t> drawn_;
+  // 1: drawn, and a sample differs.
+  std::vector<std::uint8_t> changed_;
+  // Luma of the background, before the blend.
+  std::vector<std::uint8_t> luma_;
+  // Computed with the chroma of the pixel's own block.
+  std::vector<image::Ycc> change_;
 };
 
 Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOptions& options)
@@ -168,7 +174,7 @@ void Matte::find_luma_changes() {
     }
 }
 
-// Sharpening reaches beyond the layer; noise stays where something is drawn.
+// Sharpening reaches beyond the layer; noise stays within the drawn pixels.
 void Matte::pass_sensor() {
   const Sensor& sensor = options_.sensor;
   if (!(sensor.sharpening > 0) && !sensor.has_noise()) return;
@@ -176,7 +182,8 @@ void Matte::pass_sensor() {
   std::vector<float> luma(change_.size());
   for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = change_[i].y;
   sharpen(luma, patch.width, patch.height, sensor);
-  constexpr float kHalo = 0.5F;  // less does not move a sample
+  // A smaller change, in code values, does not alter a sample.
+  constexpr float kHalo = 0.5F;
   for (std::size_t i = 0; i < luma.size(); ++i)
     drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kHalo);
   if (sensor.has_noise()) {
@@ -229,9 +236,9 @@ bool Matte::block_is_free(int cx, int cy) const {
   });
 }
 
-// The weighted mean over the sample's footprint, every pixel of it taken over this very sample: so
-// an opaque layer leaves nothing of the background's chroma behind, even where the footprint
-// reaches into the next block.
+// The weighted mean over the sample's footprint. Every pixel of the footprint is computed over this
+// one chroma sample, so that an opaque layer leaves nothing of the background's chroma, even where
+// the footprint reaches into the next block.
 image::Ycc Matte::chroma_change(int cx, int cy) const {
   const image::Ycc under = chroma_at(cx, cy);
   image::Ycc sum{0, 0, 0};
@@ -263,7 +270,8 @@ bool Matte::move_chroma(int cx, int cy, const image::Ycc& change) {
   return after.cb != before.cb || after.cr != before.cr;
 }
 
-// Where chroma is soft, what it reaches belongs to the intruder as a halo of sharpening does.
+// Where chroma is blurred, the pixels that the blur reaches belong to the intruder, as does a halo
+// of sharpening.
 void Matte::mark_block(int cx, int cy) {
   const bool reaches = chroma_is_soft();
   any_of_block(cx, cy, [&](int x, int y) {
@@ -309,7 +317,7 @@ void Matte::blend_chroma() {
         mark_block(cx, cy);
 }
 
-// The sum of what the codec makes of the layer and of what is left of the background's grain.
+// The sum of the coded layer and of the part of the background's grain that remains.
 void Matte::take_coded_luma(const CodedWindow& window, const Coded& coded) {
   const PixelBox& box = window.box;
   for (int y = box.y; y < box.bottom(); ++y) {
@@ -379,8 +387,8 @@ void Matte::blend() {
   if (options_.coder != nullptr) pass_codec(windows);
 }
 
-// Where the intruder can have changed samples: the pixels that it covers, those that sharpening and
-// soft chroma reach from there, and all others of a codec's blocks.
+// The pixels where the intruder can have changed samples: those that it covers, those that
+// sharpening and chroma blur reach from there, and all others of a codec's blocks.
 std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) const {
   const int halo = options_.sensor.reach_px();
   std::vector<std::uint8_t> reached(coverage.size(), 0);

@@ -92,7 +92,7 @@ TEST(Matte, AlphaOfZeroChangesNothingOfAnyPicture) {
   }
 }
 
-// Half of white (1) and half of black (0) is 0.5 in linear light, 188 of 255 in sRGB.
+// Half of white (1) and half of black (0) is 0.5 in linear light, which sRGB codes as 188 of 255.
 TEST(Matte, HalfWhiteOverBlackIsHalfInLinearLight) {
   Picture picture = image::picture_from_rgb8(image::make_rgb8(8, 8),
                                              {Chroma::k420, Matrix::kBt601, Range::kFull});
@@ -102,7 +102,7 @@ TEST(Matte, HalfWhiteOverBlackIsHalfInLinearLight) {
   EXPECT_EQ(picture.planes[0].row(1)[1], 0);
 }
 
-// The same through a camera's own curve: 1.055 / sqrt(2) - 0.055 of 255 for an exponent of 2.
+// The same with a camera's own curve: 1.055 / sqrt(2) - 0.055 of 255 for an exponent of 2.
 TEST(Matte, HalfWhiteOverBlackThroughTheCamerasOwnCurve) {
   Picture picture = image::picture_from_rgb8(image::make_rgb8(8, 8),
                                              {Chroma::k420, Matrix::kBt601, Range::kFull});
@@ -112,7 +112,7 @@ TEST(Matte, HalfWhiteOverBlackThroughTheCamerasOwnCurve) {
   EXPECT_EQ(picture.planes[0].row(3)[3], 176);
 }
 
-// What hardly covers changes no code, however dark, whatever the curve.
+// A very small coverage changes no code value, however dark the layer and whatever the curve.
 TEST(Matte, ATraceOfALayerLeavesEveryGreyAsItWas) {
   for (const double gamma : {0.0, 1.2, 3.0}) {
     Picture picture = image::make_picture(256, 8, {Chroma::k420, Matrix::kBt601, Range::kFull});
@@ -128,7 +128,7 @@ TEST(Matte, ATraceOfALayerLeavesEveryGreyAsItWas) {
   }
 }
 
-// A black veil of alpha 1/4 leaves 3/4 of the light of code 200 per channel.
+// A black veil of alpha 1/4 leaves 3/4 of the light of code 200 in each channel.
 TEST(Matte, VeilScalesTheLightOfEachChannel) {
   for (const Colour& colour : every_colour()) {
     if (colour.chroma == Chroma::kNone) continue;
@@ -167,9 +167,9 @@ TEST(Matte, HighlightBrighterThanTheScaleSaturates) {
   EXPECT_EQ(picture.planes[1].row(2)[2], 128);
 }
 
-// One opaque red pixel on grey. Its chroma sample takes half of the change where it sits on the
-// pixel (left siting, two rows: 2/4 * 1/2 = a quarter), an eighth on the block's right pixel, and
-// the block's neighbour stays.
+// One opaque red pixel on grey. Its chroma sample changes by a quarter where the sample's left
+// siting is on the pixel (two rows: 2/4 * 1/2) and by an eighth on the block's right pixel; the
+// neighbouring block does not change.
 TEST(Matte, ChromaMovesByTheWeightOfItsSiting) {
   const auto moved = [](Siting siting, int x) {
     const Colour colour{Chroma::k420, Matrix::kBt601, Range::kFull, siting};
@@ -191,7 +191,8 @@ TEST(Matte, ChromaMovesByTheWeightOfItsSiting) {
   EXPECT_EQ(moved(Siting::kTopLeft, 3), std::lround(full / 8));
 }
 
-// A red half plane on grey: chroma crosses its edge as the normal distribution does, luma at once.
+// A red half plane on grey: chroma crosses its edge as the normal distribution does, and luma
+// changes at once.
 TEST(Matte, SoftChromaCrossesAnEdgeAsAGaussianDoes) {
   constexpr int kSize = 96, kEdge = 48;
   constexpr double kSpreadPx = 3;
@@ -215,7 +216,7 @@ TEST(Matte, SoftChromaCrossesAnEdgeAsAGaussianDoes) {
   for (int cx = 14; cx < 34; ++cx) {
     const double past_px = 2 * cx + 1 - kEdge;
     const double share = 0.5 * std::erfc(past_px / (kSpreadPx * std::sqrt(2.0)));
-    // Whole samples add their own width; a code value is rounded.
+    // Whole samples add their own width, and a code value is rounded.
     EXPECT_NEAR(picture.planes[2].row(24)[cx] - 128, full * share, 0.015 * full + 1) << cx;
     if (picture.planes[2].row(24)[cx] != 128) last_changed = 2 * cx + 2;
   }
@@ -287,7 +288,7 @@ TEST(Matte, EmptyLayerAnswersForEveryIntruder) {
   EXPECT_EQ(composite_matte(picture, layer, {}).size(), 3u);
 }
 
-// Random blobs of two intruders, some pixels of both, many of none.
+// Random blobs of two intruders: some pixels belong to both, many to none.
 Layer random_layer(int width, int height, std::mt19937& random) {
   const auto within = [&random](int size) {
     return static_cast<int>(random() % static_cast<unsigned>(size));

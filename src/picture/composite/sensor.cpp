@@ -16,8 +16,8 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// A normal number that belongs to a pixel of a frame: the sum of 8 uniform bytes, twice (Irwin 1927
-// and Hall 1927), which never strays more than 6.9 standard deviations.
+// A normal number for a pixel of a frame: the sum of two times 8 uniform bytes (Irwin 1927 and Hall
+// 1927), which never exceeds 6.9 standard deviations.
 float normal_at(std::uint64_t key, int x, int y) {
   const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
                               static_cast<std::uint32_t>(y);
@@ -37,7 +37,8 @@ int Sensor::halo_px() const {
   return sharpening > 0 ? static_cast<int>(gaussian(sharpening_px).size() / 2) : 0;
 }
 
-// A Gaussian in chroma samples, each up to two pixels wide and at an odd or an even one.
+// The reach of the Gaussian in chroma samples, each of which is up to two pixels wide and starts at
+// an odd or an even pixel.
 int Sensor::chroma_px() const {
   if (!(chroma_spread_px > 0)) return 0;
   constexpr int kSample = 2;
@@ -55,7 +56,7 @@ void sharpen(std::vector<float>& change, int width, int height, const Sensor& se
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {
   const float bounded = std::clamp(luma, 0.0F, 1.0F);
   const float light = sensor.tone.linear_from_coded_clamped(bounded);
-  // Slope of the coded value over light, by a small difference.
+  // The slope of the coded value over light, by a finite difference.
   constexpr float kStep = 0.004F;
   const float low = sensor.tone.linear_from_coded_clamped(bounded - kStep);
   const float high = sensor.tone.linear_from_coded_clamped(bounded + kStep);
@@ -84,7 +85,8 @@ std::vector<float> noise_field(const PixelBox& patch,
   double power = 0;
   for (const float weight : kernel)
     power += static_cast<double>(weight) * static_cast<double>(weight);
-  const auto scale = static_cast<float>(1 / power);  // along both axes: sqrt(power)^2
+  // The power applies along both axes: sqrt(power)^2.
+  const auto scale = static_cast<float>(1 / power);
   std::vector<float> field;
   field.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
   for (int y = 0; y < patch.height; ++y)

@@ -57,8 +57,8 @@ TEST(Spread, KeepsLightAndCoverageAndCentre) {
   EXPECT_NEAR(x_sum / coverage, 22.5, 1e-4);
 }
 
-// Whole pixels from 10 on, under weights that are a Gaussian's integrals over pixels: its
-// distribution function at the pixels' centres.
+// Whole pixels from 10 on, blurred with weights that are a Gaussian's integrals over pixels, give
+// the Gaussian's distribution function at the pixels' centres.
 TEST(Spread, AStepBecomesTheErrorFunction) {
   const double sigma = 1.1;
   const image::Layer soft = spread(square(40, 1, 1, 10), sigma, 0, 60, 60);
@@ -99,14 +99,15 @@ TEST(Noise, HasItsCurveItsCorrelationAndAnotherFaceEachFrame) {
     const double n = double(field.size());
     EXPECT_NEAR(sum / n, 0, 0.02);
     EXPECT_NEAR(squares / n, 1, 0.03);
-    // Pixel weights of a Gaussian of 0.6 px: 0.595, 0.196 to each side, 0.006 (from its integral).
+    // The pixel weights of a Gaussian of 0.6 px: 0.595, 0.196 to each side, 0.006 (from its
+    // integral).
     const double expected = correlation_px > 0 ? 2 * (0.595 * 0.196 + 0.196 * 0.006) /
                                                      (0.595 * 0.595 + 2 * 0.196 * 0.196)
                                                : 0;
     EXPECT_NEAR(beside / squares, expected, 0.02);
   }
   EXPECT_NE(noise_field(patch, 9, 4, 0), noise_field(patch, 9, 5, 0));
-  // The same pixel whatever the patch.
+  // A pixel has the same noise in every patch.
   const auto part = noise_field({100, 50, 20, 10}, 9, 4, 0.6);
   const auto whole = noise_field(patch, 9, 4, 0.6);
   EXPECT_FLOAT_EQ(part[0], whole[(50 - 5) * 300 + (100 - 3)]);
@@ -131,7 +132,7 @@ TEST(Matte, WithASensorTouchesNothingBeyondItsReach) {
       ASSERT_TRUE(visible[0].box->contains(x, y) || picture.planes[0].row(y)[x] == 90);
   ASSERT_TRUE(visible[0].centroid);
   EXPECT_NEAR(visible[0].centroid->x(), 23, 1e-3);
-  // The halo of sharpening is part of what is seen.
+  // The halo of sharpening belongs to the visible box.
   EXPECT_LT(visible[0].box->x, 19);
 }
 

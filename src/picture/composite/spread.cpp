@@ -10,8 +10,10 @@
 namespace airtruth::composite {
 namespace {
 
-constexpr double kReach = 3;             // standard deviations
-constexpr float kNothing = 1.0F / 4096;  // of coverage: below it no sample can tell
+// Reach of the kernel, in standard deviations.
+constexpr double kReach = 3;
+// Coverage below which no sample changes.
+constexpr float kNothing = 1.0F / 4096;
 
 int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma_px)); }
 

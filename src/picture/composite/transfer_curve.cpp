@@ -14,8 +14,9 @@ TransferCurve::Table TransferCurve::tabulate(float high, int entries, Function f
 TransferCurve::TransferCurve(const image::ToneCurve& tone) {
   const auto linear = [&](double coded) { return tone.linear_from_coded(coded); };
   const auto coded = [&](double light) { return tone.coded_from_linear(light); };
-  decode_ = tabulate(2.5f, 2560, linear);  // 8-bit Y'CbCr reaches from -1.3 to 2.3
-  // A higher exponent bends more near black.
+  // 8-bit Y'CbCr reaches from -1.3 to 2.3.
+  decode_ = tabulate(2.5f, 2560, linear);
+  // A higher exponent has a stronger curvature near black.
   encode_ = tabulate(1.0f, tone.gamma == 0 ? 4096 : 65536, coded);
   encode_bright_ = tabulate(10.0f, 2048, coded);
 }

@@ -16,9 +16,10 @@ namespace {
 
 // Samples of a pixel beside an edge before it counts as fully covered or empty.
 constexpr int kNeighbourSamples = 128;
-constexpr int kAreaSamples = 64;  // per side, of the part of an aircraft that the frame cuts off
+// Samples along each side of the part of an aircraft that lies outside the frame.
+constexpr int kAreaSamples = 64;
 
-// A patch's sums while it is refined.
+// The sums of a patch during its refinement.
 struct Canvas {
   Canvas(const PixelBox& where, std::size_t actor_count)
       : patch(where),
@@ -30,7 +31,8 @@ struct Canvas {
   PixelBox patch;
   std::size_t actors;
   std::vector<Sum> sums;
-  std::vector<double> coverage;  // [pixel * actors + actor]
+  // Index: pixel * actors + actor.
+  std::vector<double> coverage;
   std::vector<double> alone;
 
   std::size_t index(int x, int y) const {
@@ -46,7 +48,8 @@ void sample_pixel(const Tracer& tracer, Canvas& canvas, int x, int y, int from, 
   tracer.sample(x, y, from, to, canvas.sums[i], coverage, alone);
 }
 
-// Does the aircraft's outline, or that of something translucent, pass here or next door?
+// True where an outline of the aircraft, or of a translucent surface, passes through this pixel or
+// a neighbour.
 bool on_edge(const Canvas& canvas, const std::vector<std::uint8_t>& kind, int x, int y) {
   const std::uint8_t own = kind[canvas.index(x, y)];
   if (own == 2) return true;
@@ -59,7 +62,8 @@ bool on_edge(const Canvas& canvas, const std::vector<std::uint8_t>& kind, int x,
   return false;
 }
 
-// 0: every sample missed; 1: every sample met one actor, at much the same opacity; 2: mixed.
+// Value 0: every sample missed. 1: every sample hit one actor, at nearly the same opacity. 2:
+// mixed.
 std::uint8_t kind_of(const Canvas& canvas, std::size_t i) {
   const Sum& sum = canvas.sums[i];
   if (sum.hits == 0) return 0;
@@ -136,7 +140,8 @@ double largest_px(const std::vector<Actor>& actors) {
   return largest;
 }
 
-// Fills a canvas: every pixel that an aircraft may touch, roughly; then those on an outline, well.
+// Fills a canvas: first every pixel that an aircraft may touch, with few samples, then those on an
+// outline, with many.
 class Refiner {
  public:
   Refiner(const View& view,
@@ -146,7 +151,8 @@ class Refiner {
           const SampleCounts& counts,
           Canvas& canvas)
       : actors_(actors), tracer_(tracer), counts_(counts), canvas_(canvas) {
-    // Where every pixel takes as many samples as an edge, rays do it all: the oracle.
+    // Where every pixel takes as many samples as an edge (the reference quality), rays do all the
+    // work.
     if (counts.edge == counts.base) return;
     for (const Actor& actor : actors)
       silhouettes_.push_back(
@@ -165,7 +171,7 @@ class Refiner {
   static constexpr int kRays = -1;
   static constexpr int kNobody = -2;
 
-  // The one opaque actor whose outline is all there is to a pixel, or kRays, or kNobody.
+  // The single opaque actor whose outline determines the pixel, or kRays, or kNobody.
   int only_actor(int x, int y) const {
     int only = kNobody;
     for (std::size_t a = 0; a < actors_.size(); ++a) {
@@ -210,7 +216,8 @@ class Refiner {
     if (sum.hits == 0 ||
         tracer_.shade_covered(x, y, only, found ? found->is_covered : kEverySample, sum))
       return;
-    forget(x, y, only);  // the outline met something, and no ray did
+    // The outline covers a sample, but no ray hits.
+    forget(x, y, only);
     sample_pixel(tracer_, canvas_, x, y, 0, counts_.edge);
   }
 
@@ -225,8 +232,8 @@ class Refiner {
     sample_pixel(tracer_, canvas_, x, y, done, counts_.edge);
   }
 
-  // A pixel by the outline of its one actor, without its light. The answer holds until this
-  // thread's next.
+  // Covers a pixel by the outline of its single actor, without its light. The result is valid until
+  // the next call on this thread.
   const Cover& cover(int x, int y, int actor, int samples) {
     thread_local Cover found;
     found.covered = 0;
@@ -302,7 +309,7 @@ image::Layer render(const View& view,
   for (std::size_t i = 0; i < instances.size(); ++i)
     actors.push_back(place(instances[i], view, light, search[i], grid.span()));
   SampleCounts counts = counts_for(options.quality, largest_px(actors));
-  // A third dimension, time, takes more samples for the same error.
+  // The samples have a third dimension, time, and need a larger number for the same error.
   if (view.shutter.exposure_s > 0)
     counts.outline = std::min(2 * counts.outline, PixelSamples::kMost);
   const Tracer tracer(light, actors, grid, counts);

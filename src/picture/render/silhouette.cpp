@@ -132,7 +132,8 @@ void Silhouette::add_part(const Actor& actor,
     Triangle triangle{
         {a.cross(b), b.cross(c), c.cross(a)}, {}, model.opaque[part][i] != 0 && !spins};
     const double turn = a.dot(triangle.side[1]);
-    if (turn == 0 && !actor.moves) continue;  // seen from its edge
+    // The triangle is seen edge-on.
+    if (turn == 0 && !actor.moves) continue;
     if (actor.moves) {
       const std::array<Vector3, 3> p = {in_body(vertex[0]), in_body(vertex[1]), in_body(vertex[2])};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -150,7 +151,7 @@ void Silhouette::add_part(const Actor& actor,
   }
 }
 
-// Wherever a spinning part can be: an octahedron about a sphere about its hub.
+// The reach of a spinning part at any angle: that of an octahedron about a sphere about its hub.
 Silhouette::Reach Silhouette::reach_of_disc(const aircraft::Mesh& mesh,
                                             const aircraft::Part& part,
                                             const std::vector<Eye>& eyes) const {
@@ -173,15 +174,15 @@ Silhouette::Reach Silhouette::reach_of_disc(const aircraft::Mesh& mesh,
   return reach_within(patch_, {box.x, box.y}, {box.right(), box.bottom()}, 1);
 }
 
-// Around its reach at each moment; between them its corners go along parabolas, which stick out of
-// their chords by an eighth of the second difference.
+// The union of the reaches at each moment. Between moments the corners follow parabolas, which
+// deviate from their chords by an eighth of the second difference.
 Silhouette::Reach Silhouette::reach_over_time(
     const std::vector<std::array<const Seen*, 3>>& corners, const std::vector<Eye>& eyes) const {
   Reach all{patch_.right(), patch_.bottom(), patch_.x, patch_.y};
   for (std::size_t e = 0; e < eyes.size(); ++e) {
     const Reach r = reach_of(corners[e], eyes[e]);
     if (r.x0 >= r.x1 || r.y0 >= r.y1) {
-      // Outside the patch now; the way there may still lead through it.
+      // The triangle is outside the patch at this moment, but its path may cross the patch.
       for (const Seen* corner : corners[e]) {
         if (!corner->pixel.allFinite()) continue;
         const Reach point = reach_within(patch_, corner->pixel, corner->pixel, 1);
@@ -210,8 +211,8 @@ Silhouette::Reach Silhouette::reach_over_time(
           std::min(all.y1 + more, patch_.bottom())};
 }
 
-// The picture of the part of a triangle that lies before a pinhole's plane; empty where none does,
-// or where a point of it has no picture.
+// Bounds of the picture of the part of a triangle in front of a pinhole's plane. Empty where no
+// part is, or where a point of it has no pixel.
 BoxBounds Silhouette::bounds_before_plane(const std::array<const Seen*, 3>& corners,
                                           const Eye& eye,
                                           bool& all_have_pictures) {
@@ -236,8 +237,8 @@ BoxBounds Silhouette::bounds_before_plane(const std::array<const Seen*, 3>& corn
   return bounds;
 }
 
-// A box about the triangle's picture. Its sides may bend under a wide lens: by twice what their
-// middles do, at most.
+// A box about the triangle's picture. Under a wide lens the sides may bend by at most twice the
+// deviation of their middles.
 Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners,
                                        const Eye& eye) const {
   const Reach whole{patch_.x, patch_.y, patch_.right(), patch_.bottom()};
@@ -260,7 +261,8 @@ Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners
     for (std::size_t k = 0; k < 3; ++k) {
       const Seen& from = *corners[k];
       const Seen& to = *corners[(k + 1) % 3];
-      // The middle of the side's picture, not of the side: the point's weight is its nearness.
+      // The middle of the side's picture, which differs from the picture of the side's middle: each
+      // point is weighted by its nearness.
       const Vector3 middle = from.in_world.normalized() + to.in_world.normalized();
       const auto pixel = eye.pixel(middle);
       if (!pixel) return whole;
@@ -361,7 +363,8 @@ Silhouette::Pencil Silhouette::pencil_of(int x, int y) const {
   return pencil;
 }
 
-// Side: of marking.h. side_of(triangle, side): its four corners' products, at one moment or three.
+// Side: a type of marking.h. side_of(triangle, side): the products at its four corners, at one
+// moment or three.
 template <typename Side, typename ProductsOf, typename SideOf, typename Place>
 void Silhouette::cover_by(int x,
                           int y,
@@ -427,7 +430,8 @@ void Silhouette::cover_still(int x, int y, const Pencil& pencil, int samples, Co
 
 void Silhouette::cover_moving(
     int x, int y, const Pencil& pencil, int samples, Cover& result) const {
-  using Products = std::array<double, 12>;  // four of each moment
+  // Four products for each moment.
+  using Products = std::array<double, 12>;
   cover_by<Swept>(
       x,
       y,

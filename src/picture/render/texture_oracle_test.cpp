@@ -9,8 +9,9 @@
 #include "foundation/image/colour.h"
 #include "picture/render/renderer.h"
 
-// Windows, cheat lines and titles of a livery, seen small, against the mean of 64 pixels drawn in
-// the place of each: there a sample is 1/32 of a pixel, and textures are read at full size.
+// Compares the windows, cheat lines and titles of a small livery with the mean of 64 pixels drawn
+// in the place of each. In the reference a sample is 1/32 of a pixel, and textures are read at full
+// resolution.
 namespace airtruth::render {
 namespace {
 
@@ -41,7 +42,8 @@ image::Layer textured_layer(const aircraft::Aircraft& aircraft,
   });
   const Rigid world_from_body{airtruth::world_from_body(attitude),
                               Vector3(2000 * longest_m / size_px, 0.3, -0.2)};
-  const double reach = finer * (0.6 * size_px + 3);  // the box's size says how many samples to take
+  // The size of the box determines the number of samples.
+  const double reach = finer * (0.6 * size_px + 3);
   return render(view,
                 light,
                 {{&model, world_from_body, 0}},
@@ -50,9 +52,11 @@ image::Layer textured_layer(const aircraft::Aircraft& aircraft,
 }
 
 struct TextureError {
-  double mean_codes = 0;  // over the pixels that it covers by half or more, in sRGB code values
+  // Over the pixels that the aircraft covers by half or more, in sRGB code values.
+  double mean_codes = 0;
   double rms_codes = 0;
-  double dark_codes = 0;  // the mean over the tenth that is darkest in truth
+  // The mean over the tenth of the pixels that is darkest in the reference.
+  double dark_codes = 0;
 };
 
 double code_of(double linear) {
@@ -65,7 +69,8 @@ TextureError texture_error(const aircraft::Aircraft& aircraft,
                            const YawPitchRoll& attitude) {
   const image::Layer got = textured_layer(aircraft, model, size_px, 1, attitude);
   const image::Layer fine = textured_layer(aircraft, model, size_px, kFiner, attitude);
-  std::vector<std::pair<double, double>> pairs;  // truth, got
+  // Reference and rendered value.
+  std::vector<std::pair<double, double>> pairs;
   for (int y = 0; y < kTextureSide; ++y)
     for (int x = 0; x < kTextureSide; ++x) {
       double truth = 0;
@@ -109,7 +114,7 @@ TEST(Texture, IsNotWashedOutWhereAnAircraftIsSmall) {
                            << name << " of " << size_px << " px, yaw " << attitude.yaw_deg;
         EXPECT_LT(std::abs(error.mean_codes), 2) << where;
         EXPECT_LT(error.rms_codes, 4) << where;
-        // Of 12 px the darkest tenth is a pixel or two.
+        // At 12 px the darkest tenth is only one or two pixels.
         if (size_px >= 30) {
           EXPECT_LT(std::abs(error.dark_codes), 3) << where;
         }

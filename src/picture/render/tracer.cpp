@@ -7,9 +7,12 @@
 namespace airtruth::render {
 namespace {
 
-constexpr float kStep = 1e-4f;         // past a translucent surface, metres
-constexpr double kSampleShare = 0.25;  // of a pixel's side, for one of the many samples of opacity
-constexpr int kMaxLayers = 24;         // translucent surfaces along one ray
+// Step beyond a translucent surface, in metres.
+constexpr float kStep = 1e-4f;
+// Footprint of one of the many samples of opacity, as a share of the pixel's side.
+constexpr double kSampleShare = 0.25;
+// Largest number of translucent surfaces along one ray.
+constexpr int kMaxLayers = 24;
 
 Vector3 interpolated(const std::array<Vector3, 4>& corners, const std::array<double, 2>& at) {
   const auto [x, y] = at;
@@ -27,7 +30,7 @@ BodyRay body_ray(const Actor& actor, const Shot& shot) {
   return {(eye + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
 }
 
-// A spinning part stands elsewhere at every moment of the exposure.
+// The pose of a spinning part differs at every moment of the exposure.
 Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt_s) {
   if (dt_s == 0) return placed.part_from_body[part];
   return aircraft::body_from_part(placed.model->mesh.parts[part], placed.time_s + dt_s)
@@ -62,7 +65,7 @@ std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float f
   return best;
 }
 
-// Within a few code values of one another, as a video would hold them?
+// True where the colours differ by only a few code values of a video.
 bool alike(const std::array<float, 3>& low, const std::array<float, 3>& high) {
   constexpr float kSpread = 0.12f;
   for (std::size_t c = 0; c < 3; ++c)
@@ -195,7 +198,8 @@ bool Tracer::shade_covered(
       break;
     const Shot shot = shots(static_cast<int>(i));
     const auto hit = nearest_hit(actor.placed, body_ray(actor, shot), 0, shot.dt_s);
-    if (!hit) continue;  // a hair's breadth from an edge, where floats and doubles part
+    // So close to an edge the float and the double computation disagree.
+    if (!hit) continue;
     const Fragment fragment{actor.start_m + hit->t, actor_index, 1, *hit};
     const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -227,7 +231,7 @@ void Tracer::add(const Shot& shot,
   sum.most = std::max(sum.most, sum.alpha - before);
 }
 
-// One sample's surfaces, nearest first, over one another.
+// Blends one sample's surfaces, nearest first.
 void Tracer::blend(const Shot& shot,
                    double pixel_rad,
                    const std::vector<Fragment>& fragments,
@@ -267,7 +271,8 @@ std::array<float, 3> Tracer::colour(const Shot& shot,
                footprint(fragment.distance_m, pixel_rad));
 }
 
-// Of one shaded sample on the surface: a pixel's width shared out among the samples of a side.
+// The footprint of one shaded sample on the surface: the width of a pixel divided by the number of
+// samples along a side.
 float Tracer::footprint(double distance_m, double pixel_rad) const {
   return static_cast<float>(distance_m * pixel_rad /
                             std::sqrt(static_cast<double>(counts_.shaded)));
