@@ -21,8 +21,10 @@
 namespace airtruth::backdrop {
 namespace {
 
-constexpr double kNearestM = 0.05;  // what is nearer to the camera is cut off
-constexpr int kTilePx = 1024;       // drawn at once for render_alpha
+// Distance of the near plane, in metres; nearer parts are cut off.
+constexpr double kNearestM = 0.05;
+// Side of the tile that render_alpha draws at once, in pixels.
+constexpr int kTilePx = 1024;
 
 struct View {
   Pixel focal_px;
@@ -30,8 +32,8 @@ struct View {
   Rigid cam_from_world;
 };
 
-// Where the camera sees a sphere, with room to spare; the whole frame where it is too close to
-// tell.
+// Where the camera sees a sphere, with a margin. The whole frame where the sphere is too close for
+// a bound.
 std::optional<Box> box_of_sphere(const View& view,
                                  const Vector3& centre_in_world,
                                  double radius_m,
@@ -51,7 +53,7 @@ bool overlap(const Box& a, const Box& b) {
   return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
-// The mean over each pixel's block of samples; `samples` has its bottom row first.
+// The mean over each pixel's block of samples. The first row of `samples` is the bottom row.
 std::array<float, 4> block_mean(
     const std::vector<std::array<float, 4>>& samples, int stride, int x, int y, int size) {
   std::array<double, 4> sum{};
@@ -74,7 +76,8 @@ std::array<float, 4> block_mean(
 struct Backdrop::Impl {
   Impl(int frame_width, int frame_height, const Options& given)
       : width(frame_width), height(frame_height), options(given), egl(given.gpu, given.software) {
-    osg::setNotifyLevel(osg::ALWAYS);  // nothing of what it has to say
+    // Suppresses all messages.
+    osg::setNotifyLevel(osg::ALWAYS);
     const EglContext::Current current(egl);
     device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     viewer = new osgViewer::Viewer;
@@ -83,7 +86,8 @@ struct Backdrop::Impl {
     viewer->setLightingMode(osg::View::NO_LIGHT);
     viewer->getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
     viewer->getCamera()->setCullingMode(
-        osg::CullSettings::NO_CULLING);  // it would drop small aircraft
+        // Culling would drop small aircraft.
+        osg::CullSettings::NO_CULLING);
     viewer->getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     root->setStateSet(shading.state());
     viewer->setSceneData(root);
@@ -100,7 +104,7 @@ struct Backdrop::Impl {
     window = nullptr;
   }
 
-  // Puts the instances into the scene graph; the boxes of the frame that they can touch.
+  // Puts the instances into the scene graph. Returns the boxes of the frame that they can touch.
   std::vector<Box> stage(const View& view,
                          const Light& light,
                          const std::vector<Instance>& instances);
@@ -128,8 +132,10 @@ struct Backdrop::Impl {
   std::map<const aircraft::Mesh*, OnDevice> aircraft;
   double near_m = 1;
   double far_m = 2;
-  std::unique_ptr<FrameBuffer> green;  // render's
-  std::unique_ptr<FrameBuffer> tile;   // render_alpha's
+  // The target of render().
+  std::unique_ptr<FrameBuffer> green;
+  // The target of render_alpha().
+  std::unique_ptr<FrameBuffer> tile;
 };
 
 OsgMesh& Backdrop::Impl::instance_of(const aircraft::Mesh& mesh, std::size_t nth) {
@@ -229,7 +235,8 @@ std::vector<std::array<float, 4>> Backdrop::render_alpha(const Pixel& focal_px,
   const EglContext::Current current(impl.egl);
   impl.shading.set_encoding(Encoding::kLinear);
   const std::vector<Box> boxes = impl.stage(view, light, instances);
-  const int tile_px = kTilePx / supersampling;  // of the frame
+  // Side of a tile, in pixels of the frame.
+  const int tile_px = kTilePx / supersampling;
   const int size = tile_px * supersampling;
   if (!impl.tile || impl.tile->width() != size)
     impl.tile = std::make_unique<FrameBuffer>(*impl.gl, size, size, GL_RGBA32F_ARB, 1);

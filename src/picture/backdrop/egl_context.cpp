@@ -50,7 +50,7 @@ EGLDisplay display_of(EGLenum platform, void* device) {
   return get_display == nullptr ? EGL_NO_DISPLAY : get_display(platform, device, nullptr);
 }
 
-// The places to try, best first.
+// The candidate displays, best first.
 std::vector<EGLDisplay> candidates(std::optional<int> gpu, bool software) {
   const Devices devices = find_devices();
   std::vector<EGLDisplay> displays;
@@ -78,7 +78,7 @@ struct EglContext::Impl {
   EGLSurface surface = EGL_NO_SURFACE;
   EGLContext context = EGL_NO_CONTEXT;
 
-  // Displays are shared within the process, so none is ever terminated.
+  // The process shares displays, so none is ever terminated.
   void close() {
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
     if (surface != EGL_NO_SURFACE) eglDestroySurface(display, surface);

@@ -33,7 +33,7 @@ osg::ref_ptr<osg::Texture2D> osg_texture(const aircraft::Texture& texture, float
   return result;
 }
 
-// The triangles of one material of one part, with just the vertices that they use: OpenSceneGraph
+// The triangles of one material of one part, with only the vertices that they use: OpenSceneGraph
 // sorts drawables by the middle of their vertices.
 osg::ref_ptr<osg::Geometry> osg_geometry(const aircraft::Mesh& mesh,
                                          const aircraft::Part& part,
@@ -66,7 +66,7 @@ osg::ref_ptr<osg::Geometry> osg_geometry(const aircraft::Mesh& mesh,
   return geometry;
 }
 
-// Farthest first, as seen from eye_in_part.
+// Sorts the farthest first, as seen from eye_in_part.
 void sort_triangles(osg::Geometry& geometry, const osg::Vec3f& eye_in_part) {
   const auto& positions = static_cast<const osg::Vec3Array&>(*geometry.getVertexArray());
   auto& indices = static_cast<osg::DrawElementsUInt&>(*geometry.getPrimitiveSet(0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray tracer and OpenGL share the triangles, the textures and the idea of the light, and
-// nothing else: so what they agree on is right.
+// Compares two independent renderers: the ray tracer and OpenGL share only the triangles, the
+// textures and the model of the light.
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -32,16 +32,20 @@ const Light kSunny;
 const Light kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
 
 struct Precision {
-  int quality = 4;         // of the ray tracer
-  int supersampling = 32;  // of OpenGL
+  // Of the ray tracer.
+  int quality = 4;
+  // Of OpenGL.
+  int supersampling = 32;
 };
 
 struct Comparison {
   double worst_alpha = 0;
-  double alpha_sum = 0;  // of the ray tracer
+  // Of the ray tracer.
+  double alpha_sum = 0;
   double gl_alpha_sum = 0;
-  double worst_colour = 0;  // premultiplied, linear
-  double colour_bias = 0;   // mean of the three channels' sums, relative to their sum
+  // Premultiplied and linear.
+  double worst_colour = 0;
+  double colour_bias = 0;  // mean of the three channels' sums, relative to their sum
 };
 
 // North is the optical axis: x_cam = east, y_cam = down, z_cam = north.
@@ -127,7 +131,7 @@ aircraft::Mesh empty_mesh() {
   return mesh;
 }
 
-// A quadrilateral by a corner and two sides, its normal along their cross product.
+// A quadrilateral from a corner and two sides, with its normal along their cross product.
 void add_plate(aircraft::Mesh& mesh,
                const Eigen::Vector3f& corner,
                const Eigen::Vector3f& u,
@@ -229,10 +233,10 @@ TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
 
 class TwoRenderersOnAircraft : public testing::TestWithParam<const char*> {};
 
-// Under an even sky, for OpenGL casts no shadows. The ray tracer shades 16 samples of a pixel,
-// which shows in the colour of single pixels but not in their mean. Its texels are averaged over
-// half a pixel, where this OpenGL looks at a 32nd: from far away that half reaches into the
-// neighbours of a painted part on its texture, and the colour of the 737 at 20 px moves by 8 %.
+// The sky is even, because OpenGL casts no shadows. The ray tracer shades 16 samples of a pixel,
+// which affects the colour of single pixels but not their mean. It averages texels over half a
+// pixel, and this OpenGL over a 32nd. From far away that half pixel reaches into the neighbours of
+// a painted part on its texture, and the colour of the 737 at 20 px changes by 8 %.
 TEST_P(TwoRenderersOnAircraft, AgreeAt20And100Pixels) {
   try {
     aircraft::find_aircraft(GetParam());

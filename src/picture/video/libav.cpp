@@ -26,7 +26,8 @@ std::optional<Chroma> chroma_of(const AVPixFmtDescriptor& format) {
   return std::nullopt;
 }
 
-// One component (0..2) at its own resolution into a plane, by libav's description of the format.
+// Copies one component (0..2) at its own resolution into a plane, by libav's description of the
+// format.
 void copy_component(const AVFrame& frame,
                     const AVPixFmtDescriptor& format,
                     int component,
@@ -184,7 +185,7 @@ AVColorSpace space_of(image::Matrix matrix) {
 Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour) {
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
   Picture picture = image::make_picture(frame.width, frame.height, colour);
-  // libav lists R, G, B; a Picture holds G, B, R.
+  // libav's order is R, G, B; a Picture's is G, B, R.
   constexpr int kFromRgb[] = {1, 2, 0};
   for (int i = 0; i < picture.plane_count; ++i)
     copy_component(frame,

@@ -24,7 +24,7 @@ std::string_view without_zeros(std::string_view digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
 }
 
-// Numbers of any length, as 000000000139 or a time in nanoseconds: -1, 0 or 1.
+// Compares numbers of any length, such as 000000000139 or a time in nanoseconds: -1, 0 or 1.
 int compare_digits(std::string_view a, std::string_view b) {
   a = without_zeros(a);
   b = without_zeros(b);
@@ -33,9 +33,9 @@ int compare_digits(std::string_view a, std::string_view b) {
   return order < 0 ? -1 : order > 0 ? 1 : 0;
 }
 
-// `b` is the number after `a`.
+// True where `b` is the number after `a`.
 bool follows(std::string_view a, std::string_view b) {
-  // A zero in front takes the carry of 99.
+  // A leading zero takes the carry of 99.
   std::string next(a.size() + 1, '0');
   std::copy(a.begin(), a.end(), next.begin() + 1);
   std::size_t at = next.size() - 1;
@@ -44,7 +44,7 @@ bool follows(std::string_view a, std::string_view b) {
   return compare_digits(next, b) == 0;
 }
 
-// Names with runs of digits compared as numbers.
+// Compares names, with runs of digits as numbers.
 bool comes_before(std::string_view a, std::string_view b) {
   const auto run = [](std::string_view text) {
     const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
@@ -92,7 +92,7 @@ std::string ending_of(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() ? ending : "";
 }
 
-// The group with the most pictures; of equal ones the first by its key.
+// The group with the most pictures; among equal ones the first by its key.
 template <typename Groups>
 auto largest(const Groups& groups) {
   return std::max_element(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
@@ -126,7 +126,7 @@ std::optional<NumberedImages> in_folder(const fs::path& folder) {
   return result;
 }
 
-// Where a pattern's number stands: its first and its past-the-last character.
+// The position of a pattern's number: its first character and the one after its last.
 std::optional<std::pair<std::size_t, std::size_t>> number_in_pattern(const std::string& name) {
   const auto percent = name.rfind('%');
   if (percent == std::string::npos) return std::nullopt;

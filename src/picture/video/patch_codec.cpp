@@ -55,8 +55,8 @@ class Loop {
     return encoder_->width == picture.width && encoder_->height == picture.height &&
            encoder_->pix_fmt == format_for(picture.colour.chroma);
   }
-  // The second of two pictures, decoded: the first is a key picture, the second is predicted from
-  // it.
+  // Returns the second of two pictures after decoding. The first is a key picture, and the second
+  // is predicted from it.
   void run(const Picture& reference, const Picture& patch, Picture& decoded);
 
  private:
@@ -81,7 +81,8 @@ Loop::Loop(int width, int height, Chroma chroma, int quantiser) {
   encoder_->thread_count = 1;
   encoder_->max_b_frames = 0;
   encoder_->refs = 1;
-  // libx264's largest ratio of the quantisers of P and I pictures: 20 less for the reference.
+  // The largest ratio of the quantisers of P and I pictures in libx264: the reference gets a
+  // quantiser 20 lower.
   constexpr float kFinestKeyPicture = 0.1F;
   encoder_->i_quant_factor = kFinestKeyPicture;
   AVDictionary* settings = nullptr;
@@ -154,7 +155,8 @@ void Loop::run(const Picture& reference, const Picture& patch, Picture& decoded)
 
 struct PatchCodec::State {
   int quantiser = 0;
-  std::list<Loop> loops;  // most recently used first
+  // The most recently used one comes first.
+  std::list<Loop> loops;
 };
 
 PatchCodec::PatchCodec(int quantiser) : state_(std::make_unique<State>()) {
@@ -181,7 +183,8 @@ Picture PatchCodec::coded(const Picture& patch, const Picture& reference) {
   auto loop =
       std::find_if(loops.begin(), loops.end(), [&](const Loop& l) { return l.fits(patch); });
   if (loop == loops.end()) {
-    constexpr std::size_t kMostLoops = 4;  // of one size each; an intruder's size changes slowly
+    // Each loop has one size; an intruder's size changes slowly.
+    constexpr std::size_t kMostLoops = 4;
     if (loops.size() == kMostLoops) loops.pop_back();
     loops.emplace_front(patch.width, patch.height, patch.colour.chroma, state_->quantiser);
     loop = loops.begin();

@@ -43,7 +43,8 @@ struct Reader::State {
   ReaderOptions options;
   Warn warn;
   InputPtr input;
-  std::vector<std::filesystem::path> pictures;  // one a frame; empty for a video
+  // One file for each frame; empty for a video.
+  std::vector<std::filesystem::path> pictures;
   std::size_t next_picture = 0;
   CodecPtr codec;
   PacketPtr packet;
@@ -56,9 +57,11 @@ struct Reader::State {
   bool draining = false;
   bool finished = false;
   bool read_failed = false;
-  bool broken = false;  // a packet failed: frames are suspect until the next key frame
+  // True after a packet failed: frames are suspect until the next key frame.
+  bool broken = false;
   std::int64_t corrupt = 0;
-  std::int64_t decoded = 0;  // frames out of the decoder
+  // Number of frames that the decoder has returned.
+  std::int64_t decoded = 0;
   std::int64_t handed = 0;
   std::int64_t last_pts = AV_NOPTS_VALUE;
   std::int64_t pts_step = 1;
@@ -66,7 +69,7 @@ struct Reader::State {
   // Decoded by the constructor and, with cuts, what comes after the frame that is next.
   std::deque<Frame> ahead;
   image::Differences difference;
-  // Of the frames from `first_difference` on, each to the one before it.
+  // Differences between each frame and the one before it, from the frame `first_difference` on.
   std::deque<double> differences;
   std::int64_t first_difference = 1;
 
@@ -77,10 +80,13 @@ struct Reader::State {
   void open_input();
   void open_codec();
   void describe(const AVFrame& first);
-  int read_packet();  // fills `packet`; below 0 at the end, as libav has it
-  bool decode_one();  // fills `frame`; false at the end
+  // Fills `packet`. Returns a negative number at the end, as libav does.
+  int read_packet();
+  // Fills `frame`; false at the end.
+  bool decode_one();
   std::optional<Frame> next();
-  bool look_ahead();  // decodes one more frame; false at the end
+  // Decodes one more frame; false at the end.
+  bool look_ahead();
   bool begins_shot(std::int64_t index);
   Frame to_frame();
   void make_plain();
@@ -109,7 +115,7 @@ void Reader::State::open_input() {
     fail("is empty; expected a video");
   }
   AVFormatContext* raw = nullptr;
-  // A % in the name of a picture or a folder is a character; videos pass over the setting.
+  // A % in the name of a picture or folder is an ordinary character. Videos ignore the setting.
   av_dict_set(&settings, "pattern_type", "none", 0);
   const int opened = avformat_open_input(&raw, url.c_str(), format, &settings);
   av_dict_free(&settings);
@@ -201,7 +207,7 @@ void Reader::State::describe(const AVFrame& first) {
   }
 }
 
-// libav's own reader of numbered images ends at the first gap in the numbers.
+// libav's own reader of numbered images stops at the first gap in the numbers.
 int Reader::State::read_packet() {
   if (pictures.empty()) return av_read_frame(input.get(), packet.get());
   if (next_picture == pictures.size()) return AVERROR_EOF;
@@ -271,7 +277,8 @@ Frame Reader::State::to_frame() {
   } else if (frame->key_frame == 1) {
     broken = false;
   }
-  result.damaged = broken;  // what leans on a bad frame is bad, up to the next key frame
+  // Frames that depend on a damaged frame are damaged as well, up to the next key frame.
+  result.damaged = broken;
   std::int64_t pts = frame->best_effort_timestamp;
   if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
   if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
@@ -281,7 +288,7 @@ Frame Reader::State::to_frame() {
   return result;
 }
 
-// Stills come in formats that no plane of ours holds.
+// Stills use formats that no Picture can hold.
 void Reader::State::make_plain() {
   const auto format = static_cast<AVPixelFormat>(frame->format);
   const AVPixelFormat plain = plain_kin(format);
@@ -327,7 +334,7 @@ bool Reader::State::look_ahead() {
 }
 
 bool Reader::State::begins_shot(std::int64_t index) {
-  // Those of the neighbours, as far as there are any.
+  // The differences of the neighbours, as far as they exist.
   while (first_difference < index - image::kCutNeighbours) {
     differences.pop_front();
     ++first_difference;
@@ -380,7 +387,8 @@ bool Reader::ends_early() const {
   const AVStream& stream = *s.input->streams[s.stream_index];
   if (s.read_failed) return true;
   if (stream.nb_frames > 0) return s.decoded + s.corrupt < stream.nb_frames;
-  // Matroska counts no frames; its duration tells. A second's slack: sound may outlast the picture.
+  // Matroska stores no number of frames, so the duration decides. One second of slack allows for
+  // sound that is longer than the picture.
   if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;
   const double seen_s = static_cast<double>(s.last_pts - *s.first_pts) * s.info.time_base.value();
   return seen_s + 1.0 < static_cast<double>(s.input->duration) / AV_TIME_BASE;

@@ -74,7 +74,7 @@ int sws_matrix(image::Matrix matrix) {
   return matrix == image::Matrix::kBt2020 ? SWS_CS_BT2020 : SWS_CS_ITU601;
 }
 
-// As JPEG has it: BT.601, full range. Halved chroma stays halved, with no way through RGB.
+// The JPEG form: BT.601, full range. Halved chroma stays halved, without a conversion to RGB.
 FramePtr jpeg_frame(const image::Picture& picture) {
   keep_libav_quiet();
   const AVPixelFormat from = planar_format(picture.colour);

@@ -32,14 +32,15 @@ struct FreeOutput {
   }
 };
 
-// The colour that a format stores for a picture of this one.
+// The colour that a format stores for a picture of this colour.
 Colour stored_colour(const Colour& colour, Format format, const fs::path& path) {
   Colour stored = colour;
   if (format == Format::kMkv || format == Format::kPng) return stored;
   if (colour.matrix == Matrix::kRgb)
     stored = {Chroma::k444, Matrix::kBt709, Range::kFull, image::Siting::kCenter};
   if (format == Format::kAvi) {
-    stored.range = Range::kFull;  // JPEG has no other
+    // JPEG supports no other range.
+    stored.range = Range::kFull;
     if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
   }
   if (stored.chroma == Chroma::k440)
@@ -48,7 +49,7 @@ Colour stored_colour(const Colour& colour, Format format, const fs::path& path) 
   return stored;
 }
 
-// H.264 halves chroma in whole samples. libx264 refuses such a size too, but leaks memory where it
+// H.264 halves chroma in whole samples. libx264 also refuses such a size, but leaks memory when it
 // does.
 void check_size(const StreamInfo& info, Chroma chroma, Format format, const fs::path& path) {
   const bool half_width = chroma == Chroma::k420 || chroma == Chroma::k422;
@@ -81,13 +82,14 @@ AVPixelFormat pixel_format(const Colour& colour, Format format) {
   return AV_PIX_FMT_NONE;
 }
 
-// Through packed sRGB where a format cannot hold the picture's own colour.
+// Converts through packed sRGB where a format cannot store the picture's own colour.
 Picture converted(const Picture& picture, const Colour& to) {
   if (picture.colour == to) return picture.clone();
   return image::picture_from_rgb8(image::rgb8_from_picture(picture), to);
 }
 
-// Limited to full range with nothing else changed (JPEG): each plane by its own line.
+// Converts from limited to full range (JPEG) and changes nothing else: each plane has its own
+// linear map.
 Picture with_full_range(const Picture& picture, const Colour& to) {
   Picture result = image::make_picture(picture.width, picture.height, to);
   for (std::size_t i = 0; i < static_cast<std::size_t>(result.plane_count); ++i) {
@@ -165,8 +167,8 @@ void Writer::State::set_codec_options(AVDictionary** settings) const {
   if (options.format == Format::kMp4) {
     av_dict_set(settings, "preset", options.preset.c_str(), 0);
     av_dict_set_int(settings, "crf", options.quality, 0);
-    // The same bytes on every machine. Without it x264's fastest code (AVX-512, mbtree) even gives
-    // other bytes from one encode to the next in the same process.
+    // The setting gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
+    // mbtree) even gives different bytes from one encode to the next in the same process.
     av_dict_set(settings, "x264-params", "cpu-independent=1", 0);
   } else if (options.format == Format::kMkv) {
     av_dict_set_int(settings, "level", 3, 0);
@@ -195,7 +197,8 @@ void Writer::State::open_codec() {
   codec->chroma_sample_location = stored.siting == image::Siting::kCenter    ? AVCHROMA_LOC_CENTER
                                   : stored.siting == image::Siting::kTopLeft ? AVCHROMA_LOC_TOPLEFT
                                                                              : AVCHROMA_LOC_LEFT;
-  codec->thread_count = std::max(0, options.threads);  // 0: as many as the encoder likes
+  // 0: the encoder's default.
+  codec->thread_count = std::max(0, options.threads);
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0)
     codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

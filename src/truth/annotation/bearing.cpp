@@ -7,10 +7,12 @@
 namespace airtruth::annotation {
 namespace {
 
-// Of the point's own row, by fixed-point iteration; 0 where no pixel shows the point.
+// The time of the point's own row, by fixed-point iteration; 0 where no pixel shows the point.
 double row_time_s(const Sight& sight, const Vector3& p_in_world, const Vector3& velocity_mps) {
   if (sight.shutter.readout_s <= 0) return 0;
-  constexpr int kRounds = 8;  // each shrinks the error by the share of the image swept in a readout
+  // Each round multiplies the error by the share of the image that the point crosses during a
+  // readout.
+  constexpr int kRounds = 8;
   const lens::ImageSize size = sight.lens->size();
   double dt_s = 0;
   for (int round = 0; round < kRounds; ++round) {

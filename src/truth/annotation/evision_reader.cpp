@@ -14,9 +14,10 @@
 namespace airtruth::annotation {
 namespace {
 
-constexpr int kLargestPixel = 1 << 29;  // sums of two stay within int
+// Largest pixel coordinate; sums of two such numbers fit an int.
+constexpr int kLargestPixel = 1 << 29;
 
-// Tells the line of an offset.
+// Maps an offset in the text to its line.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
@@ -32,7 +33,7 @@ class Lines {
   std::string_view text_;
 };
 
-// Names of garbage may be long and odd.
+// Names in corrupt files may be long and contain any character.
 std::string short_name(const pugi::xml_node& node) {
   std::string name(node.name());
   if (name.size() > 40) name = name.substr(0, 40) + "...";

@@ -153,9 +153,9 @@ TEST(Evision, DeeplyNestedXmlDoesNotExhaustTheStack) {
   EXPECT_NE(message_of(deep), "no error");
 }
 
-// Do the lines differ in nothing but the 17th digit of one number, by one? Where a value lies just
-// between two numbers of 17 digits the published files take now the upper, now the lower one, and
-// both read back as the same double.
+// True where the lines differ at most by one in the 17th digit of one number. Where a value lies
+// exactly between two numbers of 17 digits, the published files contain sometimes the upper and
+// sometimes the lower one. Both parse to the same double.
 bool differs_in_rounding(const std::string& a, const std::string& b) {
   const std::size_t exponent = a.find('e', a.find('.'));
   if (a.size() != b.size() || exponent == std::string::npos) return false;
@@ -167,8 +167,8 @@ bool differs_in_rounding(const std::string& a, const std::string& b) {
   return c == b && std::abs(a[exponent - 1] - b[exponent - 1]) == 1 && number(a) == number(b);
 }
 
-// Every published file is read and written again: each line the same, but for how exact halves are
-// rounded.
+// Reads and writes every published file. Each line must stay the same, except for the rounding of
+// exact halves.
 TEST(Evision, PublishedFilesComeBackButForTheRoundingOfHalves) {
   const char* const shared = std::getenv("AIRTRUTH_SHARED");
   if (!shared) GTEST_SKIP() << "AIRTRUTH_SHARED is not set: the published annotations are not here";

@@ -9,8 +9,8 @@
 namespace airtruth::annotation {
 namespace {
 
-// As OpenCV's FileStorage prints a double: "150." for a whole number, else 17 digits and an
-// exponent, of three digits as in the published files.
+// Formats a double as OpenCV's FileStorage does: "150." for a whole number, else 17 digits and an
+// exponent, which has three digits as in the published files.
 std::string number(double value) {
   check(std::isfinite(value), "an annotation holds finite numbers");
   if (std::abs(value) < 2147483648.0 && value == std::nearbyint(value))

@@ -23,7 +23,7 @@ std::optional<Pixel> pixel_from_cam(const Sight& sight, const Vector3& p_in_cam)
   return pixel.allFinite() ? std::optional(pixel) : std::nullopt;
 }
 
-// Adds the silhouette as it is seen at one moment.
+// Adds the silhouette at one moment.
 void add_instant(const Sight& sight,
                  const Silhouette& silhouette,
                  const Rigid& world_from_body,
@@ -47,8 +47,8 @@ void add_instant(const Sight& sight,
   }
 }
 
-// One point's way over the picture while the shutter works: three projections, a parabola between
-// them, and the row time solved on it.
+// The path of one point over the picture during the exposure: a parabola through three projections,
+// on which the row time is solved.
 class Sweep {
  public:
   Sweep(const Sight& sight, const Twist& body, const Rigid& world_from_body)
@@ -73,7 +73,8 @@ class Sweep {
       }
       at[k] = *pixel;
     }
-    constexpr int kSteps = 4;  // of the exposure
+    // Number of steps of the exposure.
+    constexpr int kSteps = 4;
     for (int step = 0; step <= kSteps; ++step) {
       const double into_exposure_s =
           shutter_.exposure_s * (static_cast<double>(step) / kSteps - 0.5);
@@ -83,11 +84,12 @@ class Sweep {
 
  private:
   Pixel along(const std::array<Pixel, 3>& at, double dt_s) const {
-    const double u = half_s_ > 0 ? dt_s / half_s_ : 0;  // -1..1
+    // From -1 to 1.
+    const double u = half_s_ > 0 ? dt_s / half_s_ : 0;
     return at[1] + 0.5 * u * (at[2] - at[0]) + 0.5 * u * u * (at[2] - 2 * at[1] + at[0]);
   }
 
-  // Row times are taken as even over the rows: a box is no sharper than the row it lies in.
+  // Row times are treated as linear over the rows: a box is not more accurate than its row.
   Pixel seen(const std::array<Pixel, 3>& at, double into_exposure_s) const {
     Pixel pixel = along(at, into_exposure_s);
     if (shutter_.readout_s <= 0) return pixel;
@@ -108,8 +110,8 @@ class Sweep {
   std::array<Matrix3, 3> rotation_;
 };
 
-// A spinning part passes through many places while the shutter is open: so many of them that
-// neighbours are a few degrees apart, each as if it stood there all the time.
+// A spinning part passes through many angles during the exposure. So many angles are taken that
+// neighbours are a few degrees apart, and the part counts as present at each of them all the time.
 constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMostSpinSteps = 120;
 

@@ -12,13 +12,13 @@ using lens::ImageSize;
 
 constexpr ImageSize kSize{1280, 960};
 
-// The camera of the world's north: x_cam is east, y_cam is down, z_cam is north.
+// A camera that looks north: x_cam is east, y_cam is down, z_cam is north.
 Sight looking_north(const lens::Lens& lens, const Vector3& position_ned_m = Vector3::Zero()) {
   const Rigid world_from_cam{cam_from_body().conjugate(), position_ned_m};
   return {&lens, world_from_cam.inverse(), Homography::Identity()};
 }
 
-// A cube of 2 m about the origin: its corners.
+// The corners of a cube of 2 m about the origin.
 std::vector<Eigen::Vector3f> cube() {
   std::vector<Eigen::Vector3f> corners;
   for (const float x : {-1.f, 1.f})
@@ -52,8 +52,8 @@ void expect_box(const std::optional<Box>& box, const Box& expected, double toler
   EXPECT_NEAR(box->height, expected.height, tolerance);
 }
 
-// Vertical view 90 degrees: f = 480. The near face, 100 m ahead, spans 2 * 480 / 100 = 9.6 px about
-// the centre.
+// A vertical view of 90 degrees gives f = 480. The near face, 100 m ahead, spans 2 * 480 / 100 =
+// 9.6 px about the centre.
 TEST(ExactBox, OfACubeAheadIsItsNearFace) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
   const ExactBox box = Solid(cube()).seen(looking_north(lens), at(101, 0, 0));
@@ -64,7 +64,7 @@ TEST(ExactBox, OfACubeAheadIsItsNearFace) {
 TEST(ExactBox, IsNotClippedByTheFrame) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
   const ExactBox box = Solid(cube()).seen(looking_north(lens), at(101, -201, 0));
-  // East -202 at the near face to -200 at the far one, 102 m ahead.
+  // The box extends from east -202 at the near face to -200 at the far one, 102 m ahead.
   expect_box(box.box, {640 - 480 * 2.02, 480 - 4.8, 480 * (2.02 - 200.0 / 102.0), 9.6});
 }
 
@@ -82,7 +82,7 @@ TEST(ExactBox, AroundTheCameraIsPartlyUnseen) {
   expect_box(box.box, {640 - 480, 0, 960, 960});  // the four corners ahead, at 45 degrees
 }
 
-// Equidistant: 180 degrees over 960 px are f = 960 / pi; a point at the angle theta lies f * theta
+// Equidistant: 180 degrees over 960 px give f = 960 / pi. A point at the angle theta lies f * theta
 // from the centre.
 TEST(ExactBox, ThroughAFisheyeReachesToTheSide) {
   const lens::Lens lens = lens::fisheye_from_vertical_fov(180, kSize);
@@ -100,7 +100,7 @@ TEST(ExactBox, ThroughAFisheyeReachesToTheSide) {
 
 TEST(ExactBox, FollowsThePosesOfCameraAndBody) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
-  // A rod of 10 m along the body's x, heading east, 100 m north of a camera that is elsewhere.
+  // A rod of 10 m along the body's x axis, heading east, 100 m north of a camera at another place.
   const Rigid world_from_body{airtruth::world_from_body({90, 0, 0}), {1100, 2000, -300}};
   const ExactBox box =
       Solid({{-5, 0, 0}, {5, 0, 0}}).seen(looking_north(lens, {1000, 2000, -300}), world_from_body);
@@ -124,7 +124,7 @@ TEST(ExactBox, BeyondTheHorizonOfTheHomographyIsUnseen) {
   EXPECT_FALSE(pixel_from_world(sight, {-100, 0, 0}));
 }
 
-// A blade of 1 m that turns once a second about the nose: upright at 0 s, level at 0.25 s.
+// A blade of 1 m that turns once a second about the nose: it is upright at 0 s and level at 0.25 s.
 TEST(ExactBox, TurnsWithASpinningPart) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
   aircraft::Part propeller;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A JSON object of one line, and what its faults are called.
+// The JSON object of one line, and its name in error messages.
 class Object {
  public:
   Object(const Json& json, std::string name, const Where& where)
@@ -114,7 +114,7 @@ class Object {
     if (!value.is_number_integer() || too_large) fail(key, "a whole number");
     return value.get<std::int64_t>();
   }
-  // A size or place of pixels: far from where sums of them overflow.
+  // A size or position in pixels, far below the values where sums overflow.
   int small(const Json& value, const char* key) const {
     const std::int64_t number = whole(value, key);
     if (number < -(1 << 29) || number > (1 << 29)) fail(key, "a number of pixels");
@@ -187,8 +187,8 @@ Shake shake_from(const Object& motion) {
   return shake;
 }
 
-// Older files have one bearing, and where motion is a homography it is the nominal camera's. So
-// that no reader takes it for the other, it is put where it belongs.
+// Older files have one bearing, which is the nominal camera's where motion is a homography. It is
+// moved to the nominal fields, so that no reader takes it for the real camera's.
 void place_old_bearing(const Shake& shake, Intruder& intruder) {
   if (!intruder.azimuth_deg || intruder.nominal_azimuth_deg || shake.rotation) return;
   intruder.nominal_azimuth_deg = intruder.azimuth_deg;

@@ -157,8 +157,8 @@ TEST(Truth, FaultsHaveTheirFileAndLine) {
             "truth.jsonl:7: visible_box_px is not what it should be; expected a number of pixels");
 }
 
-// One bearing in an older file: the nominal camera's where motion is a homography, the real one's
-// where it is a rotation, and both where nothing moved.
+// The single bearing of an older file is the nominal camera's where motion is a homography, the
+// real camera's where it is a rotation, and both where nothing moved.
 TEST(Truth, TheOneBearingOfAnOlderFileIsReadAsWhatItWas) {
   const auto read = [](const std::function<void(Json&)>& change) {
     Json json = Json::parse(jsonl_line(frame_of_two(), kLens));
@@ -210,7 +210,7 @@ TEST(Truth, AFileReadsBackWithItsLens) {
   std::filesystem::remove(file);
 }
 
-// A small reading of JSON Schema: type, enum, properties, required, additionalProperties, items,
+// Implements a part of JSON Schema: type, enum, properties, required, additionalProperties, items,
 // sizes, bounds, $ref.
 class Schema {
  public:

@@ -25,7 +25,7 @@ struct Offset {
 };
 
 Offset offset(const Box& truth, const Box& answer) {
-  // Centres first, so that equal boxes are at a distance of exactly 0.
+  // The centres are subtracted first, so that equal boxes are at a distance of exactly 0.
   return {(answer.x + answer.width / 2) - (truth.x + truth.width / 2),
           (answer.y + answer.height / 2) - (truth.y + truth.height / 2)};
 }
@@ -55,7 +55,7 @@ double divided(std::array<double, n>& curve, double count) {
   return sum / n;
 }
 
-// Sums over the frames after the first, for the paper's numbers.
+// Sums over the frames after the first, for the measures of the E-Vision paper.
 struct Offsets {
   double x = 0, y = 0, xx = 0, yy = 0, distance = 0;
   double x_most = 0, y_most = 0;
@@ -93,7 +93,8 @@ void add_rates(std::span<const FramePair> frames, Score& score) {
   for (const double rate : rates) score.frames_per_second += rate / double(rates.size());
 }
 
-// What is averaged over sequences, and what over all their frames together.
+// Separates the measures that are averaged over sequences from those over the frames of all
+// sequences.
 constexpr double Score::*kOfSequences[] = {&Score::x_mean_px,
                                            &Score::x_rmse_px,
                                            &Score::x_most_px,
@@ -113,7 +114,8 @@ double overlap(const Box& a, const Box& b) {
   const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
   if (!(width > 0) || !(height > 0)) return 0;
-  // By rounding, x + width - x differs from width: equal boxes are named, the quotient is bounded.
+  // By rounding, x + width - x differs from width. Equal boxes are therefore handled apart, and the
+  // quotient is bounded to 1.
   if (a == b) return 1;
   const double shared = width * height;
   return std::min(1.0, shared / (a.area() + b.area() - shared));
@@ -125,7 +127,7 @@ std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box
   const auto from = lens.ray_from_pixel(centre_of(a));
   const auto to = lens.ray_from_pixel(centre_of(b));
   if (!from || !to) return std::nullopt;
-  // Of small angles, too: the cosine alone has no digits left there.
+  // This form is accurate for small angles, where the cosine alone loses its digits.
   return 1000 * std::atan2(from->cross(*to).norm(), from->dot(*to));
 }
 
@@ -179,7 +181,7 @@ Score mean_of(std::span<const Score> scores) {
     mean.frames += s.frames;
     mean.counted += s.counted;
     n += 1;
-    // The first frame, which GOT-10k leaves out, always shows the target.
+    // The first frame, which GOT-10k omits, always shows the target.
     const double after_first = static_cast<double>(s.counted - 1);
     frames += after_first;
     for (const auto member : kOfSequences) mean.*member += s.*member;

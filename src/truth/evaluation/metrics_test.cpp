@@ -18,8 +18,8 @@ TEST(Overlap, ClosedForms) {
   EXPECT_EQ(overlap({0, 0, 0, 0}, {0, 0, 0, 0}), 0);
 }
 
-// Of these boxes with themselves the quotient of the areas is 1 + 1e-15 in double precision; the
-// GOT-10k toolkit (0.1.3, rect_iou) bounds it to 1.
+// The overlap of each of these boxes with itself is 1 + 1e-15 in double precision. The GOT-10k
+// toolkit (0.1.3, rect_iou) bounds it to 1.
 const std::vector<Box> kRoundingBoxes = {{307.581, 570.328, 8.735, 56.924},
                                          {187.787, 254.573, 49.679, 24.611},
                                          {330.207, 17.508, 45.235, 32.335},
@@ -39,7 +39,7 @@ TEST(Overlap, AsTheGot10kToolkitHasIt) {
   EXPECT_NEAR(overlap({0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}), 0.9999999999999989, 1e-12);
 }
 
-// The threshold of 1 is passed by nothing: exact answers have 20 of the 21.
+// No overlap exceeds the threshold of 1, so exact answers reach 20 of the 21 thresholds.
 TEST(Score, ExactAnswersGainNothingByRounding) {
   std::vector<FramePair> frames;
   for (const Box& box : kRoundingBoxes) frames.push_back({box, box, 0});
@@ -51,7 +51,7 @@ TEST(Score, ExactAnswersGainNothingByRounding) {
   }
 }
 
-// Perfect answers: the strict "more than" leaves out the last of the 21 thresholds.
+// Perfect answers: the strict "more than" excludes the last of the 21 thresholds.
 TEST(Score, PerfectTracking) {
   const Box box{10, 20, 30, 40};
   const Score s = score(std::vector<FramePair>(5, {box, box, 0.01}), 640, 480);
@@ -65,8 +65,8 @@ TEST(Score, PerfectTracking) {
 
 TEST(Score, ByHand) {
   const Box truth{100, 100, 20, 10};
-  // First frame: counts as perfect for OTB, not at all for the rest. Then 3 px right and 4 px down;
-  // no target; no answer.
+  // The first frame counts as perfect for OTB and not at all for the other measures. The next
+  // answers are 3 px right and 4 px down, without a target, and missing.
   const std::vector<FramePair> frames = {{truth, Box{0, 0, 1, 1}, 0},
                                          {truth, Box{103, 104, 20, 10}, 0.5},
                                          {std::nullopt, truth, 0.25},
@@ -79,19 +79,21 @@ TEST(Score, ByHand) {
   EXPECT_DOUBLE_EQ(s.precision[4], 1.0 / 3);
   EXPECT_DOUBLE_EQ(s.precision[5], 2.0 / 3);
   EXPECT_DOUBLE_EQ(s.precision_20px, 2.0 / 3);
-  // The frame without an answer counts with the last one: that of the frame without a target.
+  // The frame without an answer counts with the last answer, which is that of the frame without a
+  // target.
   EXPECT_DOUBLE_EQ(s.x_mean_px, 1.5);
   EXPECT_DOUBLE_EQ(s.y_most_px, 4);
   EXPECT_DOUBLE_EQ(s.centre_mean_px, 2.5);
   EXPECT_DOUBLE_EQ(s.frames_per_second, (2 + 4 + 4) / 3.0);
-  // 0.427 of overlap passes 9 of the thresholds (0 to 0.4): a third each, with the first
-  // frame's 20.
+  // An overlap of 0.427 exceeds 9 of the thresholds (0 to 0.4). Each frame has a weight of a third,
+  // and the first one reaches 20 thresholds.
   EXPECT_GT(shared, 0.34);
   EXPECT_LT(shared, 0.35);
   EXPECT_DOUBLE_EQ(s.auc, (20 + 7) / 3.0 / 21);
 }
 
-// 2, 4 and 16 frames/s after the first frame, whose time is that of the start; 0 is no time.
+// The rates after the first frame are 2, 4 and 16 frames/s. The first frame's time is the start-up,
+// and 0 means no time.
 TEST(Score, MedianAndMeanOfTheRates) {
   const Box box{0, 0, 10, 10};
   std::vector<FramePair> frames;

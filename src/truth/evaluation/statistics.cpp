@@ -15,7 +15,7 @@ constexpr int kDraws = 10'000;
 constexpr int kSignDraws = 20'000;
 constexpr std::size_t kMostExact = 16;
 
-// Between the two nearest of sorted values (Hyndman and Fan 1996, type 7).
+// Interpolates between the two nearest of the sorted values (Hyndman and Fan 1996, type 7).
 double quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -23,7 +23,8 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-// Share of sign changes of the differences whose sum is at least as far from 0.
+// The share of sign changes of the differences whose sum is at least as far from 0 as the observed
+// one.
 double sign_test(const std::vector<double>& differences) {
   double sum = 0;
   double size = 0;
@@ -51,7 +52,7 @@ double sign_test(const std::vector<double>& differences) {
     for (const double d : differences) changed += random.uniform() < 0.5 ? -d : d;
     as_far += std::abs(changed) >= wanted ? 1 : 0;
   }
-  // The order as it is counts as one of them.
+  // The observed signs count as one of the sign changes.
   return static_cast<double>(as_far + 1) / (kSignDraws + 1);
 }
 
@@ -104,7 +105,8 @@ std::optional<double> kendall_tau(std::span<const double> a, std::span<const dou
   check(a.size() == b.size(), "two rankings of the same");
   const auto sign = [](double v) { return (v > 0) - (v < 0); };
   std::int64_t agree = 0;
-  std::int64_t in_a = 0;  // pairs that are no tie
+  // Number of pairs that are not tied.
+  std::int64_t in_a = 0;
   std::int64_t in_b = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = i + 1; j < a.size(); ++j) {

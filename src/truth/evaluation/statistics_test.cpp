@@ -12,7 +12,8 @@ namespace airtruth::evaluation {
 namespace {
 
 TEST(Bootstrap, OfTwoValuesIsBetweenThem) {
-  // Draws are both the one, both the other, or their mean: 1/4, 1/4, 1/2.
+  // Both draws are the first value, both are the second, or they are mixed, with probabilities of
+  // 1/4, 1/4 and 1/2.
   const auto interval = bootstrap_mean(std::vector<double>{1, 3});
   ASSERT_TRUE(interval);
   EXPECT_EQ(interval->low, 1);
@@ -38,13 +39,14 @@ TEST(Bootstrap, OfManyIsThatOfTheNormal) {
 TEST(Bootstrap, WeighsAsTold) {
   const std::vector<double> values = {0, 10};
   const auto interval = bootstrap_mean(values, std::vector<double>{1, 0});
-  // A draw that holds the first is 0 whatever else it holds; the second alone has no weight.
+  // Every draw that contains the first value has a mean of 0. A draw of the second alone has no
+  // weight.
   ASSERT_TRUE(interval);
   EXPECT_EQ(interval->low, 0);
   EXPECT_EQ(interval->high, 0);
 }
 
-// Nineteen of twenty 95 % intervals hold the mean that they are of, about.
+// About nineteen of twenty 95 % intervals contain the true mean.
 TEST(Bootstrap, HoldsTheMeanAsOftenAsItSays) {
   Random random(7);
   int held = 0;
@@ -59,7 +61,8 @@ TEST(Bootstrap, HoldsTheMeanAsOftenAsItSays) {
 }
 
 TEST(Paired, ByHand) {
-  // Differences 1, 1, 1, 0: of 16 changes of sign those with all three alike are as far: 4.
+  // The differences are 1, 1, 1, 0. Of 16 sign changes, the 4 in which all three signs are equal
+  // are as far from 0.
   const Paired p = paired(std::vector<double>{2, 3, 4, 5}, std::vector<double>{1, 2, 3, 5});
   EXPECT_DOUBLE_EQ(p.difference, 0.75);
   EXPECT_DOUBLE_EQ(p.p_value, 0.25);
@@ -71,7 +74,8 @@ TEST(Paired, ByHand) {
 }
 
 TEST(Paired, OfManyAgreesWithAllSignsOfFew) {
-  // 17 are drawn, 16 are counted out; the seventeenth changes nothing.
+  // For 17 values the signs are random; for 16 all are enumerated. The seventeenth value changes
+  // nothing.
   std::vector<double> a;
   Random random(5);
   for (int i = 0; i < 16; ++i) a.push_back(0.3 + random.normal());
@@ -85,7 +89,7 @@ TEST(KendallTau, ByHand) {
   EXPECT_EQ(kendall_tau(a, a), 1);
   EXPECT_EQ(kendall_tau(a, std::vector<double>{4, 3, 2, 1}), -1);
   EXPECT_DOUBLE_EQ(*kendall_tau(a, std::vector<double>{1, 2, 4, 3}), 4.0 / 6);
-  // One tie: 5 pairs agree, of 6 and 5.
+  // With one tie, 5 pairs agree, of 6 and 5.
   EXPECT_DOUBLE_EQ(*kendall_tau(a, std::vector<double>{1, 2, 3, 3}), 5 / std::sqrt(30.0));
   EXPECT_FALSE(kendall_tau(a, std::vector<double>{1, 1, 1, 1}));
   EXPECT_FALSE(kendall_tau({}, {}));

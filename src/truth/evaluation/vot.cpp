@@ -16,7 +16,7 @@ constexpr double kSensitivity = 30;
 
 double rounded(double value) { return std::nearbyint(value); }
 
-// Whole pixels first .. last, both within.
+// A range of whole pixels from first to last, both included.
 struct Pixels {
   double left = 0, top = 0, right = 0, bottom = 0;
 };
@@ -38,7 +38,8 @@ double count(const Pixels& p) {
   return std::max(0.0, p.right - p.left + 1) * std::max(0.0, p.bottom - p.top + 1);
 }
 
-// A region's bounds and the pixels that it holds; the toolkit's empty region lies at the origin.
+// The bounds of a region and the pixels that it contains. The toolkit's empty region lies at the
+// origin.
 struct Region {
   Pixels bounds;
   bool is_empty = true;
@@ -73,7 +74,7 @@ std::vector<double> overlaps_of(const Trajectory& frames,
   return result;
 }
 
-// Sums of runs; a curve's point j is over those that are active there.
+// Sums over runs. Point j of a curve covers the runs that are active there.
 struct Curve {
   std::vector<double> sum;
   std::vector<double> active;
@@ -104,7 +105,7 @@ std::optional<double> mean_over(const std::vector<double>& curve, std::pair<int,
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-// From a start to before a failure, or to the end.
+// The frames from a start to the one before a failure, or to the end.
 struct Fragment {
   std::vector<double> overlaps;
   bool failed = false;
@@ -170,7 +171,7 @@ std::vector<std::optional<Box>> truth_of(const VotTruth& truth, const AnchorRun&
   return boxes;
 }
 
-// Frames before the failure; all of them without one.
+// The number of frames before the failure; of all frames where there is no failure.
 std::size_t progress_of(const std::vector<double>& overlaps,
                         std::span<const std::optional<Box>> truth) {
   int grace = kGrace;
@@ -322,7 +323,7 @@ std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
       density[x] += std::exp(-z * z / 2);
     }
   const double all = std::accumulate(density.begin(), density.end(), 0.0);
-  // From the mode on, towards the denser side, until half is held.
+  // Extends the range from the mode towards the denser side until it holds half of the density.
   auto low = std::max_element(density.begin(), density.end()) - density.begin();
   auto high = low;
   double held = density[static_cast<std::size_t>(low)];
