@@ -61,10 +61,10 @@ void list(const std::string& filter, bool sizes, Context& context) {
   if (names.empty()) throw Error(nothing_like(filter));
 }
 
-// The folder of a name: its type.
+// Returns the folder of a name, which is the aircraft's type.
 std::string type_of(const std::string& name) { return name.substr(0, name.find('/')); }
 
-// The first name of each type's folder.
+// Returns the first name in each type's folder.
 std::vector<std::string> one_of_each_type(const std::vector<std::string>& names) {
   std::vector<std::string> first;
   for (const std::string& name : names)

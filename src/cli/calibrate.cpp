@@ -37,7 +37,7 @@ struct CalibrateArguments {
   bool overwrite = false;
 };
 
-// A line a profile: its name and camera, and what an edge of it looks like.
+// One line per profile: its name and camera, and the appearance of its edges.
 std::string profile_lines() {
   std::string lines;
   for (const calibration::CameraProfile& profile : calibration::camera_profiles())
@@ -51,7 +51,7 @@ std::string profile_lines() {
   return lines;
 }
 
-// Which values are not the clip's own alone, and what is doubtful.
+// Reports which values do not come from the clip alone, and which are doubtful.
 void report_sources(const calibration::Calibration& found, Console& console) {
   for (const auto& [key, source] : found.sources)
     console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}",

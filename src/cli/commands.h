@@ -8,14 +8,16 @@
 
 #include "cli/console.h"
 
-// One function a subcommand: it declares its arguments on `app` and returns what to do once they
-// are parsed.
+// One function per subcommand: it declares its arguments on `app` and returns the action to run
+// after they are parsed.
 namespace airtruth::cli {
 
 struct Context {
-  std::function<Console&()> console;  // made after parsing, when --quiet and --json-log are known
+  // Creates the console after parsing, when --quiet and --json-log are known.
+  std::function<Console&()> console;
   std::stop_token stop;
-  int exit_code = 0;  // of a command that did its work and has something to complain of
+  // Exit code of a command that finished its work and has faults to report.
+  int exit_code = 0;
 };
 using Action = std::function<void()>;
 

@@ -34,7 +34,7 @@ std::string time_left(double left_s) {
                     : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-// What a warning quotes may hold any byte. The words are one line, and no control sequence reaches
+// A warning may quote any byte. The text is reduced to one line, and no control sequence reaches
 // the terminal.
 std::string one_line(std::string text) {
   for (char& c : text)
@@ -42,7 +42,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// A failure to write to standard error has nowhere to be reported.
+// A failure to write to standard error cannot be reported anywhere.
 void to_standard_error(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
@@ -54,8 +54,7 @@ std::string log_line(const char* level, const std::string& message, bool json) {
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-// An interrupt is reported once, by the main thread or by the thread that ends the process,
-// whichever comes first.
+// An interrupt is reported once: by the main thread, or by the thread that ends the process.
 std::atomic<bool> interrupt_reported{false};
 std::atomic<bool> interrupt_as_json{false};
 constexpr const char* kInterruptedWords = "interrupted; nothing half-made is left behind";
@@ -142,15 +141,15 @@ void open_standard_streams() {
 
 namespace {
 
-// Work that looks at the stop token ends by itself, and its destructors clear away; what does not
-// is ended here. Below the two seconds that a stop may take.
+// Work that checks the stop token ends by itself, and its destructors remove unfinished output.
+// Other work is ended here. The time allowed is less than the two seconds that a stop may take.
 constexpr timespec kGrace{.tv_sec = 1, .tv_nsec = 300'000'000};
 
 [[noreturn]] void end_now() {
   undo_unfinished();
   if (!interrupt_reported.exchange(true)) {
     const std::string line = log_line("error", kInterruptedWords, interrupt_as_json);
-    // Not through stdio, whose lock another thread may hold for ever.
+    // stdio is not used, because another thread may hold its lock indefinitely.
     if (::write(STDERR_FILENO, line.data(), line.size()) < 0) std::_Exit(kInterrupted);
   }
   std::_Exit(kInterrupted);

@@ -8,13 +8,14 @@
 
 #include "foundation/base/log.h"
 
-// All that the program prints goes through here. Results go to standard output; warnings, errors
-// and progress to standard error. Progress is drawn on a terminal alone and is quiet in a pipe.
+// All output of the program passes through this file. Results go to standard output; warnings,
+// errors and progress go to standard error. Progress appears only on a terminal, not in a pipe.
 namespace airtruth::cli {
 
 struct ConsoleOptions {
-  bool quiet = false;     // warnings and errors alone
-  bool json_log = false;  // one JSON object a line on standard error, in place of text
+  bool quiet = false;  // only warnings and errors
+  // True: standard error gets one JSON object per line in place of text.
+  bool json_log = false;
 };
 
 class Console {
@@ -28,10 +29,12 @@ class Console {
   void end_progress();
   void warning(const std::string& message);
   void error(const std::string& message);
-  void interrupted();  // the error of a run that was interrupted; once for the whole process
-  void result(const std::string& message);  // what the run made; nothing when quiet
-  // To standard output as it stands. Error where it cannot be written; but nothing where its reader
-  // has left, who wants no more of it.
+  // Reports that the run was interrupted, once for the whole process.
+  void interrupted();
+  // Reports what the run made; prints nothing when quiet.
+  void result(const std::string& message);
+  // Writes the text unchanged to standard output. Throws Error where the write fails, except where
+  // the reader has closed the pipe: then the text is dropped.
   void print(const std::string& text);
   Warn warn() {
     return [this](const std::string& message) { warning(message); };
@@ -49,17 +52,17 @@ class Console {
   std::chrono::steady_clock::time_point last_;
 };
 
-inline constexpr int kInterrupted = 130;  // the exit code
+inline constexpr int kInterrupted = 130;  // exit code of an interrupted run
 
 // Opens /dev/null as standard input, output or error where the caller closed it, so that no file
-// that is opened later takes its number and is written over by messages; and makes a pipe that is
-// closed at its other end an error of the write. Called before anything is opened.
+// opened later gets its number and receives messages. Also makes writing to a pipe that is closed
+// at its other end an error of the write. It is called before any file is opened.
 void open_standard_streams();
 
 // Turns SIGINT, SIGTERM and SIGHUP into a request to stop. Where the process has not ended within
-// two seconds, or a second signal comes, what is unfinished is undone and the process ends with
-// 130. Made first thing in main, before any thread, so that every thread inherits the blocked
-// signals.
+// two seconds, or a second signal arrives, unfinished output is removed and the process ends with
+// exit code 130. main() creates it first, before any thread, so that every thread inherits the
+// blocked signals.
 class StopOnSignal {
  public:
   StopOnSignal();

@@ -121,7 +121,7 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
                               plan.intruders));
 }
 
-// Frames and bytes in round numbers: what a sequence costs is known only once it is made.
+// Frames and bytes are rounded, because the cost of a sequence is known only after it is made.
 void plan(const DatasetArguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   dataset::check_sources(catalogue, {});

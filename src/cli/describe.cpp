@@ -8,7 +8,8 @@
 
 namespace airtruth::cli {
 
-// Hidden from --help: the build calls it for what a package installs beside the program.
+// This command is hidden from --help: the build calls it to make the files that a package installs
+// beside the program.
 void add_describe(CLI::App& app, Context&) {
   auto* command = app.add_subcommand(
       "describe", "Write manual pages and bash completion, made from the program's own help");

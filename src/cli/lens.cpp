@@ -47,7 +47,7 @@ std::string words_of(const motion::LensEstimator::Result& found) {
       found.fisheye ? "pinhole" : "fisheye");
 }
 
-// What the user takes from an estimate: a file, or the table to copy.
+// The result of an estimate: a file, or a table to copy.
 void hand_over(const motion::LensEstimator::Result& found,
                const std::string& why,
                lens::ImageSize size,

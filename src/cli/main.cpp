@@ -27,14 +27,14 @@ constexpr const char* kAbout =
     "exact truth of\n"
     "every frame. Start with `airtruth demo`, then `airtruth render SCENE.toml --out DIR`.";
 
-// Frames come and go all the time: keep their memory, in place of taking it from the kernel and
-// clearing it anew.
+// Frames are allocated and released continually. The allocator keeps their memory, so that the
+// kernel need not supply and clear it again.
 void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
-// CLI11 would answer an unknown word with --help as if nothing were wrong.
+// CLI11 alone would answer an unknown word together with --help as if it were valid.
 void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> names;

@@ -11,7 +11,8 @@
 namespace airtruth::cli {
 namespace {
 
-// Text for roff: nothing in it is a command or an escape. What stands in backticks is bold.
+// Escapes text for roff, so that none of it is a command or an escape. Text in backticks becomes
+// bold.
 std::string roff(const std::string& text) {
   std::string result;
   bool is_bold = false;
@@ -38,7 +39,7 @@ std::string roff(const std::string& text) {
     }
   }
   if (is_bold) result += "\\fR";
-  // A line that begins with a dot would be a request.
+  // roff takes a line that begins with a dot as a request.
   return result.starts_with('.') ? "\\&" + result : result;
 }
 
@@ -57,7 +58,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional)
   return options;
 }
 
-// What the value of an option is: CLI11 says "INT:INT in [1 - 64]", "TEXT:{a,b}" or "TEXT".
+// Describes the value of an option. CLI11 writes "INT:INT in [1 - 64]", "TEXT:{a,b}" or "TEXT".
 struct Value {
   std::string name;                  // INT; empty for a flag
   std::string limits;                // "1 - 64", "positive"
@@ -208,7 +209,7 @@ std::string manual_page(const CLI::App& root, const Page& page) {
   return text;
 }
 
-// The command and all below it.
+// The command and all its subcommands.
 void add_pages(const CLI::App& root, const Page& page, std::map<std::string, std::string>& pages) {
   pages[page_name(page.path) + ".1"] = manual_page(root, page);
   for (const CLI::App* command : commands_of(*page.app)) {

@@ -34,7 +34,7 @@ struct MotionArguments {
   bool overwrite = false;
 };
 
-// The lens that the model rotation needs; empty for homography.
+// The lens for the model "rotation"; empty for "homography".
 std::optional<lens::Lens> lens_of(const MotionArguments& arguments, const lens::ImageSize& size) {
   if (arguments.model == "homography") {
     if (!arguments.lens.empty())

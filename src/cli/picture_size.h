@@ -6,7 +6,7 @@
 
 namespace airtruth::cli {
 
-// The width and height of "1280x960", as --size takes them; Error for anything else.
+// Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.
 std::pair<int, int> size_from(const std::string& text);
 
 }  // namespace airtruth::cli

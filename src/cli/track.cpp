@@ -82,8 +82,8 @@ void run_track(Track arguments, Context& context) {
   refuse_mixed(arguments, is_video);
   const Box init = is_video ? box_of(arguments.init) : Box{};
   check_output_folder(arguments.out);
-  // What is wrong with a second tracker is known before the first has run for hours. Programs that
-  // speak TraX are started in their turn alone.
+  // A fault of a second tracker is reported before the first has run for hours. Programs that speak
+  // TraX are started only in their turn.
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
     if (!tracking::is_trax(tracker)) experiment::check_run(arguments.out, options);

@@ -7,11 +7,11 @@
 
 #include "benchmark/comparison/comparison.h"
 
-// A judge's areas under the curve, and what may be said of a mean over clips.
+// Areas under the curve of a classifier, the judge, and statistics of a mean over clips.
 namespace airtruth::comparison {
 
-// Patches of one clip in the order of their frames: what a judge reads of each, and whether it is
-// of the real aircraft.
+// Patches of one clip in the order of their frames: the features that the judge reads, and whether
+// the patch shows the real aircraft.
 struct Patches {
   std::string name;
   std::vector<std::vector<float>> features;
@@ -19,22 +19,24 @@ struct Patches {
   std::vector<std::int64_t> frame;  // one number for both of a pair
 };
 
-// The probability that a real one scores higher than an inserted one (Mann and Whitney 1947); 0.5
-// where there are none of one kind.
+// Returns the probability that a real patch scores higher than an inserted one (Mann and Whitney
+// 1947); 0.5 where either kind is missing.
 double area_under_curve(const std::vector<double>& scores, const std::vector<int>& real);
 
-// max(area, 1 - area): whoever is wrong every time tells the two apart.
+// Returns max(area, 1 - area), because a judge that is always wrong separates the two kinds as well
+// as one that is always right.
 double folded(double area);
 
-// Boosted trees (OpenCV's ml) trained on `train`, asked about `asked`: their area under the curve.
+// Trains boosted trees (OpenCV's ml) on `train`, applies them to `asked` and returns their area
+// under the curve.
 double area_of_judge(const std::vector<Patches>& train, const Patches& asked);
 
-// The clip in `folds` stretches of equal length, each asked about by a judge that is trained on
-// the others; the mean of the folded areas. Pairs stay whole. 0.5 where the clip holds fewer than
-// four pairs a stretch.
+// Splits the clip into `folds` stretches of equal length, applies to each a judge trained on the
+// others, and returns the mean of the folded areas. Both patches of a pair stay in one stretch.
+// Returns 0.5 where the clip holds fewer than four pairs per stretch.
 double area_within(const Patches& clip, int folds);
 
-// The mean (or median) of values, one a clip, with its 95 % interval by bootstrap over the clips
+// The mean (or median) of values, one per clip, with its 95 % interval by bootstrap over the clips
 // (Efron 1979; 2,000 draws). The same seed gives the same interval.
 Interval mean_over_clips(const std::vector<double>& values, std::uint64_t seed);
 Interval median_over_clips(const std::vector<double>& values, std::uint64_t seed);

@@ -12,11 +12,12 @@
 
 namespace airtruth::comparison {
 
-// How the background moves from frame to frame, by phase correlation (Kuglin and Hines 1975) of
-// what is fine in it, without the parts that `aircraft` covers.
+// Measures the shift of the background from frame to frame by phase correlation (Kuglin and Hines
+// 1975) of its fine detail, without the parts that `aircraft` covers.
 class BackgroundShift {
  public:
-  // Pixels; empty for the first frame and where the background shows too little.
+  // Returns the shift in pixels; empty for the first frame and where the background has too little
+  // detail.
   std::optional<Pixel> add(const image::Picture& picture, const std::vector<Box>& aircraft);
 
  private:

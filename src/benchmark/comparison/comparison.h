@@ -17,36 +17,39 @@
 #include "foundation/geometry/transform.h"
 #include "world/scene/scene.h"
 
-// The proof: an inserted aircraft beside a real one, in the same frames of the same clip, at the
-// same apparent size; what they look like, and whether a judge can tell them apart (the paper,
+// Compares an inserted aircraft with a real one, in the same frames of the same clip and at the
+// same apparent size: their appearance, and whether a judge can distinguish them (the paper,
 // section II.D, Figures 8 to 10).
 namespace airtruth::comparison {
 
 namespace fs = std::filesystem;
 
-// A real aircraft's boxes by frame. CSV with a header and columns frame, x, y, width, height (or w,
-// h), from 0; `origin_px` is taken off x and y (1 for MATLAB's).
+// A real aircraft's boxes by frame. The file is CSV with a header and the columns frame, x, y,
+// width, height (or w, h), with frames from 0. `origin_px` is subtracted from x and y (1 for
+// MATLAB's coordinates).
 using RealBoxes = std::map<std::int64_t, Box>;
 RealBoxes read_boxes(const fs::path& file, double origin_px);
 
 struct Options {
   bool overwrite = false;
-  int pairs = 6;  // of the figure
+  int pairs = 6;  // number of pairs in the figure
   // Search for the attitude, and the type among these (empty: types_to_match(), pose.h), whose
   // silhouette is the real one's, and for the sun under which light and dark are where the real one
   // has them (sun.h); else all three are the scene's.
   bool match = true;
   std::vector<std::string> types;
-  // How far the camera looks up; light comes from the world's above. Empty: camera_pitch_deg()
+  // Upward pitch of the camera; light comes from above in the world. Empty: camera_pitch_deg()
   // (place.h).
   std::optional<double> camera_pitch_deg;
-  std::int64_t most_frames = 0;  // 0: all that have a box
+  // Upper bound for the frames; 0 means all frames that have a box.
+  std::int64_t most_frames = 0;
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
-// One number of both, over the frames compared: median and half the span of the middle 68 %.
+// One quantity of both aircraft over the compared frames: its median, and as spread half the span
+// of the middle 68 %.
 struct Pair {
   std::string name;
   double real = 0, real_spread = 0;
@@ -59,14 +62,17 @@ struct Comparison {
   std::vector<Pair> pairs;
   struct Pose {
     std::string aircraft;
-    YawPitchRoll attitude;  // as it is placed in the scene: the camera looks north
-    double overlap = 0;     // of both silhouettes, 0..1; and the real one's aspect over ours
+    // The attitude in the scene, whose camera looks north.
+    YawPitchRoll attitude;
+    double overlap = 0;  // of both silhouettes, 0..1; and the real one's aspect over ours
     double aspect_ratio = 1;
-    std::optional<SunFit> sun;  // empty where too little is seen to tell
+    // Empty where too little is visible to determine the sun.
+    std::optional<SunFit> sun;
   };
-  std::optional<Pose> pose;           // where it was searched
-  double colour_distance = 0;         // median Hellinger distance, real to inserted
-  double colour_distance_within = 0;  // of the real one to itself, half the clip later
+  std::optional<Pose> pose;    // set where it was searched
+  double colour_distance = 0;  // median Hellinger distance between real and inserted
+  // The same distance between the real aircraft and itself half a clip later.
+  double colour_distance_within = 0;
 };
 
 // Renders the scene's first intruder beside the real one, in each frame that has a box, and leaves
@@ -82,13 +88,13 @@ Comparison compare(const fs::path& real,
                    const fs::path& out,
                    const Options& options);
 
-// An interval of 95 % by bootstrap over the clips.
+// A value with its 95 % interval by bootstrap over the clips.
 struct Interval {
   double value = 0, low = 0, high = 0;
 };
 
-// A measure over all clips: the medians of what each clip has, and of the differences, inserted
-// less real. Clips that do not have it are left out.
+// A measure over all clips: the medians of the clips' values and of the differences (inserted minus
+// real). Clips without the measure are left out.
 struct Gap {
   std::string name;
   std::size_t clips = 0;
@@ -96,13 +102,16 @@ struct Gap {
   Interval difference;
 };
 
-// The judge: boosted trees (OpenCV's ml) on gradient orientations, noise, edges and spectrum of
-// patches. Areas under the curve are folded, max(area, 1 - area): a judge that is always wrong
-// tells the two apart as well as one that is always right. 0.5: it cannot tell; where a clip has
-// few pairs, chance alone lifts a folded area above that.
+// The judge's result. The judge is boosted trees (OpenCV's ml) on gradient orientations, noise,
+// edges and spectrum of patches. Areas under the curve are folded, max(area, 1 - area), because a
+// judge that is always wrong distinguishes the two as well as one that is always right. An area of
+// 0.5 means that the judge cannot distinguish them. Where a clip has few pairs, chance alone raises
+// a folded area above 0.5.
 struct Verdict {
-  Interval across;  // asked about each clip in turn, trained on the others
-  Interval within;  // trained and asked within a clip, in stretches of time
+  // Applied to each clip in turn and trained on the others.
+  Interval across;
+  // Trained and applied within a clip, in stretches of time.
+  Interval within;
   struct Clip {
     std::string name;
     std::size_t pairs = 0;
@@ -123,7 +132,8 @@ struct Verdict {
   std::vector<std::pair<std::string, double>> telling;  // features, by how much each alone tells
   std::vector<Gap> gaps;
 };
-// `chance_draws`: of by_chance, each as long as `across` takes; 0: none.
+// `chance_draws` is the number of draws for by_chance; each takes as long as `across`. 0 means
+// none.
 Verdict judge(const std::vector<fs::path>& comparisons,
               std::uint64_t seed,
               int chance_draws = 0,

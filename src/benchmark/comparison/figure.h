@@ -9,13 +9,13 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// Pictures of pairs: a real aircraft and the one beside it, cut out of the same frame.
+// Pictures of pairs: a real aircraft and the inserted one beside it, cropped from the same frame.
 namespace airtruth::comparison {
 
-// A square crop about a box, as the frame has it.
+// A square crop of the frame around a box.
 struct Crop {
   image::Rgb8 picture;
-  Box box;  // in the crop
+  Box box;  // in pixels of the crop
 };
 
 struct FigureRow {
@@ -23,13 +23,15 @@ struct FigureRow {
   Crop real, made;
 };
 
-// Both crops of a pair have one size: the boxes with as much again around the larger one.
+// Makes both crops of a pair with the same size: the larger box, with a margin of its own size
+// around it.
 FigureRow figure_row(const image::Picture& picture,
                      std::int64_t frame,
                      const Box& real,
                      const Box& made);
 
-// Real at 1x and enlarged with its box, the inserted one the same; a row a frame, in two columns.
+// Shows the real aircraft at 1x and enlarged with its box, and the inserted one likewise; one row
+// per frame, in two columns.
 image::Rgb8 figure_of(const std::vector<FigureRow>& rows);
 
 // The same for other pictures to be made of: real ones above inserted ones, kTilePx each.

@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-// What the camera makes of a silhouette's outline, from profiles across it.
+// Measures how the camera reproduces the outline of a silhouette, from profiles across the outline.
 namespace airtruth::comparison {
 
 struct Outline {

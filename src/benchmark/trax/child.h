@@ -17,15 +17,16 @@ namespace airtruth::trax {
 
 using Clock = std::chrono::steady_clock;
 
-// The child ended, hung, or said what it may not.
+// Thrown where the child ended, did not answer in time, or violated the protocol.
 class ChildError : public ProtocolError {
  public:
   using ProtocolError::ProtocolError;
 };
 
-// A tracker's process: a shell command in a process group of its own, so that all that it starts
-// ends with it. What it writes is read at all times, so that it never blocks on us nor we on it; of
-// what is no message at most kMostLog bytes are kept. A stop ends every wait by Interrupted.
+// A tracker's process: a shell command in its own process group, so that all processes that it
+// starts end with it. Its output is read at all times, so that neither side blocks the other. Of
+// output other than messages, at most kMostLog bytes are kept. A stop ends every wait with
+// Interrupted.
 class Child {
  public:
   static constexpr std::size_t kMostLog = std::size_t{1} << 20;
@@ -34,23 +35,24 @@ class Child {
     kSocket     // it connects to 127.0.0.1 at the port TRAX_SOCKET
   };
 
-  // Error where no process can be made.
+  // Throws Error where no process can be created.
   Child(const std::string& command, Transport transport, std::stop_token stop);
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
-  ~Child();  // ends it: SIGTERM, then SIGKILL, to its group alone
+  // Ends the process with SIGTERM, then SIGKILL, sent to its group alone.
+  ~Child();
 
-  // ChildError past the deadline, and where it ended.
+  // Throws ChildError after the deadline, and where the process has ended.
   void write(std::string_view bytes, Clock::time_point deadline);
-  // The next message; what is no message goes to the log.
+  // Returns the next message; other output goes to the log.
   Message read(Clock::time_point deadline);
-  // A message that is there without waiting.
+  // Returns a message that has already arrived; never waits.
   std::optional<Message> read_if_there();
-  // Lets it end by itself until the deadline.
+  // Waits until the process ends, at most until the deadline.
   void wait(Clock::time_point deadline);
 
-  // Just before its last bytes were handed to it. Taken before, since it may answer before we run
-  // again.
+  // The time just before the last bytes were handed to the process. It is taken before the write,
+  // because the process may answer before this thread runs again.
   Clock::time_point asked_at() const { return asked_at_; }
   const std::string& log() const { return log_; }
 
@@ -75,9 +77,12 @@ class Child {
   int from_ = -1;     // protocol
   int chatter_ = -1;  // standard error; with a socket, standard output too
   std::string input_;
-  std::size_t searched_ = 0;  // of input_, for a line's end
-  std::size_t parsed_ = 0;    // of input_, lines taken
-  bool skips_line_ = false;   // a chatter line that was too long to hold
+  // Number of bytes of input_ that were searched for a line's end.
+  std::size_t searched_ = 0;
+  // Number of bytes of input_ whose lines were taken.
+  std::size_t parsed_ = 0;
+  // True within a line that is no message and too long to hold.
+  bool skips_line_ = false;
   Clock::time_point asked_at_;
   std::string log_;
 };

@@ -14,12 +14,12 @@ namespace airtruth::trax {
 
 namespace fs = std::filesystem;
 
-// How pictures reach a tracker: a PNG's path; samples in the message, "image:W;H;rgb;BASE64"; or a
-// PNG's bytes in it, "data:image/png;BASE64".
+// How pictures reach a tracker: as a PNG's path; as samples in the message, "image:W;H;rgb;BASE64";
+// or as a PNG's bytes in the message, "data:image/png;BASE64".
 enum class ImageKind { kPath, kMemory, kBuffer };
 
-// Pictures for one tracker. Files lie in memory (/dev/shm) where there is such a place; the last
-// two are kept, the folder goes with the object.
+// Pictures for one tracker. Files lie in memory (/dev/shm) where that exists. The last two files
+// are kept, and the destructor removes the folder.
 class Images {
  public:
   explicit Images(ImageKind kind);
@@ -27,7 +27,7 @@ class Images {
   Images& operator=(const Images&) = delete;
   ~Images();
 
-  // What a message says of the picture.
+  // Returns the text by which a message refers to the picture.
   std::string hand_over(const image::Picture& picture);
 
  private:

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-// TraX, the protocol between a tracker and what evaluates it (Čehovin 2017, "TraX: The visual
-// Tracking eXchange protocol and library", Neurocomputing 260; the wire as libtrax 4 has it). A
-// message is a line: "@@TRAX:" type, then arguments and properties, each a bare word or in quotes
-// with \" \\ and \n.
+// TraX, the protocol between a tracker and the program that evaluates it (Čehovin 2017, "TraX: The
+// visual Tracking eXchange protocol and library", Neurocomputing 260; the encoding is that of
+// libtrax 4). A message is one line: "@@TRAX:", the type, then arguments and properties. Each of
+// these is a bare word or a quoted string with \" \\ and \n.
 namespace airtruth::trax {
 
 enum class Type { kHello, kInitialize, kFrame, kState, kQuit };
@@ -27,23 +27,23 @@ struct Message {
   std::string_view property(std::string_view key) const;
 };
 
-// What the other side did wrong, in one line.
+// A violation of the protocol by the other side, described in one line.
 class ProtocolError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What every message begins with.
+// The beginning of every message.
 constexpr std::string_view kPrefix = "@@TRAX:";
 
-// Longest line that is taken for a message.
+// Length in bytes of the longest line that is accepted as a message.
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
-// A line without its end; empty for one that is no message but chatter. Throws ProtocolError for a
-// message of no known type or with an open quote.
+// Parses a line without its line end. Returns empty for a line that is not a message. Throws
+// ProtocolError for a message of unknown type or with an open quote.
 std::optional<Message> parse_line(std::string_view line);
 
-// With its line end.
+// Returns the message as a line with its line end.
 std::string line_of(const Message& message);
 
 }  // namespace airtruth::trax

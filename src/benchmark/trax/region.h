@@ -9,11 +9,11 @@
 
 namespace airtruth::trax {
 
-// Where a tracker says that its object is: "x,y,w,h"; a polygon "x0,y0,x1,y1,x2,y2,..."; a mask
-// "mask:x,y,w,h,n0,n1,..." of run lengths by rows, the first run empty; or one number, which says
-// that there is nothing to say. Polygons and masks become the box that bounds them. Empty for one
-// number, and where a number is not finite or the region has no area. Throws ProtocolError for what
-// is no region.
+// Reads the region that a tracker reports: "x,y,w,h"; a polygon "x0,y0,x1,y1,x2,y2,..."; a mask
+// "mask:x,y,w,h,n0,n1,..." of run lengths by rows, of which the first run is empty pixels; or one
+// number, which means that there is no region. Polygons and masks become their bounding box.
+// Returns empty for one number, for numbers that are not finite, and for a region without area.
+// Throws ProtocolError for any other text.
 std::optional<Box> box_of(std::string_view region);
 
 std::string rectangle_of(const Box& box);

@@ -17,42 +17,46 @@ namespace airtruth::trax {
 struct SessionOptions {
   std::string command;
   Child::Transport transport = Child::Transport::kStandard;
-  double start_s = 30;  // for its hello
-  double frame_s = 30;  // for each answer
+  double start_s = 30;  // time limit for its hello message
+  double frame_s = 30;  // time limit for each answer
   std::stop_token stop;
 };
 
-// What a tracker says of itself.
+// A tracker's description of itself.
 struct Hello {
   std::string name;
   int version = 1;
-  ImageKind images = ImageKind::kPath;  // the first that it names
-  bool takes_rectangles = true;         // else polygons, else masks
+  ImageKind images = ImageKind::kPath;  // the first kind that the tracker names
+  bool takes_rectangles = true;         // false: polygons, or else masks
   bool takes_polygons = false;
-  bool is_for_one_run = false;  // has a "vot" property: cannot be begun twice
+  // True for a tracker with a "vot" property, which cannot be started twice.
+  bool is_for_one_run = false;
 };
 
-// Throws ProtocolError for a version or a form of pictures that is not known here.
+// Throws ProtocolError for an unknown version or an unknown kind of pictures.
 Hello hello_of(const Message& message);
 
 struct Reply {
-  std::optional<Box> box;  // empty: it said that it does not know, or nothing that has an area
+  // Empty where the tracker reported no region, or a region without area.
+  std::optional<Box> box;
   double confidence = 1;
-  double seconds = 0;  // from handing over the last bytes of the request to its answer
+  // Seconds from handing over the last bytes of the request to the answer.
+  double seconds = 0;
 };
 
-// A tracker that is spoken to over TraX, versions 1 to 4. All of it throws ProtocolError (a
-// ChildError where the process is at fault) once the tracker crashes, hangs past a deadline, quits,
-// or says what the protocol does not allow; the session is then over.
+// A session with a tracker over TraX, versions 1 to 4. Every function throws ProtocolError
+// (ChildError for a fault of the process) once the tracker crashes, misses a deadline, quits, or
+// violates the protocol. The session is then over.
 class Session {
  public:
   explicit Session(const SessionOptions& options);
   ~Session();
 
   const Hello& hello() const { return hello_; }
-  // Makes the next picture ready; of no request's time.
+  // Prepares the next picture; this time belongs to no request.
   void load(const image::Picture& picture);
-  // Begins on the loaded picture, also a second time where the tracker can.
+  // Starts the tracker on the loaded picture. It may be called again where the tracker allows a
+  // second start.
   Reply initialize(const Box& box);
   Reply frame();
   const std::string& log() const { return child_.log(); }

@@ -70,10 +70,9 @@ struct Moment {
   // By actor: its motion after this moment.
   std::vector<Twist> twists;
   std::vector<annotation::ExactBox> boxes;
-  std::vector<std::optional<Box>>
-      // By actor: the box in which its pixels are searched (its box with a margin); empty: it is
-      // not in view.
-      search;
+  // By actor: the box in which its pixels are searched (its box with a margin); empty: it is not
+  // in view.
+  std::vector<std::optional<Box>> search;
 };
 
 // The bounding box of all the search boxes.
