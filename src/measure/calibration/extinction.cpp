@@ -23,20 +23,25 @@ constexpr double kMostDepressionDeg = 40;
 constexpr int kGroundBands = 14;
 constexpr std::size_t kFewestInCell = 100;
 constexpr int kFewestCells = 10;
-constexpr double kAirlightTrust = 0.1;  // of its value
-constexpr double kDark = 0.03;          // quantile
+// Relative standard deviation of the prior of the airlight.
+constexpr double kAirlightTrust = 0.1;
+// Quantile of the light of a cell that counts as its darkest ground.
+constexpr double kDark = 0.03;
 constexpr double kLeastDarkSpread = 0.01;
 constexpr double kTiltTrustDeg = 3;
 constexpr double kTiltStepDeg = 0.25;
-constexpr double kWeakest = 0.004;  // per km
+// Range of the extinctions that are tried, per km.
+constexpr double kWeakest = 0.004;
 constexpr double kStrongest = 4;
 constexpr double kStep = 1.02;
 constexpr int kParts = 3;
-constexpr double kModelError = 0.15;  // of the value: woods are not the same everywhere
-constexpr double kLeastKnown = 0.5;   // of the value: a larger error is no answer
+// Relative error that is added because dark ground is not the same everywhere.
+constexpr double kModelError = 0.15;
+// Largest relative error of an extinction that is returned.
+constexpr double kLeastKnown = 0.5;
 
-// The darkest ground of one sector at one depression: woods and shadows, which are much alike
-// everywhere, where fields are not.
+// The darkest ground of one sector at one depression. It consists of woods and shadows, which have
+// nearly the same light everywhere; fields do not.
 struct Cell {
   int sector = 0;
   double depression_rad = 0;
@@ -76,7 +81,7 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
     cell.depression_rad = all[i].depression / double(count);
     for (std::size_t c = 0; c < 3; ++c) {
       cell.dark[c] = quantile(all[i].light[c], kDark);
-      // What varies most from place to place varies most within a place.
+      // Ground that varies more within a cell also varies more between cells.
       const double spread = quantile(all[i].light[c], 3 * kDark) - cell.dark[c];
       cell.weight[c] = 1 / (spread * spread + kLeastDarkSpread * kLeastDarkSpread);
     }
@@ -85,14 +90,14 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
   return cells;
 }
 
-// Weighted squared misfit of one channel, with the best ground colour and airlights.
+// The weighted squared misfit of one channel under the best ground colour and airlights.
 double misfit(const std::vector<Cell>& cells,
               std::size_t c,
               const SkyCurves& sky,
               double metres,
               double tilt_rad,
               double beta_per_km) {
-  // The airlights are eliminated one by one (each stands in its own sector's cells alone).
+  // The airlights are eliminated one by one, since each occurs only in the cells of its own sector.
   struct Sector {
     double aa = 0, ag = 0, ay = 0;
   };
@@ -119,9 +124,11 @@ double misfit(const std::vector<Cell>& cells,
 }
 
 struct Fit {
-  std::array<double, 3> beta{};  // per km
+  // Extinction of each channel, per km.
+  std::array<double, 3> beta{};
   double tilt_rad = 0;
-  std::array<double, 3> sigma{};  // where the misfit has grown by its own mean share of one cell
+  // Error: the change at which the misfit has grown by the mean misfit per cell.
+  std::array<double, 3> sigma{};
 };
 
 Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m) {
@@ -186,7 +193,8 @@ SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach) 
   SkyCurves result;
   for (int sector = 0; sector < kSectors; ++sector) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d right = Eigen::Matrix3d::Zero();  // a column for each channel
+    // One column per channel.
+    Eigen::Matrix3d right = Eigen::Matrix3d::Zero();
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();
     int count = 0;
     for (int i = 0; i < kSkyBands; ++i) {
@@ -244,7 +252,7 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
     return std::nullopt;
   }
   const Fit all = fit(cells, sky, altitude_m);
-  // How well it is known: what parts of the view, each with its own fields and woods, say alone.
+  // The error comes from separate fits to parts of the view, each with its own fields and woods.
   std::vector<Fit> parts;
   for (int part = 0; part < kParts; ++part) {
     std::vector<Cell> some;
@@ -275,10 +283,13 @@ std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& gro
                                                const SkyCurves& sky,
                                                double altitude_m) {
   constexpr double kFarDeg = 5, kNearDeg = 10;
-  constexpr double kLeastContrast = 0.02;  // linear light, of near ground to the sky
-  constexpr double kClearerShare = 0.25;   // of the values, below the one that is taken
+  // Least contrast between near ground and sky, linear light.
+  constexpr double kLeastContrast = 0.02;
+  // Share of the values that lie below the one that is used.
+  constexpr double kClearerShare = 0.25;
   constexpr std::size_t kGreen = 1;
-  constexpr double kSeen = 3.912;  // -ln of the 2 % of contrast at which Koschmieder has sight end
+  // -ln(0.02): Koschmieder's visibility is the range at which 2 % of the contrast remain.
+  constexpr double kSeen = 3.912;
   const std::vector<Cell> cells = cells_of(ground);
   std::vector<double> near;
   for (const Cell& cell : cells)

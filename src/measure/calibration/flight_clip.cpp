@@ -14,7 +14,7 @@
 namespace airtruth::calibration {
 namespace {
 
-// Of a plane, the means of squares of `finer` x `finer`.
+// The means of the squares of `finer` x `finer` samples of a plane.
 std::vector<float> in_larger_pixels(const std::vector<float>& fine, int width, int finer) {
   const auto n = static_cast<std::size_t>(finer), w = static_cast<std::size_t>(width);
   const std::size_t columns = w / n, rows = fine.size() / w / n;
@@ -39,14 +39,14 @@ void put(const std::vector<float>& samples, image::Plane& plane) {
       plane.row(y)[x] = static_cast<std::uint8_t>(std::clamp(*sample++ + 0.5F, 0.0F, 255.0F));
 }
 
-// The lens's spread is of light before there are pixels; `finer` ones stand for that. What pixels
-// of light and of spread have of the variance is made up for.
+// The spread in fine pixels. The lens spreads light before it is sampled, which the fine pixels
+// represent. The variance of the pixels of light and of spread is compensated.
 double spread_of_finer(const Injected& what) {
   const double n = what.finer;
   return n * std::hypot(what.point_spread_px, std::sqrt((1 - 1 / (n * n)) / 12));
 }
 
-// Luma from 0 to 1: blur in linear light, larger pixels, the tone curve.
+// Coded luma, 0 to 1: the light is blurred, averaged over larger pixels and tone-mapped.
 std::vector<float> coded_of(std::vector<float> luma, int width, const Injected& what) {
   const image::ToneCurve& tone = what.sensor.tone;
   for (float& v : luma) v = tone.linear_from_coded_clamped(v);
@@ -58,14 +58,14 @@ std::vector<float> coded_of(std::vector<float> luma, int width, const Injected& 
   return luma;
 }
 
-// What lens and sensor make of a picture: a smaller one, if its pixels are finer.
+// The picture after lens and sensor; it is smaller by the factor `what.finer`.
 image::Picture taken(const image::Picture& fine, const Injected& what, std::int64_t frame) {
   const int width = fine.width / what.finer, height = fine.height / what.finer;
   image::Picture picture = image::make_picture(width, height, fine.colour);
   for (const std::size_t p : {1U, 2U}) {
     image::Plane& plane = picture.planes[p];
     auto samples = in_larger_pixels(samples_of(fine.planes[p]), fine.planes[p].width, what.finer);
-    // In chroma samples of two luma pixels; light of luma's spread is in chroma too.
+    // In chroma samples of two luma pixels. The spread of luma also applies to chroma.
     const double spread_px = std::hypot(what.sensor.chroma_spread_px, what.point_spread_px);
     if (what.sensor.chroma_spread_px > 0)
       composite::blur(samples, plane.width, plane.height, composite::gaussian(spread_px / 2));
@@ -90,8 +90,8 @@ image::Picture taken(const image::Picture& fine, const Injected& what, std::int6
   return picture;
 }
 
-// Square panels with a bright square turned on each, every pixel by the light of 8x8 places. In a
-// picture of finer pixels they are as much larger.
+// Paints square panels with a rotated bright square on each; every pixel is the mean light of 8x8
+// places. In a picture of finer pixels the panels are larger by the same factor.
 void paint_panels(image::Picture& picture, int finer) {
   constexpr int kPlaces = 8;
   const int side = 96 * finer;

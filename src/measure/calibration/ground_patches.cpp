@@ -12,7 +12,8 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr int kGroundStep = 2;  // pixels between samples
+// Spacing of the samples, pixels.
+constexpr int kGroundStep = 2;
 constexpr double kPatchDepressionDeg = 2;
 
 std::vector<SeenLight> ground_of(const GroundView& view,

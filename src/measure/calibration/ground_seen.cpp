@@ -13,15 +13,20 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kNearest = 2.5;       // heights
-constexpr double kShareSeen = 0.6;     // of a square's pixels
-constexpr double kFewestPixels = 3;    // of a square
-constexpr double kMostPixels = 1.5e6;  // of a view that are looked at
+// Least range of a square, heights.
+constexpr double kNearest = 2.5;
+// Least share of the pixels of a square that a view shows, and the fewest pixels of a square.
+constexpr double kShareSeen = 0.6;
+constexpr double kFewestPixels = 3;
+// Largest number of pixels that are sampled in a view.
+constexpr double kMostPixels = 1.5e6;
 
-// Borders of the bands of far ground, degrees below the horizon; not within a pixel of it.
+// Borders of the bands of far ground, degrees below the horizon. Bands within one pixel of the
+// horizon are not used.
 constexpr std::array kBordersDeg{0.15, 0.3, 0.45, 0.6, 0.8, 1.05, 1.35, 1.7, 2.1, 2.6, 3.2};
 constexpr std::size_t kBands = kBordersDeg.size() - 1;
-constexpr double kFewestInBand = 1000;  // pixels of all views
+// Fewest pixels of a band, over all views.
+constexpr double kFewestInBand = 1000;
 
 struct Sum {
   double count = 0, range = 0, depression_rad = 0;
@@ -42,7 +47,7 @@ int sector_of(const Eigen::Vector2d& way) {
   return calibration::sector_of(std::atan2(way.y(), way.x()));
 }
 
-// Of one view after the other.
+// Collects the squares and bands, one view after the other.
 class Gatherer {
  public:
   Gatherer(const lens::Lens& lens, const image::Mask* own_aircraft, const image::ToneCurve& tone)
@@ -111,8 +116,10 @@ class Gatherer {
   double step_rad_ = 0;
   std::vector<PixelRay> rays_;
   std::map<Place, int> numbers_;
-  std::array<double, kBands + 1> borders_{};  // heights, 0 where a band would lie within a pixel
-  std::vector<Sum> bands_;                    // of each sector one after the other
+  // Ranges of the borders, heights; 0 for a border within a pixel of the horizon.
+  std::array<double, kBands + 1> borders_{};
+  // The bands of one sector after those of the other.
+  std::vector<Sum> bands_;
   GroundSeen seen_;
 };
 

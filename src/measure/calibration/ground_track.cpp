@@ -13,11 +13,17 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kNear = 0.8, kFar = 14;  // ground that is looked at, heights from the camera
-constexpr double kCell = 0.1;             // of the straightened view, heights
-constexpr double kMostBetween = 3;        // heights from one view to the next
-constexpr double kEvenOver = 1.1;         // heights
-constexpr double kApart = 2.5;            // heights between views that tell the horizon
+// Lengths in heights: multiples of the camera's height above the ground.
+// Range of the ground that is used, measured from the camera.
+constexpr double kNear = 0.8, kFar = 14;
+// Size of a cell of the rectified view.
+constexpr double kCell = 0.1;
+// Largest distance between one view and the next.
+constexpr double kMostBetween = 3;
+// Size of the window in which the contrast is equalised.
+constexpr double kEvenOver = 1.1;
+// Distance between the views whose agreement determines the horizon.
+constexpr double kApart = 2.5;
 constexpr double kLeastAgreement = 0.25;
 constexpr double kTiltStepDeg = 0.25;
 constexpr int kCoarse = 4, kMostTiltSteps = static_cast<int>(kMostTiltDeg / kTiltStepDeg);
@@ -25,18 +31,20 @@ static_assert(kMostTiltSteps % kCoarse == 0);
 constexpr std::size_t kFewestViews = 4;
 constexpr int kSide = 2 * static_cast<int>(kFar / kCell) + 1;
 constexpr int kReach = static_cast<int>(kMostBetween / kCell);
-constexpr int kAround = 4;  // cells about where views farther apart are expected
-// What is laid over another must not come in again from the other side.
+// Search radius, in cells, about the expected displacement of views that are farther apart.
+constexpr int kAround = 4;
+// Size of the padded view: the cyclic correlation must not wrap around.
 constexpr int kPadded = kSide + static_cast<int>(2 * kApart / kCell) + kAround + 1;
 static_assert(2 * kApart > kMostBetween);
 
-// Spectra of a view that is straightened to the plane (rows north, columns east): of its contrast,
-// 0 where nothing is seen, and of where something is.
+// Spectra of a view that is rectified to the ground plane (rows north, columns east): of its
+// contrast, which is 0 where nothing is seen, and of the mask of what is seen.
 struct Straightened {
   cv::Mat spectrum, seen_spectrum;
 };
 
-// Of a place that nothing is known of the value is 0, and the weight.
+// The light with its local mean subtracted and its local contrast equalised. Cells that are not
+// seen have the value 0.
 cv::Mat evened(const cv::Mat& light, const cv::Mat& seen) {
   const int window = static_cast<int>(kEvenOver / kCell) | 1;
   const cv::Size size(window, window);
@@ -51,7 +59,8 @@ cv::Mat evened(const cv::Mat& light, const cv::Mat& seen) {
       const float n = count.at<float>(y, x);
       const float mean = sum.at<float>(y, x) / n;
       const float variance = squares.at<float>(y, x) / n - mean * mean;
-      constexpr float kLeastVariance = 0.25F;  // code values, squared
+      // Squared code values.
+      constexpr float kLeastVariance = 0.25F;
       result.at<float>(y, x) = std::clamp(
           (light.at<float>(y, x) - mean) / std::sqrt(variance + kLeastVariance), -3.0F, 3.0F);
     }
@@ -101,18 +110,20 @@ cv::Mat correlated(const cv::Mat& from, const cv::Mat& to) {
   return result;
 }
 
-// Where between -1/2 and 1/2 a parabola through three values beside one another is highest.
+// The position, from -1/2 to 1/2, of the maximum of a parabola through three neighbouring values.
 double peak(double before, double middle, double after) {
   const double bend = 2 * middle - before - after;
   return bend > 0 ? std::clamp(0.5 * (after - before) / bend, -0.5, 0.5) : 0;
 }
 
 struct Laid {
-  Eigen::Vector2d moved;  // of the camera, heights
+  // Motion of the camera, heights.
+  Eigen::Vector2d moved;
   double agreement = 0;
 };
 
-// Where the ground of `from` lies in `to`, within so many cells of `expected` (heights).
+// Registers the ground of `from` in `to`. The search covers the given number of cells about
+// `expected` (heights).
 std::optional<Laid> laid_over(const Straightened& from,
                               const Straightened& to,
                               const Eigen::Vector2d& expected,
@@ -125,7 +136,7 @@ std::optional<Laid> laid_over(const Straightened& from,
     const float n = counts.at<float>(wrapped(row), wrapped(column));
     return n < enough ? -1.0 : double(products.at<float>(wrapped(row), wrapped(column)) / n);
   };
-  // Ground that the camera comes to lies farther in the earlier view.
+  // Ground that the camera approaches is farther away in the earlier view.
   const int row0 = static_cast<int>(std::lround(expected.x() / kCell));
   const int column0 = static_cast<int>(std::lround(expected.y() / kCell));
   int row = 0, column = 0;
@@ -140,7 +151,7 @@ std::optional<Laid> laid_over(const Straightened& from,
       best};
 }
 
-// The axis to the right of where the views look on the whole, level.
+// The level axis to the right of the mean direction of view.
 Vector3 right_of(const std::vector<GroundView>& views) {
   Vector3 ahead = Vector3::Zero();
   for (const GroundView& view : views) ahead += view.cam_from_world.conjugate() * Vector3(0, 0, 1);
@@ -152,7 +163,7 @@ GroundTrack track_at(const std::vector<GroundView>& views,
                      const lens::Lens& lens,
                      const image::Mask* own_aircraft,
                      double horizon_rad) {
-  // What is level ahead lies below the horizon that is now taken to be higher.
+  // The assumed horizon is higher, so the direction that was level lies below it.
   const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(views)));
   const auto count_of_views = static_cast<int>(views.size());
   std::vector<Straightened> flat(views.size());
@@ -161,7 +172,8 @@ GroundTrack track_at(const std::vector<GroundView>& views,
          ++k)
       flat[k] = straightened(views[k], lens, own_aircraft, level_from_world);
   });
-  std::vector<std::optional<Laid>> next(views.size());  // of each view over the one before
+  // Registration of each view with the one before it.
+  std::vector<std::optional<Laid>> next(views.size());
   cv::parallel_for_({1, count_of_views}, [&](const cv::Range& range) {
     for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
          ++k)
@@ -180,7 +192,7 @@ GroundTrack track_at(const std::vector<GroundView>& views,
       end_run(k);
   }
   end_run(flat.size());
-  // Views farther apart.
+  // The agreement of views that are farther apart.
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0, j = 0; i < best.places.size(); ++i) {
@@ -213,7 +225,8 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
     if (stop.stop_requested()) throw Interrupted();
     return track_at(views, lens, own_aircraft, radians(kTiltStepDeg) * steps);
   };
-  std::map<int, double> known;  // agreement by steps of tilt
+  // The agreement by the number of tilt steps.
+  std::map<int, double> known;
   const auto agreement = [&](int steps) {
     const auto [found, is_new] = known.try_emplace(steps, 0.0);
     if (is_new) found->second = at(steps).agreement;

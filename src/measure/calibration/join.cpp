@@ -20,7 +20,7 @@ struct Mean {
   double value = 0, weights = 0, chi_square = 0;
 };
 
-// `between`: a variance that every measurement has beside its own.
+// `between`: a variance that is added to that of every measurement.
 Mean weighted_mean(const std::vector<Estimate>& all, double between) {
   Mean mean;
   for (const Estimate& e : all) {
@@ -35,7 +35,8 @@ Mean weighted_mean(const std::vector<Estimate>& all, double between) {
   return mean;
 }
 
-// The variance under which chi-square is what it is expected to be.
+// The variance between measurements under which chi-square has its expected value (Paule and Mandel
+// 1982).
 double variance_between(const std::vector<Estimate>& all) {
   const double expected = double(all.size()) - 1;
   double low = 0, high = 0;
@@ -48,7 +49,7 @@ double variance_between(const std::vector<Estimate>& all) {
   return 0.5 * (low + high);
 }
 
-// Errors of 0 are not known ones.
+// Replaces errors of 0, which mean that the error is not known.
 void fill_errors(std::vector<Estimate>& all) {
   std::vector<double> known;
   for (const Estimate& e : all)
@@ -63,7 +64,7 @@ void fill_errors(std::vector<Estimate>& all) {
     if (!(e.sigma > 0)) e.sigma = usual;
 }
 
-// What one clip measures.
+// The value of one clip.
 struct ClipValue {
   Estimate value;
   std::string clip;
@@ -73,7 +74,7 @@ std::string words_of(const ClipValue& of) {
   return fmt::format("{:.3g} +- {:.2g} ({})", of.value.value, of.value.sigma, of.clip);
 }
 
-// Names the clips that lie farthest to either side of `middle`, by their errors.
+// A message that names the clips farthest below and above `middle`, in units of their errors.
 std::string contradiction(const std::vector<ClipValue>& all, double middle) {
   const auto off = [&](const ClipValue& of) {
     return of.value.sigma > 0 ? (of.value.value - middle) / of.value.sigma : 0;
@@ -90,7 +91,7 @@ std::string contradiction(const std::vector<ClipValue>& all, double middle) {
       words_of(*most));
 }
 
-// Of the clips that have the key; a readout upwards is negative.
+// The values of the clips that have the key; the readout time of an upward readout is negative.
 std::vector<ClipValue> values_by_clip(const std::vector<Calibration>& clips,
                                       const std::string& key) {
   std::vector<ClipValue> all;

@@ -19,7 +19,7 @@ constexpr std::array<const char*, 4> kOptics = {"optics.point_spread_px",
                                                 "optics.sharpening",
                                                 "optics.sharpening_px",
                                                 "sensor.chroma_spread_px"};
-// What a profile may say: all that belongs to the camera and not to one flight's light.
+// The keys that a profile may have: all values that belong to the camera and not to one flight.
 constexpr std::array<const char*, 8> kProfileKeys = {"optics.point_spread_px",
                                                      "optics.sharpening",
                                                      "optics.sharpening_px",
@@ -29,9 +29,11 @@ constexpr std::array<const char*, 8> kProfileKeys = {"optics.point_spread_px",
                                                      "sensor.chroma_spread_px",
                                                      "shutter.readout_s"};
 constexpr const char* kReadout = "shutter.readout_s";
-// Of the weight of a value: more is the clip's own, less the profile's.
+// Share of the clip's own weight from which on a value counts as the clip's own; below 1 minus this
+// share it counts as the profile's.
 constexpr double kOwnShare = 0.95;
-constexpr double kDoubted = 3;  // of their common error, that a clip and its profile differ by
+// A clip contradicts its profile if they differ by more than this multiple of their common error.
+constexpr double kDoubted = 3;
 
 std::vector<CameraProfile> read_library(std::string_view text) {
   constexpr std::string_view kHead = "profile,";
@@ -49,7 +51,7 @@ std::vector<CameraProfile> read_library(std::string_view text) {
   return profiles;
 }
 
-// "0.42 +- 0.1"
+// The value and its error as text, such as "0.42 +- 0.1".
 std::string with_error(const Estimate& e) {
   return fmt::format("{:.3g} +- {:.2g}", e.value, e.sigma);
 }
@@ -70,7 +72,7 @@ void put(Calibration& c, const std::string& key, Estimate value) {
   c.missing.erase(key);
 }
 
-// The share of the clip's own word in what it and the profile make together.
+// The share of the clip's own value in its combination with the profile.
 double own_share(const Estimate& own, const Estimate& prior) {
   if (!(own.sigma > 0)) return 1;
   if (!(prior.sigma > 0)) return 0;
@@ -168,7 +170,8 @@ CameraProfile usual_camera() {
       values.push_back(found->second.value);
       errors.push_back(found->second.sigma);
     }
-    if (values.size() < 2) continue;  // one camera says nothing on others
+    // One camera does not show the spread between cameras.
+    if (values.size() < 2) continue;
     const double middle = median_between(values);
     double squares = 0;
     for (const double v : values) squares += (v - middle) * (v - middle);

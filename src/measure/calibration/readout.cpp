@@ -12,13 +12,13 @@
 namespace airtruth::calibration {
 namespace {
 
-// Shear that corners a few tenths of a pixel off make by themselves (0.2 px, 100 corners, 200 px
-// from the middle in the mean, and the mean over some 5 frames). Frames that are copies of one
-// another, or a camera on a tripod, have none at all, and say nothing for it.
+// The shear that errors of the corners cause (0.2 px, 100 corners, at a mean distance of 200 px
+// from the middle, averaged over some 5 frames). Frames that are copies of one another, and a
+// camera on a tripod, have a smaller shear, and do not show that the readout time is small.
 constexpr double kShearNoise = 5e-5;
 
-// Without what is faster than a third of the frame rate, where the differentiator is no longer
-// exact: binomial weights. NaN where a neighbour is.
+// A low-pass filter with binomial weights. It removes what is faster than a third of the frame
+// rate, where the differentiator is no longer exact. NaN if a neighbour is NaN.
 double slow_part(const std::vector<double>& values, std::size_t k) {
   constexpr std::array<double, 9> kWeights = {1, 8, 28, 56, 70, 56, 28, 8, 1};
   double sum = 0;
@@ -29,9 +29,12 @@ double slow_part(const std::vector<double>& values, std::size_t k) {
 }
 
 struct Move {
-  Pixel moved;     // of the centre
-  double shear;    // what a turn does not explain
-  double stretch;  // what a zoom does not explain
+  // Motion of the centre of the picture.
+  Pixel moved;
+  // The part of the shear that a rotation of the picture does not explain.
+  double shear;
+  // The part of the vertical stretch that a zoom does not explain.
+  double stretch;
 };
 
 std::optional<Move> move_of(const std::optional<Homography>& h, const Pixel& centre) {
@@ -45,12 +48,14 @@ std::optional<Move> move_of(const std::optional<Homography>& h, const Pixel& cen
 
 using Pairs = std::vector<std::pair<double, double>>;
 
-// Change of speed over height against shear and stretch, of one shot's frames.
+// Appends, for the frames of one shot, the change of speed over the height of the picture together
+// with the shear and the stretch.
 void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
-  // Shear (0) and stretch (1), frame by frame; NaN: not known.
+  // Shear (0) and stretch (1) of each frame; NaN if not known.
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::array<std::vector<double>, 2> changes, bends;
-  std::vector<Pixel> places;  // of the centre, added up; bridged steps keep still
+  // The summed motion of the centre; an unknown step counts as no motion.
+  std::vector<Pixel> places;
   for (const auto& step : steps) {
     const auto here = move_of(step, centre);
     const Pixel moved = here ? here->moved : Pixel(0, 0);
@@ -87,7 +92,7 @@ std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
     why = "the motion of too few frames is known";
     return std::nullopt;
   }
-  // Robust line through the origin: least squares, weights of Geman and McClure.
+  // A robust line through the origin: least squares with the weights of Geman and McClure.
   double slope = 0, error = 0, scale = 1e9;
   for (int round = 0; round < 12; ++round) {
     double sxx = 0, sxy = 0, rest = 0, n = 0;

@@ -9,7 +9,7 @@
 namespace airtruth::calibration {
 namespace {
 
-// The second integral of a Gaussian's step.
+// The second integral of a Gaussian step (an error function).
 double bend(double x, double sigma) {
   const double z = x / sigma;
   const double step = 0.5 * (1 + std::erf(z / std::sqrt(2.0)));
@@ -41,7 +41,8 @@ StepModel::StepModel(double spread_px,
   for (std::size_t i = 0; i < bends.size(); ++i)
     bends[i] = bend(double(i) / kAPixel - kHalf - 1, spread_px);
   for (std::size_t i = 0; i < kCount; ++i) {
-    // Through two pixels: what is drawn is of whole ones, and so is the spread.
+    // The second difference integrates over two boxes of a pixel: the light is that of whole
+    // pixels, and so is the spread.
     const double risen = bends[i + 2 * kAPixel] - 2 * bends[i + kAPixel] + bends[i];
     heights_[i] = (tone.coded_from_linear(dark + (bright - dark) * risen) - low) / (high - low);
   }

@@ -11,10 +11,10 @@
 namespace airtruth::calibration {
 namespace {
 
-// Shown to two digits of its error, and to no fewer than three of its own.
+// A number as text, with four significant digits.
 std::string shown(double value) { return fmt::format("{:.4g}", value); }
 
-// Whose the value is.
+// The origin of the value in words.
 std::string source_words(const Calibration& c, const std::string& key) {
   const auto source = c.sources.find(key);
   return source == c.sources.end() ? (c.clips > 1 ? "the clips' own" : "the clip's own")
@@ -51,7 +51,7 @@ constexpr std::array<Key, 14> kKeys = {{
     {"light", "sun_elevation_deg", "above the horizon"},
 }};
 
-// Where the horizon is not had from every frame: why not.
+// If not every frame gives a horizon: the reason.
 std::string horizon_line(const Calibration& c) {
   if (const auto why = c.missing.find("horizon"); why != c.missing.end())
     return "# horizon: not to be had: " + why->second + "\n";
