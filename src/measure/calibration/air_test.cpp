@@ -11,14 +11,14 @@
 #include "foundation/base/seed.h"
 #include "measure/calibration/ground_patches.h"
 
-// Air over ground that no two pictures share, so that only its darkest parts tell.
+// Air over ground that no two pictures share, so that only the darkest ground gives the extinction.
 namespace airtruth::calibration {
 namespace {
 
 constexpr double kAltitudeM = 120;
 constexpr std::array<double, 3> kAirlight{0.5, 0.6, 0.7}, kExtinctionPerKm{0.24, 0.3, 0.36};
 
-// Woods and fields of any light, the same over a square.
+// Woods and fields with random light, constant over a square.
 double own_light(const Vector3& place_m, std::uint64_t land) {
   constexpr double kSquareM = 80;
   const auto north = static_cast<std::uint64_t>(std::lround(place_m.x() / kSquareM) + 1000);
@@ -27,7 +27,7 @@ double own_light(const Vector3& place_m, std::uint64_t land) {
   return random.uniform() < 0.5 ? 0.03 : random.uniform(0.08, 0.3);
 }
 
-// Seen looking north, level.
+// A picture of the land by a level camera that looks north.
 image::Picture hazy_land(const lens::Lens& lens,
                          std::uint64_t land,
                          const std::array<double, 3>& extinction_per_km = kExtinctionPerKm) {
@@ -65,7 +65,7 @@ TEST(AirMeter, TellsExtinctionFromTheDarkestGround) {
   ASSERT_TRUE(air.extinction_per_km) << air.why_no_extinction;
   ASSERT_TRUE(air.airlight) << air.why;
   for (std::size_t c = 0; c < 3; ++c) {
-    // The method alone is an eighth too low here.
+    // The method itself is an eighth too low here.
     EXPECT_NEAR((*air.extinction_per_km)[c].value, kExtinctionPerKm[c], 0.2 * kExtinctionPerKm[c]);
     EXPECT_NEAR((*air.airlight)[c].value, kAirlight[c], 0.05 * kAirlight[c]);
   }
@@ -74,8 +74,8 @@ TEST(AirMeter, TellsExtinctionFromTheDarkestGround) {
   EXPECT_FALSE(blind.air().extinction_per_km);
 }
 
-// Never hazier than the air is: at the camera's height, and where that is taken for higher than it
-// is. Thick haze is told from clear air.
+// The visibility is never less than the true one, whether the height is known or assumed too high.
+// Thick haze is distinguished from clear air.
 TEST(AirMeter, TheHorizonsLookBoundsTheVisibilityFromBelow) {
   constexpr double kSeen = 3.912;
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, {640, 480});

@@ -55,7 +55,8 @@ class CalibrationCache : public testing::Test {
   fs::path root_;
 };
 
-// Numbers whose decimal fraction never ends: the cached value is the measured one to the last bit.
+// For numbers without a finite decimal fraction the cached value equals the measured one to the
+// last bit.
 TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   Calibration c;
   c.width = 640;

@@ -10,7 +10,7 @@
 #include "measure/calibration/step_response.h"
 #include "picture/composite/sensor.h"
 
-// What a camera does to light, put into a virtual flight, is measured out of it again.
+// Camera effects that are applied to a virtual flight are measured from its clip.
 namespace airtruth::calibration {
 namespace {
 
@@ -74,9 +74,9 @@ TEST(Calibrate, MeasuresTheEdgesThatWereInjected) {
   expect_within(c, "optics.sharpening_px", 1.2, 0.1);
 }
 
-// Fields, woods and the own aircraft are softer than a step, and hedges run along their edges: what
-// becomes of an edge is measured better than spread, amount and radius, which stand in for one
-// another.
+// Fields, woods and the own aircraft are softer than a step, and hedges run along their edges. The
+// response to an edge is therefore measured better than spread, amount and radius, whose errors
+// compensate one another.
 TEST(Calibrate, MeasuresWhatBecomesOfEdgesOverTheGroundAlone) {
   struct Case {
     std::uint64_t seed;

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kSpreadPx = 1.0;
 
-// A step through a Gaussian and two pixels: what is drawn has whole pixels, and so has the spread.
+// A step through a Gaussian and two boxes of a pixel: the light is that of whole pixels, and so is
+// the spread.
 double step(double place_px, double spread_px = kSpreadPx) {
   constexpr int kPlaces = 4;
   double sum = 0;
@@ -29,7 +30,7 @@ double step(double place_px, double spread_px = kSpreadPx) {
   return sum / (kPlaces * kPlaces);
 }
 
-// Slanted bars; along half of their edges lies a line on the dark side.
+// A picture of slanted bars. Half of their edges have a line on the dark side.
 image::Picture bars(double line_depth, double shift_px, double contrast = 0.25) {
   constexpr int kWidth = 640, kHeight = 200, kFine = 20;
   constexpr int kMost = 60;  // px from the edge that anything is seen of it
@@ -87,7 +88,7 @@ TEST(Edges, LinesAlongSomeOfThemAreNoSharpening) {
   EXPECT_LT(found.sharpening.value, 0.05);
 }
 
-// Cb rises as luma's light does through a wider Gaussian, whatever luma's sharpness is.
+// Cb crosses the same edge as luma through a wider Gaussian, whatever the sharpness of luma is.
 TEST(Edges, ChromaThatIsSofterThanLuma) {
   for (const double beyond_px : {1.5, 3.0}) {
     EdgeMeter meter(nullptr, {});
@@ -140,7 +141,7 @@ TEST(Edges, WithoutColourSayNothingOfChroma) {
   EXPECT_EQ(why, "the clip shows 0 sharp edges with a clean step of colour; it takes 12");
 }
 
-// What does not move, as the own aircraft, says no more in ten frames than in one.
+// An edge that does not move, such as one of the own aircraft, counts once in ten frames.
 TEST(Edges, ThatStayWhereTheyAreAreOne) {
   EdgeMeter meter(nullptr, {});
   for (int frame = 0; frame < 10; ++frame) meter.add(bars(0, 0), std::nullopt);
@@ -153,8 +154,7 @@ TEST(Edges, ThatStayWhereTheyAreAreOne) {
   EXPECT_EQ(meter.profile().edges, once.profile().edges);
 }
 
-// Clear and faint edges of one sharpness, through a real encoder: it takes sharpness from the faint
-// ones.
+// High and low edges of equal sharpness pass through a real encoder, which softens the low ones.
 TEST(Edges, ThatACodecSoftenedGiveWayToThoseThatStandOutFromItsStep) {
   constexpr int kQuantiser = 27;
   constexpr double kStep = 14.14;  // 0.625 * 2^(27/6)
@@ -192,8 +192,8 @@ TEST(Edges, NoneIsNoAnswer) {
   EXPECT_EQ(why, "the clip shows 0 clean straight edges; it takes 12");
 }
 
-// Edges of a world that is softer here and sharper there, some with lines along them, through a
-// mask; every value by sums, not by the model that is fitted.
+// Edges of different softness in the world, some with lines along them, through an unsharp mask.
+// All values are computed by sums, independently of the model that is fitted.
 std::vector<StepEdge> masked_edges(double spread_px, double amount, double radius_px) {
   constexpr double kLow = 0.35, kHigh = 0.6, kFine = 0.1;
   std::vector<StepEdge> edges;
@@ -248,7 +248,7 @@ TEST(StepResponse, OfEdgesThatAreSofterThanSteps) {
   }
 }
 
-// From 10 to 90 % a Gaussian takes 2.5631 of its standard deviations.
+// A Gaussian step rises from 10 to 90 % over 2.5631 standard deviations.
 TEST(StepResponse, SpreadOfAnEdgeIsTheGaussians) {
   for (const double sigma : {0.8, 1.5}) {
     const double found = edge_spread_px({{sigma, 0}, {0, 0}, {1, 0}}, 0.5, 0.505, {});

@@ -9,7 +9,8 @@
 #include "measure/calibration/same_ground.h"
 #include "world/synthetic/flight.h"
 
-// Ground that is seen again: where the camera was over it, and what the air does to its light.
+// Ground that is seen again: the path of the camera over it, and the effect of the air on its
+// light.
 namespace airtruth::calibration {
 namespace {
 
@@ -19,8 +20,8 @@ struct Flown {
   std::vector<GroundView> views;
 };
 
-// A frame a second, each with its true attitude, but what it takes for level ahead lies so much
-// below the true horizon.
+// One frame per second, each with its true attitude, except that the assumed horizon ahead lies
+// `horizon_deg` below the true one.
 Flown flown(double horizon_deg) {
   synthetic::FlightOptions o;
   o.seed = 9;
@@ -72,8 +73,8 @@ TEST(GroundTrack, WithoutGroundThereIsNone) {
   EXPECT_THROW(track_ground(views, lens, nullptr, stop.get_token()), Interrupted);
 }
 
-// Squares of any light, come to from afar, and what lies beyond them. The sky was seen in one half
-// of the sectors alone, brighter towards the sun, and is a little off.
+// Squares with random light that the camera approaches, and the ground beyond them. The sky is seen
+// in half of the sectors only, is brighter towards the sun, and has a small error.
 TEST(SameGround, TellsExtinctionAndAirlight) {
   const std::array<double, 3> extinction_per_km{0.27, 0.3, 0.36};
   const auto airlight = [](std::size_t c, int sector) {
@@ -113,12 +114,12 @@ TEST(SameGround, TellsExtinctionAndAirlight) {
         found->extinction_per_km[c].value, extinction_per_km[c], 0.02 * extinction_per_km[c]);
     EXPECT_NEAR(found->airlight[c].value, airlight(c, 5), 0.02 * airlight(c, 5));
   }
-  // From one place alone nothing is seen again, and what lies far is not near.
+  // From a single place no ground is seen at two ranges.
   GroundSeen near = seen;
   near.far.clear();
   std::erase_if(near.squares, [](const SquareSeen& s) { return s.range > 5; });
   EXPECT_FALSE(fading_of_same_ground(near, sky, kAltitude_m));
-  // Nor where there is much ground, but each square is seen once.
+  // There is no answer either if each square is seen only once, however many there are.
   GroundSeen once;
   for (int square = 0; square < 1000; ++square)
     once.squares.push_back(

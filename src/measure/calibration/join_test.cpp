@@ -17,8 +17,8 @@ TEST(Join, AgreeingClipsMakeTheirWeightedMean) {
   EXPECT_NEAR(both.value.sigma, 1 / std::sqrt(5.0), 1e-12);
 }
 
-// Two that contradict one another: Paule and Mandel's variance makes chi-square 1, so that with
-// equal errors it and theirs add up to half of the squared difference.
+// Two contradicting measurements: the variance of Paule and Mandel makes chi-square 1, so that with
+// equal errors this variance plus that of a measurement is half of the squared difference.
 TEST(Join, ContradictingClipsAreWidenedOverBoth) {
   const Pooled both = pooled({{7, 0.5}, {13, 0.5}});
   EXPECT_FALSE(both.agree);
@@ -28,8 +28,8 @@ TEST(Join, ContradictingClipsAreWidenedOverBoth) {
   EXPECT_GT(both.value.sigma, 3);  // reaches both
 }
 
-// A thousand cameras of 5 clips each: the error is that of the mean, and where clips differ by
-// something beside their errors, of one more clip.
+// A thousand cameras with 5 clips each: the error is that of the mean or, if the clips differ by
+// more than their errors, that of one further clip.
 TEST(Join, ItsErrorsAreWhatValuesAreOffBy) {
   Random random(3);
   double squares = 0;
@@ -93,7 +93,7 @@ TEST(Join, KeepsWhatIsTheCamerasAndLeavesOutWhatIsTheFlights) {
   EXPECT_TRUE(both.doubts.empty());
 }
 
-// One reads from the top, the other from below: no sign of either, and it is said.
+// One clip reads from the top and the other from the bottom: neither is accepted, with a message.
 TEST(Join, ReadoutsOfBothWaysContradictOneAnother) {
   const Calibration both = joined(clips_of(clip(0.5, 0.01, 0.001), clip(0.5, -0.01, 0.001)));
   const Estimate readout = both.values.at("shutter.readout_s")[0];

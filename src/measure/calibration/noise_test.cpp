@@ -9,14 +9,14 @@
 #include "foundation/base/seed.h"
 #include "picture/composite/sensor.h"
 
-// Noise that is put into still stripes is measured out of them again.
+// Noise that is added to still stripes is measured from them.
 namespace airtruth::calibration {
 namespace {
 
 constexpr float kCodesPerUnit = 219;
 
-// A stripe of each coded luma, side by side, with noise in linear light: computed by other means
-// than composite::noise_sigma's.
+// Stripes of each coded luma, side by side, with noise in linear light. The noise is computed
+// independently of composite::noise_sigma.
 image::Picture stripes(const std::vector<double>& lumas,
                        const composite::Sensor& sensor,
                        Random& random) {

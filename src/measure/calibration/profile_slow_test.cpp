@@ -10,12 +10,12 @@
 #include "measure/calibration/profile.h"
 #include "picture/video/reader.h"
 
-// Virtual flights whose clips cannot tell a value, or tell it several times over.
+// Virtual flights whose clips do not determine a value, or determine it several times.
 namespace airtruth::calibration {
 namespace {
 
-// The part of a flight's picture that is sky, as a camera that looks up has it; in it the own noise
-// of the flight's camera, and no edge.
+// The sky of a flight's picture, as a camera that looks up sees it. It has the noise of the
+// flight's camera and no edge.
 image::Picture sky_of(const synthetic::Flight& flight, int k) {
   const image::Picture whole = flight.frame(k);
   image::Picture sky = image::make_picture(whole.width, whole.height / 4, whole.colour);
@@ -53,8 +53,8 @@ TEST(CalibrateWithProfile, AFlightOfSkyAloneHasTheProfileAndSaysSo) {
   EXPECT_NE(toml_from(usual).find("of the median over"), std::string::npos);
 }
 
-// Of one object before the sky, which is softer in the world than the camera is, many frames make
-// many edges, and no surer a value: the profile has the word.
+// One object before the sky is softer in the world than the camera's spread. Many frames of it give
+// many edges but no smaller error, so the profile determines the value.
 TEST(CalibrateWithProfile, ManySightsOfOneSoftEdgeGiveWayToTheProfile) {
   synthetic::FlightOptions o;
   o.width = 320, o.height = 240, o.frame_count = 60;
@@ -91,8 +91,8 @@ TEST(CalibrateWithProfile, ManySightsOfOneSoftEdgeGiveWayToTheProfile) {
   EXPECT_LT(with.value, 0.75);
 }
 
-// Two flights of one camera, in one clip: nothing is linked across the cut, and what is told is
-// what the two tell by themselves.
+// Two flights of one camera in one clip: no measurement crosses the cut, and the result agrees with
+// those of the two flights alone.
 TEST(CalibrateWithProfile, ACutIsSeenAndASplicedClipTellsWhatItsPartsDo) {
   synthetic::FlightOptions o = ideal(13);
   o.width = 640, o.height = 480;
@@ -147,7 +147,7 @@ TEST(CalibrateWithProfile, ACutIsSeenAndASplicedClipTellsWhatItsPartsDo) {
   }
 }
 
-// What two halves of a clip tell together is what the whole clip tells.
+// The joined measurement of two halves of a clip agrees with that of the whole clip.
 TEST(CalibrateWithProfile, JoinedClipsAgreeWithOneLongClip) {
   synthetic::FlightOptions o = ideal(12);
   o.frame_count = 24;

@@ -85,7 +85,7 @@ TEST(CameraProfile, TheUsualCameraIsTheMedianWithTheSpreadBetweenCameras) {
             "the median over " + std::to_string(camera_profiles().size()) + " cameras");
 }
 
-// Two measurements of one quantity: the weighted mean, and the error of it (Bevington 4.1).
+// Two measurements of one quantity give the weighted mean and its error (Bevington 4.1).
 TEST(CameraProfile, ClipAndProfileAreCombinedByInverseVariance) {
   const Estimate both = combined({0.9, 0.3}, {0.4, 0.1});
   EXPECT_NEAR(both.value, (0.9 / 0.09 + 0.4 / 0.01) / (1 / 0.09 + 1 / 0.01), 1e-12);

@@ -15,11 +15,11 @@
 #include "picture/video/still.h"
 #include "world/synthetic/sky.h"
 
-// What is around a camera is found in its clip: sun, air, horizon, and the aircraft it is on.
+// The surroundings of a camera are found from its clip: sun, air, horizon and the own aircraft.
 namespace airtruth::calibration {
 namespace {
 
-// The flight as it is, through its own lens.
+// Calibrates an unchanged flight with its own lens.
 Calibration calibrate_flight(const synthetic::FlightOptions& o, Options options) {
   const synthetic::Flight flight(o);
   Clip clip;
@@ -50,7 +50,7 @@ TEST(Calibrate, FindsTheSun) {
   }
 }
 
-// Flights over two kilometres, so that not one field makes the ground; with the sun aside and
+// Flights over two kilometres, so that the ground consists of many fields, with the sun aside and
 // ahead.
 TEST(Calibrate, MeasuresTheAir) {
   struct Case {
@@ -122,8 +122,8 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
   }
 }
 
-// Hand-marked horizons of a real onboard video, through a wide lens: sky and ground are painted
-// along each, and the plane that is found must lie along it.
+// Hand-marked horizons of a real onboard video through a wide lens. Sky and ground are painted
+// along each of them, and the plane that is found must lie along it.
 TEST(Horizon, LiesAlongHandMarkedOnes) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
@@ -185,7 +185,7 @@ TEST(Horizon, LiesAlongHandMarkedOnes) {
   EXPECT_LT(median_px, 15);
 }
 
-// The paper's own masks, each laid over a virtual flight as a real aircraft would stand in it.
+// The masks of the paper, each laid over a virtual flight like a real aircraft in the picture.
 TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
