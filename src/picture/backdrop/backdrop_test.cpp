@@ -15,7 +15,8 @@ constexpr int kWidth = 96;
 constexpr int kHeight = 64;
 const Pixel kFocal{100, 100};
 const Pixel kMiddle{48, 32};
-const Light kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};  // the same light from everywhere
+// Light of equal radiance from all directions.
+const Light kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
 
 Options software() {
   Options options;
@@ -23,7 +24,7 @@ Options software() {
   return options;
 }
 
-// World axes are the camera's: x right, y down, z forward. A body is placed as it is.
+// World axes equal the camera's: x right, y down, z forward. A body keeps its axes.
 const Rigid kCamFromWorld{};
 
 aircraft::Mesh empty_mesh() {
@@ -32,7 +33,7 @@ aircraft::Mesh empty_mesh() {
   return mesh;
 }
 
-// Adds a rectangle [x0, x1] x [y0, y1] at z, facing the camera.
+// Adds a rectangle [x0, x1] x [y0, y1] at z that faces the camera.
 void add_rectangle(aircraft::Mesh& mesh,
                    const Eigen::Vector4f& bounds,
                    float z,
@@ -90,8 +91,8 @@ TEST_F(BackdropTest, WithoutIntrudersAllIsGreen) {
   }
 }
 
-// At 10 m a pixel is 0.1 m. x from -2.8 to -0.8 m is pixel 20 to 40, y from -2.2 to -1.2 m is pixel
-// 10 to 20.
+// At 10 m a pixel is 0.1 m: x from -2.8 to -0.8 m is pixel 20 to 40, and y from -2.2 to -1.2 m is
+// pixel 10 to 20.
 TEST_F(BackdropTest, RectangleCoversItsPixelsAndNoOther) {
   aircraft::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2.8f, -0.8f, -2.2f, -1.2f}, 10, plain(1, 0, 0));
@@ -130,8 +131,8 @@ TEST_F(BackdropTest, PrincipalPointAndFocalLengthsMoveAndStretchIt) {
 TEST_F(BackdropTest, InstanceAndCameraPosesAreApplied) {
   aircraft::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -0.5f, 0.5f}, 0, plain(1, 0, 0));
-  // The body is turned a quarter about the optical axis and stands 10 m in front of a camera at (5,
-  // 6, 7).
+  // The body is rotated by 90 degrees about the optical axis and stands 10 m in front of a camera
+  // at (5, 6, 7).
   const Quaternion quarter(Eigen::AngleAxisd(kPi / 2, Vector3::UnitZ()));
   const Rigid cam_from_world = Rigid{Quaternion::Identity(), {5, 6, 7}}.inverse();
   const image::Rgb8 image =
@@ -144,7 +145,8 @@ TEST_F(BackdropTest, InstanceAndCameraPosesAreApplied) {
   }
 }
 
-// Column 20 is covered by three quarters: with four samples a pixel it lies between green and red.
+// The rectangle covers three quarters of column 20. With four samples a pixel its colour lies
+// between green and red.
 TEST_F(BackdropTest, EdgesAreMultisampled) {
   aircraft::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2.775f, -0.8f, -2.2f, -1.2f}, 10, plain(1, 0, 0));
@@ -156,7 +158,7 @@ TEST_F(BackdropTest, EdgesAreMultisampled) {
 TEST_F(BackdropTest, LightIsLambertPlusTheSkyEncodedAsSrgb) {
   aircraft::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2, 2, -2, 2}, 10, plain(0.5f, 0.5f, 0.5f));
-  // The plate faces the camera, along -z of the world: straight up, so it sees the sky alone. The
+  // The plate faces the camera along the world's -z, which points up, so it sees only the sky. The
   // sun stands 60 degrees off its normal.
   const Light light{{std::sin(kPi / 3), 0, -std::cos(kPi / 3)},
                     {0.8f, 0.4f, 0},
@@ -177,8 +179,8 @@ TEST_F(BackdropTest, NearerHidesFartherWhateverTheOrder) {
   EXPECT_EQ(colour(render(mesh), 48, 32), (std::array<int, 3>{255, 0, 0}));
 }
 
-// Three panes: the nearest red at 1/2, then blue at 1/2, then opaque white: 1/2 red, 1/4 blue, 1/4
-// white.
+// Three panes: the nearest is red at 1/2, then blue at 1/2, then opaque white. The result is 1/2
+// red, 1/4 blue, 1/4 white.
 TEST_F(BackdropTest, TranslucentPanesBlendBackToFront) {
   aircraft::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0, 0, 0.5f));
@@ -200,7 +202,8 @@ TEST_F(BackdropTest, PaneOverNothingKeepsItsAlpha) {
   EXPECT_NEAR(pixel[3], 0.25, 1e-5);
 }
 
-// A texture whose left half is opaque blue and whose right half is clear; its bottom row is v = 0.
+// A texture whose left half is opaque blue and whose right half is transparent; its bottom row is v
+// = 0.
 TEST_F(BackdropTest, TexelsDecideWhatIsSeen) {
   aircraft::Mesh mesh = empty_mesh();
   aircraft::Material material = plain(1, 1, 1);
@@ -226,8 +229,8 @@ TEST_F(BackdropTest, TexelsDecideWhatIsSeen) {
   EXPECT_NEAR(render_alpha(mesh, 4)[at(48, 48)][3], 0.5f, 0.08f);
 }
 
-// A disc of radius r at distance d, face on: pi (f r / d)^2 pixels, less what a 256-sided polygon
-// lacks.
+// A disc of radius r at distance d, seen face-on, has pi (f r / d)^2 pixels, less the area that a
+// 256-sided polygon lacks.
 TEST_F(BackdropTest, AlphaOfADiscSumsToItsArea) {
   aircraft::Mesh mesh = empty_mesh();
   mesh.materials.push_back(plain(1, 1, 1));

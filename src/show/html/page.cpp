@@ -8,7 +8,7 @@
 namespace airtruth::html {
 namespace {
 
-// Fit for a <script> element: no text in it can end it or begin a comment.
+// Escapes text for a <script> element, so that it cannot end the element or begin a comment.
 std::string in_script(std::string_view json) {
   std::string safe;
   safe.reserve(json.size());

@@ -10,7 +10,8 @@
 namespace airtruth::report {
 namespace {
 
-constexpr int kRimmedPx = 2;  // thickness of the first box's line
+// Thickness of the first box's line, in pixels.
+constexpr int kRimmedPx = 2;
 
 }  // namespace
 

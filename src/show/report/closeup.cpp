@@ -28,7 +28,7 @@ image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
   return result;
 }
 
-// How much each pixel changed, brightened fourfold.
+// The change of each pixel, brightened fourfold.
 image::Rgb8 difference_picture(const image::Rgb8& a, const image::Rgb8& b) {
   image::Rgb8 result = image::make_rgb8(a.width, a.height);
   const std::size_t count =
@@ -68,11 +68,13 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 namespace {
 
 constexpr int kPanelGapPx = 12;
-constexpr int kHeadingPx = 52;     // two lines of text
-constexpr int kLeastSlotPx = 110;  // that the longest caption of a panel needs
+// Height of two lines of text.
+constexpr int kHeadingPx = 52;
+// Width of the longest caption of a panel.
+constexpr int kLeastSlotPx = 110;
 constexpr double kCloseupTextPx = 12;
 
-// What the colours of the boxes stand for, each word in its colour, as far as the width goes.
+// The legend of the boxes' colours: each word has its colour. Words beyond the width are omitted.
 void draw_heading(cv::Mat& canvas, std::int64_t frame, int zoom) {
   int x = kPanelGapPx;
   const auto add = [&](const std::string& words, const cv::Scalar& colour) {

@@ -19,7 +19,8 @@ namespace {
 
 constexpr int kTileWidthPx = 640;
 constexpr int kColumns = 3;
-constexpr int kCaptionPx = 22;  // of the line of text below a tile's picture
+// Height of the line of text below a tile's picture.
+constexpr int kCaptionPx = 22;
 constexpr int kInsetGapPx = 6;
 constexpr double kTileTextPx = 12;
 
@@ -33,8 +34,9 @@ PixelBox on_tile(const PixelBox& box, double scale) {
   return pixels_of({box.x * scale, box.y * scale, box.width * scale, box.height * scale});
 }
 
-// The square of `side` along the tile's upper or lower edge that covers no other inset, the least
-// of the boxes and, of those, lies farthest from `box`; nullopt where the insets leave none free.
+// The square of `side` along the tile's upper or lower edge that overlaps no other inset and covers
+// the least area of the boxes; among equal ones, the one farthest from `box`. nullopt where the
+// insets leave no place.
 std::optional<PixelBox> inset_place(const cv::Mat& tile,
                                     int side,
                                     const PixelBox& box,
@@ -62,7 +64,8 @@ std::optional<PixelBox> inset_place(const cv::Mat& tile,
         const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,
                                        place.y + side / 2.0 - box.y - box.height / 2.0);
         const std::pair<std::int64_t, double> cost{covered, -away};
-        if (boxes.size() > 2 && covered > 0) continue;  // an inset is less than what it would hide
+        // An inset must not hide a box.
+        if (boxes.size() > 2 && covered > 0) continue;
         if (best && !(cost < least)) continue;
         best = place;
         least = cost;
@@ -138,8 +141,8 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
   return from_mat(tile);
 }
 
-// How `count` tiles fill a rectangle: at most kColumns side by side, and as many tiles, at most
-// `count`, as leave no place empty.
+// The arrangement of `count` tiles in a rectangle: at most kColumns side by side, and the largest
+// number of tiles, up to `count`, that leaves no place empty.
 struct Layout {
   int columns = 1;
   int tiles = 0;
@@ -160,7 +163,8 @@ ContactSheet::ContactSheet(std::string title, std::int64_t frame_count_estimate,
 
 void ContactSheet::add(const image::Picture& picture, const annotation::Frame& truth) {
   if (truth.frame % every_ != 0) return;
-  if (chosen_.size() == tiles_) {  // more frames than were expected: keep every other one
+  // With more frames than expected, every other tile is dropped.
+  if (chosen_.size() == tiles_) {
     every_ *= 2;
     std::erase_if(chosen_, [this](const Tile& tile) { return tile.frame % every_ != 0; });
     if (truth.frame % every_ != 0) return;
@@ -180,7 +184,7 @@ image::Rgb8 ContactSheet::sheet() const {
                  kDarkPaper);
   text(canvas, fitted(title_, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
   for (int i = 0; i < layout.tiles; ++i) {
-    // Spread over all that were chosen, the first and the last among them.
+    // The tiles are spread evenly over all chosen frames, including the first and the last.
     const std::size_t from = layout.tiles == 1
                                  ? 0
                                  : static_cast<std::size_t>(i) * (chosen_.size() - 1) /

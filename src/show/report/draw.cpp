@@ -13,8 +13,10 @@ namespace airtruth::report {
 namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double kFontHeightPx = 22.0;  // of a capital letter at scale 1
-constexpr int kRimPx = 2;  // that the dark rim and its antialiasing reach beyond the letters
+// Height of a capital letter at scale 1, in pixels.
+constexpr double kFontHeightPx = 22.0;
+// Reach of the dark rim and its antialiasing beyond the letters, in pixels.
+constexpr int kRimPx = 2;
 constexpr int kDashPx = 6;
 
 void dashed_line(cv::Mat& canvas, cv::Point from, cv::Point to, const cv::Scalar& colour) {

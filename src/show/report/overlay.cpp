@@ -16,7 +16,7 @@
 namespace airtruth::report {
 namespace {
 
-// One intruder as it is drawn.
+// The drawing data of one intruder.
 struct Marked {
   std::string words;
   Box box;
@@ -45,7 +45,7 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
   return result;
 }
 
-// The outline of a box, with the dark rim that shows it on a bright sky.
+// Draws the outline of a box with a dark rim, which is visible on a bright sky.
 PixelBox outlined(const Box& box) {
   const PixelBox pixels = pixels_of(box);
   return {pixels.x - 2, pixels.y - 2, pixels.width + 4, pixels.height + 4};
@@ -60,7 +60,7 @@ void draw_box(cv::Mat& canvas, const Marked& one) {
     outline(canvas, one.box, 1, one.colour);
 }
 
-// From the label to its box, where the label had to go elsewhere.
+// Draws a line from a label to its box where the label is not next to it.
 void draw_leader(cv::Mat& canvas, const PixelBox& label, const PixelBox& box, const Marked& one) {
   const cv::Point from(std::clamp(box.x + box.width / 2, label.x, label.right() - 1),
                        box.y < label.y ? label.y : label.bottom() - 1);
@@ -70,7 +70,7 @@ void draw_leader(cv::Mat& canvas, const PixelBox& label, const PixelBox& box, co
   if (cv::norm(from - to) > kNearPx) cv::line(canvas, from, to, one.colour, 1, cv::LINE_AA);
 }
 
-// The frame's number in the corner where it covers the least of the boxes.
+// Draws the frame's number in the corner where it covers the least area of the boxes.
 PixelBox caption_place(const Placing& placing, int width, int height) {
   constexpr int kMarginPx = 6;
   const int right = placing.frame.width - width - kMarginPx;
@@ -114,7 +114,8 @@ image::Rgb8 overlay(const image::Picture& picture,
     const std::string words = fitted(all[i].words, size_px, picture.width);
     const TextSize size = text_size(words, size_px);
     const auto place = place_label(placing.boxes[i], size.width, size.height, placing);
-    if (!place) continue;  // the picture is full of labels
+    // Labels already fill the picture.
+    if (!place) continue;
     placing.taken.push_back(*place);
     draw_leader(canvas, *place, placing.boxes[i], all[i]);
     text_in(canvas, words, *place, size_px, all[i].colour);

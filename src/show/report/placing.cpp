@@ -9,8 +9,10 @@
 namespace airtruth::report {
 namespace {
 
-constexpr int kGapPx = 3;    // between a box's outline and its label
-constexpr int kRings = 200;  // of candidate places; with them a label of 10 px reaches 2,000 px
+// Distance between a box's outline and its label, in pixels.
+constexpr int kGapPx = 3;
+// Number of rings of candidate places; a label of 10 px reaches 2,000 px with them.
+constexpr int kRings = 200;
 
 std::int64_t shared_px(const PixelBox& a, const PixelBox& b) {
   const auto common = intersection(a, b);
@@ -27,7 +29,8 @@ bool is_allowed(const PixelBox& place, const Placing& placing) {
   });
 }
 
-// Around `anchor` grown by `reach`: above and below first, since most aircraft are wider than tall.
+// Places around `anchor` enlarged by `reach`. Above and below come first, since most aircraft are
+// wider than tall.
 std::array<PixelBox, 8> around(const PixelBox& anchor, int reach, int width, int height) {
   const int left = anchor.x - reach;
   const int right = anchor.right() + reach;
@@ -44,7 +47,7 @@ std::array<PixelBox, 8> around(const PixelBox& anchor, int reach, int width, int
           PixelBox{left - width, below, width, height}};
 }
 
-// What of the anchor the frame shows; its nearest pixel where it shows none.
+// The part of the anchor within the frame; its nearest pixel of the frame where there is none.
 PixelBox inside(const PixelBox& anchor, const PixelBox& frame) {
   if (const auto common = intersection(anchor, frame)) return *common;
   return {std::clamp(anchor.x, frame.x, frame.right() - 1),

@@ -62,7 +62,7 @@ TEST(Overlay, GivesEachIntruderItsOwnColourWhicheverOfThemAFrameHolds) {
   EXPECT_EQ(colour_at(overlay(picture, both, {"b737", "c172"}), 279, 204), second);
 }
 
-// A label that the frame's edge cuts paints fewer pixels than one in the middle of the picture.
+// A label that the frame's edge cuts off paints fewer pixels than one in the middle of the picture.
 TEST(Overlay, NoLabelIsCutByTheFrame) {
   const auto painted = [](const PixelBox& box) {
     const image::Picture picture = grey_picture(400, 300, 100);
@@ -85,7 +85,8 @@ TEST(Placing, NoLabelMeetsAnotherOrLeavesTheFrameAndNoneCoversABoxWhileThereIsRo
   Placing placing{{0, 0, 640, 480}, {}, {}};
   std::uint32_t state = 1;
   const auto random = [&](int below) {
-    state = state * 1664525 + 1013904223;  // Numerical Recipes' generator
+    // The linear congruential generator of Numerical Recipes.
+    state = state * 1664525 + 1013904223;
     return static_cast<int>((state >> 16) % static_cast<std::uint32_t>(below));
   };
   for (int i = 0; i < 40; ++i)
@@ -134,14 +135,16 @@ TEST(Closeup, EnlargesEachPixelToASquareOfItsOwnColour) {
   const image::Picture after = grey_picture(40, 30, 60);
   const image::Rgb8 result =
       closeup({&before, &after, nullptr}, frame_with_box(3, {30, 20, 2, 2}), {5, 5, 10, 8}, 8);
-  constexpr int kSlot = 110;  // a panel of 80 px is narrower than its caption
+  // A panel of 80 px is narrower than its caption.
+  constexpr int kSlot = 110;
   EXPECT_EQ(result.width, 4 * 12 + 3 * kSlot);
   EXPECT_EQ(result.at(12 + 40, 52 + 30)[0], 50);
-  EXPECT_EQ(result.at(12 + kSlot + 12 + 40, 52 + 30)[0], 40);  // four times the difference of 10
+  // Four times the difference of 10.
+  EXPECT_EQ(result.at(12 + kSlot + 12 + 40, 52 + 30)[0], 40);
   EXPECT_EQ(result.at(12 + 2 * (kSlot + 12) + 40, 52 + 30)[0], 60);
 }
 
-// Between the captions of two panels lies a gap without ink, and the picture's right edge has none.
+// A gap without ink separates the captions of two panels, and the picture's right edge has no ink.
 TEST(Closeup, CaptionsDoNotRunTogetherHoweverNarrowThePanels) {
   const image::Picture picture = grey_picture(400, 300, 50);
   for (const int side : {1, 10, 24, 200}) {
@@ -152,7 +155,8 @@ TEST(Closeup, CaptionsDoNotRunTogetherHoweverNarrowThePanels) {
                                          zoom);
       const int slot = (result.width - 48) / 3;
       for (const int gap : {12 + slot, 24 + 2 * slot, 36 + 3 * slot})
-        for (int x = gap + 3; x < gap + 9; ++x)  // without the letters' rims
+        // Excludes the letters' rims.
+        for (int x = gap + 3; x < gap + 9; ++x)
           for (int y = 26; y < 52; ++y)
             ASSERT_EQ(result.at(x, y)[0], 28) << side << ' ' << zoom << ' ' << x << ' ' << y;
       for (int y = 0; y < 26; ++y) ASSERT_EQ(result.at(result.width - 1, y)[0], 28) << side;

@@ -17,7 +17,8 @@
 namespace airtruth::report {
 namespace {
 
-constexpr double kSurroundings = 2.2;  // of the box's longer side
+// Side of the square, as a multiple of the box's longer side.
+constexpr double kSurroundings = 2.2;
 constexpr int kSmallestPx = 24;
 
 }  // namespace

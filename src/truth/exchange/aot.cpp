@@ -28,9 +28,9 @@ using Json = nlohmann::ordered_json;
 // Added to every time: as AOT's own, which count from 1970, all have 19 digits. So the names of
 // pictures sort by time, and those of two flights differ whatever the flights are called.
 constexpr std::int64_t kTimeOriginNs = 1'500'000'000'000'000'000;
-// A time that is farther than this from the first frame (5 years) is no time of a clip.
+// Largest distance of a time from the first frame, 5 years. A time farther away is invalid.
 constexpr double kLongestClipS = 1.5e8;
-// AOT's own rate, for clips whose frame rate is unknown.
+// AOT's own rate, in frames a second, for clips whose frame rate is unknown.
 constexpr double kNominalRateHz = 10;
 
 // Times of the frames in nanoseconds from the first. Where they are unknown or two are equal, they
@@ -71,7 +71,7 @@ class AotWriter : public Writer {
     }
   }
 
-  // Of a run that failed, nothing half-written stays.
+  // A failed run leaves no half-written file.
   ~AotWriter() override {
     std::error_code ignored;
     for (const auto& [part, file] : files_) fs::remove(part_path(file_of(part)), ignored);
@@ -177,7 +177,8 @@ class FlightReader {
     if (!frames) about.fail("number_of_frames is no number of frames");
     clip_.frames.resize(static_cast<std::size_t>(*frames));
     const std::vector<JsonObject> entities = flight_.objects("entities");
-    // Times of the published files count from 1970; ours from the flight's first frame.
+    // Times in the published files count from 1970; those of a Clip count from the flight's first
+    // frame.
     if (!origin_ns_)
       for (const JsonObject& entity : entities)
         if (const auto time = entity.maybe_integer("time"))
@@ -217,7 +218,7 @@ class FlightReader {
       left_out_.add("boxes that are empty or outside their image", entity.place());
   }
 
-  // The published files write NaN, a string or nothing where a range is unknown.
+  // Where a range is unknown, the published files contain NaN, a string or no key.
   static std::optional<double> range_of(const JsonObject& blob) {
     try {
       return blob.maybe_number("range_distance_m");
@@ -226,7 +227,8 @@ class FlightReader {
     }
   }
 
-  // The number of the id where that is free, since "Airplane1" and "Helicopter1" are two objects.
+  // The track takes the number of the id where that is free, since "Airplane1" and "Helicopter1"
+  // are two objects.
   std::int64_t track_of(const std::string& id) {
     if (const auto found = tracks_.find(id); found != tracks_.end()) return found->second;
     std::int64_t track = name_and_number(id).second.value_or(1);

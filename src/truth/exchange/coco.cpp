@@ -27,17 +27,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The lists of one part, as they grow; a JSON file is made of them in the end.
+// The lists of one part, which grow clip by clip and become a JSON file at the end.
 struct Lists {
   std::ofstream images;
   std::ofstream annotations;
   Json videos = Json::array();
   std::int64_t next_image = 1;
   std::int64_t next_annotation = 1;
-  std::int64_t masks = 0;  // annotations that hold their object's pixels
+  // Number of annotations that hold their object's pixels.
+  std::int64_t masks = 0;
 };
 
-// Run lengths of the object's pixels; without a mask the box as a polygon.
+// Run lengths of the object's pixels; the box as a polygon where there is no mask.
 Json segmentation_of(const Label& label) {
   if (label.mask)
     return {{"size", {label.mask->height, label.mask->width}}, {"counts", label.mask->counts}};
@@ -59,7 +60,7 @@ class CocoWriter : public IndexedWriter {
     }
   }
 
-  // Of a run that failed too, nothing half-written stays.
+  // A failed run leaves no half-written file either.
   ~CocoWriter() override {
     std::error_code ignored;
     for (const auto& [part, lists] : lists_) {
@@ -169,7 +170,8 @@ class CocoWriter : public IndexedWriter {
       if (!out.flush()) throw Error("cannot be written: is the disk full?", {file.string()});
     }
     unfinished.finish([&] { fs::rename(part_path(file), file); });
-    // Now: an export is complete before its writer ends, and a killed one is not cleared again.
+    // The file is flushed at once: an export must be complete before its writer ends, and nothing
+    // clears a killed one later.
     fs::remove(list(part, "images"));
     fs::remove(list(part, "annotations"));
   }
@@ -193,7 +195,7 @@ class CocoWriter : public IndexedWriter {
   std::vector<Unfinished> lists_on_disk_;
 };
 
-// One annotation file.
+// Reads one annotation file.
 class CocoReader {
  public:
   CocoReader(const fs::path& file, const Warn& warn)
@@ -241,7 +243,8 @@ class CocoReader {
       picture.height = side_of(image.number("height"));
       picture.labels.time_s = image.maybe_number("time_s");
       Video& video = video_of(image, picture.file_name);
-      // By its place in the video, its number, or its place in the list.
+      // The frame's number follows from its place in the video, its number, or its place in the
+      // list.
       picture.frame = image.has("frame_id")
                           ? image.whole("frame_id")
                           : name_and_number(fs::path(picture.file_name).stem().string())
@@ -252,7 +255,7 @@ class CocoReader {
     }
   }
 
-  // Pictures without a video are a clip for each of their folders.
+  // Pictures without a video form one clip for each of their folders.
   Video& video_of(const JsonObject& image, const std::string& file_name) {
     if (image.has("video_id")) {
       const auto found = videos_.find("#" + padded(image.whole("video_id"), 12));
@@ -311,7 +314,7 @@ class CocoReader {
                "track k");
   }
 
-  // bbox, or the bounds of the polygons.
+  // The box is bbox, or the bounds of the polygons.
   static std::optional<Box> box_of(const JsonObject& annotation) {
     if (annotation.has("bbox")) {
       const auto b = annotation.numbers("bbox");
@@ -354,7 +357,7 @@ class CocoReader {
     return clip;
   }
 
-  // The folder of a clip's pictures, where it can be found beside the annotations.
+  // The folder of a clip's pictures, where it can be found near the annotations.
   fs::path media_of(const std::string& file_name) const {
     const std::string stem = file_.stem().string();
     const std::string part = stem.substr(stem.rfind('_') + 1);

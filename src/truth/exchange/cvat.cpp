@@ -167,7 +167,7 @@ Label label_of(const XmlFile& xml,
   return label;
 }
 
-// Between two key frames CVAT draws a box between theirs.
+// Between two key frames CVAT interpolates the box.
 Label between(const Label& from, const Label& to, double share) {
   Label label = from;
   const auto mix = [&](double a, double b) { return a + share * (b - a); };
@@ -199,7 +199,7 @@ class CvatReader {
   }
 
  private:
-  // <task>, or <job> as newer servers write.
+  // The element is <task>, or <job> in files of newer servers.
   void about(const pugi::xml_node& meta) {
     pugi::xml_node task = meta.child("task");
     if (!task) task = meta.child("job");
@@ -216,7 +216,8 @@ class CvatReader {
       clip_.media = images;
   }
 
-  // "CVAT for images 1.1" has its boxes here; of tracks' boxes it names the pictures alone.
+  // In "CVAT for images 1.1" these elements contain the boxes. In a file of tracks they only name
+  // the pictures.
   void add_image(const pugi::xml_node& image) {
     const auto number = whole_in(xml_.attribute(image, "id"), 0, kMostFrames);
     if (!number) xml_.fail(image, "has an id that is no whole number from 0 on");
@@ -257,7 +258,7 @@ class CvatReader {
       last = label;
       last_frame = frame;
     }
-    // The last one stays to the end.
+    // The last box stays to the end.
     if (last)
       for (std::size_t i = last_frame + 1; i < clip_.frames.size(); ++i) put(*last, i);
   }

@@ -137,7 +137,7 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
       if (frame.labels.size() > 1) frame.labels.resize(1);
     }
     const auto shows = [](const LabelledFrame& frame) { return !frame.labels.empty(); };
-    // A tracker that is begun on a wing tip at the frame's edge learns the wing tip.
+    // A tracker that starts on a wing tip at the frame's edge learns the wing tip.
     const auto shows_whole = [](const LabelledFrame& frame) {
       return !frame.labels.empty() && !frame.labels.front().truncated.value_or(false);
     };

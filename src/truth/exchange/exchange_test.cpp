@@ -42,7 +42,7 @@ class Draw {
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
   bool often(double share) { return number(0, 1) < share; }
 
-  // Boxes of whole and of broken pixels, at the picture's edges too.
+  // Boxes of whole and of fractional pixels, also at the picture's edges.
   Box box(int width, int height) {
     if (often(0.2)) return {0, 0, double(whole(1, width)), double(whole(1, height))};
     if (often(0.2)) return {double(width - 1), double(height - 1), 1, 1};
@@ -98,7 +98,7 @@ constexpr Format kWritten[] = {Format::kCoco,
                                Format::kGot10k,
                                Format::kVot};
 
-// The clip without what the format has no place for, as LOSS.md says.
+// The clip without the information that the format cannot store, as LOSS.md states.
 Clip held(Format format, Clip clip) {
   const bool named_frames_only = format == Format::kYolo || format == Format::kVoc;
   if (named_frames_only || format == Format::kOtb || format == Format::kCvat)
@@ -112,7 +112,7 @@ Clip held(Format format, Clip clip) {
       ++place;
       if (named_frames_only) label.track = place;
       if (named_frames_only) label.box_px = *clipped(label.box_px, clip.width, clip.height);
-      // VOC has whole pixels.
+      // VOC stores whole pixels.
       if (format == Format::kVoc) {
         const PixelBox pixels = pixels_of(label.box_px);
         label.box_px = {
@@ -123,7 +123,7 @@ Clip held(Format format, Clip clip) {
       if (format != Format::kCoco && format != Format::kMot && format != Format::kCvat &&
           format != Format::kGot10k)
         label.visible.reset();
-      // Eighths, each read as its middle.
+      // The format stores eighths, each of which is read as its middle.
       if (format == Format::kGot10k && *label.visible > 0 && *label.visible < 1)
         label.visible = 0.15 * std::min(7.0, std::ceil(*label.visible / 0.15)) - 0.075;
       if (format != Format::kCoco && format != Format::kVoc && format != Format::kCvat &&
@@ -185,7 +185,7 @@ TEST(RoundTrip, EveryFormatKeepsAllThatItCanHold) {
       const Folder folder;
       Draw draw(seed);
       std::vector<Clip> clips = {draw.clip("a"), draw.clip("b-2 c"), draw.clip("c_7")};
-      // Of YOLO, OTB, GOT-10k and VOT the size is the user's to say.
+      // The user must state the size for YOLO, OTB, GOT-10k and VOT.
       for (Clip& clip : clips) std::tie(clip.width, clip.height) = std::pair(2000, 1500);
       WriteOptions options;
       options.categories = {"738", "c172 \"<&> é"};
@@ -211,8 +211,8 @@ TEST(RoundTrip, EveryFormatKeepsAllThatItCanHold) {
   }
 }
 
-// An import knows boxes and tracks alone: columns that a format must have are written, and come
-// back as unknown.
+// An import contains only boxes and tracks. Columns that a format requires are written all the same
+// and are read back as unknown.
 TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
   Clip clip;
   clip.name = "s";
@@ -233,7 +233,7 @@ TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
     EXPECT_EQ(read[0].frame_rate_hz, std::nullopt);
     ASSERT_EQ(read[0].frames.size(), 3u);
     Clip expected = clip;
-    // CVAT says of every box whether it is occluded.
+    // CVAT states for every box whether it is occluded.
     if (format == Format::kCvat)
       for (LabelledFrame& frame : expected.frames)
         for (Label& each : frame.labels) each.occluded = false;
@@ -261,7 +261,7 @@ TEST(RoundTrip, LabelsOfOurOwnKeepEverything) {
   }
 }
 
-// Origins by hand: a box whose first pixel is the picture's first, 3 wide and 2 high.
+// Origins, computed by hand: a box whose first pixel is the picture's first, 3 wide and 2 high.
 class Origin : public ::testing::Test {
  protected:
   std::string written(Format format, const std::string& file) {
@@ -391,7 +391,7 @@ TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
   ASSERT_EQ(clips.size(), 1u);
   EXPECT_EQ(clips[0].name, "x");
   ASSERT_EQ(clips[0].frames.size(), 2u);
-  // In the order of the pictures' numbers.
+  // The order is that of the pictures' numbers.
   EXPECT_TRUE(clips[0].frames[0].labels.empty());
   ASSERT_EQ(clips[0].frames[1].labels.size(), 1u);
   EXPECT_EQ(clips[0].frames[1].labels[0].box_px, (Box{10, 5, 20, 15}));
@@ -431,7 +431,7 @@ TEST(Coco, CrowdsAreNoObjectsAndPicturesOfSeveralSizesAreNoVideo) {
 }
 
 // An entity of the published training set, as docs/DATASET.md prints it, with the NaN that Python
-// writes; times count from 1970.
+// writes. Times count from 1970.
 TEST(Aot, ThePublishedFilesHoldNanAndTimesSince1970) {
   const Folder folder;
   const fs::path file = folder.file("part1/ImageSets/groundtruth.json", R"({"metadata": {},
@@ -494,7 +494,7 @@ TEST(Yolo, PolygonsCountByTheirBounds) {
   EXPECT_NEAR(polygon.y, 10, 1e-9);
   EXPECT_NEAR(polygon.width, 20, 1e-9);
   EXPECT_NEAR(polygon.height, 20, 1e-9);
-  // A sixth number is a detector's confidence.
+  // A sixth number is the confidence of a detector.
   EXPECT_NEAR(clips[0].frames[0].labels[1].box_px.width, 20, 1e-9);
 }
 
@@ -574,7 +574,7 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
   const auto of_head = [&](const std::string& more) {
     return error(head.substr(0, head.size() - 1) + "," + more + "}\n");
   };
-  // 2^32 + 640 is 640 in 32 bits, and 2^64 - 1 is -1 in 64.
+  // 2^32 + 640 is 640 in 32 bits, and 2^64 - 1 is -1 in 64 bits.
   EXPECT_EQ(of_head(R"("width":4294967936)"),
             "width is 4294967936; expected a whole number from 1 to 1000000 at 1");
   EXPECT_EQ(of_head(R"("height":-4)"),

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr auto kLargestInteger =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
-// The letters from `at` on, in lower case; none of JSON's words is longer than Infinity.
+// The letters from `at` on, in lower case. No word of the accepted JSON is longer than Infinity.
 std::string word_at(const std::string& text, std::size_t at) {
   std::string word;
   while (at < text.size() && word.size() < 9 &&
@@ -28,7 +28,7 @@ std::string word_at(const std::string& text, std::size_t at) {
   return word;
 }
 
-// Outside of strings NaN, Infinity and -Infinity become null.
+// Outside of strings NaN, Infinity and -Infinity are replaced by null.
 std::string without_python_words(std::string text) {
   std::string result;
   std::size_t copied = 0;

@@ -23,7 +23,8 @@ void put(Json& json, const char* key, const std::optional<T>& value) {
   if (value) json[key] = *value;
 }
 
-// Whole numbers that a double holds exactly, as all numbers of the formats that are imported.
+// Bounds of whole numbers: a double holds them exactly, as it does all numbers of the imported
+// formats.
 constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
 constexpr std::int64_t kLongestSide_px = 1'000'000;
 constexpr double kHighestRate_hz = 1e6;
@@ -37,7 +38,7 @@ std::optional<T> get(const Json& json, const char* key) {
   throw Error(fmt::format("{} is {}; expected {}", key, value.dump().substr(0, 40), expected));
 }
 
-// The text of a number is read as it stands: get<int>() would cut it to the type's width.
+// The number is parsed from its text, because get<int>() would truncate it to the type's width.
 std::int64_t whole(const Json& json, const char* key, std::int64_t least, std::int64_t most) {
   const Json& value = json.at(key);
   const double number = value.is_number() ? value.get<double>() : NAN;

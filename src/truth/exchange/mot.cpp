@@ -27,7 +27,7 @@ namespace airtruth::exchange {
 namespace {
 
 constexpr double kUnknown = -1;
-// Comments of seqinfo.ini.
+// The comments of seqinfo.ini.
 constexpr std::string_view kExactRate = "; exact frame rate: ";
 constexpr std::string_view kNoVisibility = "; visibility: unknown, written as 1";
 
@@ -63,7 +63,7 @@ class MotWriter : public IndexedWriter {
            (padded(static_cast<std::int64_t>(i) + 1, 6) + options_.image_extension);
   }
 
-  // The names of the classes, a line each.
+  // The names of the classes, one on each line.
   std::string classes() const {
     if (!options_.mot_classes)
       return (options_.categories.size() == 1 ? options_.categories.front() : "aircraft") + "\n";
@@ -89,7 +89,7 @@ class MotWriter : public IndexedWriter {
     return false;
   }
 
-  // Names with commas are quoted, as TrackEval's csv.reader takes them.
+  // Names with commas are quoted, as TrackEval's csv.reader expects.
   static std::string in_csv(const std::string& name) {
     if (name.find_first_of(",\"") == std::string::npos) return name;
     std::string quoted = "\"";
@@ -140,7 +140,7 @@ class MotWriter : public IndexedWriter {
 
 constexpr std::int64_t kMostTracks = 1'000'000'000;
 
-// A sequence's folder.
+// The folder of one sequence.
 class SequenceFolder {
  public:
   SequenceFolder(fs::path folder,

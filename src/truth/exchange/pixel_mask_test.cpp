@@ -8,8 +8,8 @@
 namespace airtruth::exchange {
 namespace {
 
-// The reader's half of the published rules: groups of 5 bits to numbers, differences to counts,
-// counts to pixels down the columns.
+// The decoder of the published rules: groups of 5 bits become numbers, differences become counts,
+// and counts become pixels down the columns.
 std::vector<std::vector<bool>> decoded(const PixelMask& mask) {
   std::vector<std::int64_t> counts;
   for (std::size_t at = 0; at < mask.counts.size();) {
@@ -47,7 +47,7 @@ TEST(PixelMask, ThreeColumnsByHand) {
   const PixelMask mask = pixel_mask_of(3, 3, {1, 0, 1, 3}, [](int, int) { return true; });
   EXPECT_EQ(mask.counts, "333");
   EXPECT_EQ(mask.area_px, 3);
-  // The first pixel inside: 0 outside, 1 inside, 8 outside.
+  // The first pixel is inside: 0 outside, 1 inside, 8 outside.
   EXPECT_EQ(pixel_mask_of(3, 3, {0, 0, 1, 1}, [](int, int) { return true; }).counts, "018");
   // 16 needs two groups, since the fifth bit is the sign: (16 | 32) + 48 is '`', then '0'.
   EXPECT_EQ(compressed_counts({16}), "`0");

@@ -27,13 +27,13 @@
 namespace airtruth::exchange {
 namespace {
 
-// A picture's side in px that no camera has.
+// A side of a picture, in pixels, that no camera reaches.
 constexpr std::int64_t kLongestSide = 1'000'000;
 
 // Frames between the starts of VOT's multi-start experiment (Kristan et al. 2020, VOT2020).
 constexpr int kAnchorStep = 50;
 
-// How many eighths of an object are seen: 0 for none, 8 for all (GOT-10k, section 3).
+// The visible share of an object in eighths: 0 for none, 8 for all (GOT-10k, section 3).
 int cover_of(double visible) {
   if (visible <= 0) return 0;
   if (visible >= 1) return 8;
@@ -63,7 +63,7 @@ class SingleObjectWriter : public IndexedWriter {
 
  private:
   fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
-    // Toolkits sort names: all have the same number of digits.
+    // Toolkits sort by name, so all names have the same number of digits.
     const auto longest = static_cast<int>(std::to_string(clip.frames.size()).size());
     const int digits = format_ == Format::kOtb ? std::max(4, longest) : 8;
     const std::string name =
@@ -154,7 +154,7 @@ class SingleObjectWriter : public IndexedWriter {
       });
   }
 
-  // Where this program's own multi-start runs begin (truth/evaluation/vot.h).
+  // The starts of this program's own multi-start runs (truth/evaluation/vot.h).
   static std::string anchors(const Clip& clip) {
     evaluation::VotTruth truth{{}, clip.width, clip.height};
     for (const LabelledFrame& frame : clip.frames)
@@ -180,7 +180,7 @@ class SingleObjectWriter : public IndexedWriter {
   std::map<std::string, std::string> lists_;
 };
 
-// Columns beside the boxes; empty where there is no such file.
+// Columns beside the boxes; empty where the file does not exist.
 std::vector<double> column(const fs::path& file) {
   std::vector<double> values;
   if (!fs::exists(file)) return values;
@@ -189,9 +189,9 @@ std::vector<double> column(const fs::path& file) {
   return values;
 }
 
-// VOT's mask, "mX,Y,W,H,ZEROS,ONES,ZEROS,...": run lengths of the rows of a W x H window at (X, Y)
-// that begin with the zeros (vot/region/io.py). The bounds of its ones; an empty box where it has
-// none.
+// VOT's mask, "mX,Y,W,H,ZEROS,ONES,ZEROS,...": run lengths of the rows of a W x H window at (X, Y),
+// starting with the zeros (vot/region/io.py). Returns the bounds of its ones; an empty box where it
+// has none.
 Box box_of_mask(const Line& line, const fs::path& file) {
   const std::vector<double> n = numbers_of({line.number, line.text.substr(1)}, file);
   const Where where{file.string(), line.number};
@@ -317,7 +317,7 @@ class SequenceReader {
     }
   }
 
-  // A rectangle, or the bounds of a polygon; one number alone says that there is nothing (VOT).
+  // A rectangle, or the bounds of a polygon. A single number means that there is no region (VOT).
   static std::optional<Box> box_of(const std::vector<double>& n, double from) {
     if (n.size() == 1) return Box{0, 0, 0, 0};
     if (n.size() == 4) return Box{n[0] - from, n[1] - from, n[2], n[3]};
@@ -339,7 +339,7 @@ class SequenceReader {
         if (absent[i] != 0) clip_.frames[i].labels.clear();
       if (knows_cut_)
         each("cut_by_image.label", [](Label& label, double v) { label.truncated = v != 0; });
-      // The middle of the step; the whole is exact.
+      // A value stands for the middle of its step; the whole is exact.
       if (knows_cover_)
         each("cover.label", [](Label& label, double v) {
           label.visible = v >= 8 ? 1.0 : std::clamp(0.15 * v - 0.075, 0.0, 1.0);

@@ -19,14 +19,14 @@ std::vector<fs::path> files_of(const fs::path& source, std::string_view extensio
   return files;
 }
 
-// A video of the same name beside an annotation.
+// The video of the same name beside an annotation.
 fs::path video_beside(fs::path file) {
   for (const char* extension : {".mp4", ".mkv", ".avi", ".mov", ".webm"})
     if (file.replace_extension(extension); fs::exists(file)) return file;
   return {};
 }
 
-// "1LRB737": the paper's names end in the aircraft.
+// The names of the E-Vision paper end in the aircraft: "1LRB737".
 std::string category_of(const std::string& name, const std::string& otherwise) {
   for (const char* aircraft : {"B737", "C172"})
     if (name.ends_with(aircraft)) return aircraft;
@@ -49,7 +49,7 @@ Clips read_evision(const fs::path& source, const ReadOptions& options) {
           static_cast<std::int64_t>(frame ? frame->number - 1 : static_cast<int>(i));
       if (number > kMostFrames)
         throw Error("frame_" + std::to_string(number + 1) + " is beyond any clip", {file.string()});
-      // Numbers that the file passes over are frames without a word on them.
+      // Numbers that the file skips are frames without any information.
       while (std::ssize(clip.frames) < number)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
       LabelledFrame labelled{std::ssize(clip.frames), std::nullopt, {}};
@@ -90,7 +90,8 @@ Clips read_csv(const fs::path& source, const ReadOptions& options) {
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
       LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
       const Box box{n[1] - options.origin_px, n[2] - options.origin_px, n[3], n[4]};
-      if (!is_in_picture(box, clip.width, clip.height)) continue;  // "0,0,0,0" and "nan": nothing
+      // "0,0,0,0" and "nan" mean no box.
+      if (!is_in_picture(box, clip.width, clip.height)) continue;
       Label label;
       label.track = std::ssize(frame.labels) + 1;
       label.category = options.category;

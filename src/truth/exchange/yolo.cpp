@@ -25,7 +25,8 @@ class YoloWriter : public IndexedWriter {
       : root_(std::move(root)), options_(options) {
     for (const std::string& part : options.parts) {
       fs::create_directories(root_ / "labels" / part);
-      fs::create_directories(root_ / "images" / part);  // which the loader looks for
+      // The loader looks for this folder.
+      fs::create_directories(root_ / "images" / part);
     }
   }
 
@@ -60,7 +61,7 @@ class YoloWriter : public IndexedWriter {
     return fs::path("images") / part / (stem(clip, i) + options_.image_extension);
   }
 
-  // YAML's double-quoted strings hold JSON's.
+  // YAML's double-quoted strings include JSON's strings.
   static std::string quoted(const std::string& text) {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
@@ -85,7 +86,7 @@ class YoloWriter : public IndexedWriter {
   WriteOptions options_;
 };
 
-// The names of data.yaml: "  0: name", "- name" or "names: [a, b]".
+// Reads the names of data.yaml: "  0: name", "- name" or "names: [a, b]".
 std::vector<std::string> names_of(const fs::path& file) {
   std::vector<std::string> names;
   if (!fs::exists(file)) return names;
@@ -95,7 +96,7 @@ std::vector<std::string> names_of(const fs::path& file) {
     std::string word = text.substr(first, text.find_last_not_of(' ') - first + 1);
     const char quote = word.front();
     if (word.size() < 2 || (quote != '"' && quote != '\'') || word.back() != quote) return word;
-    // YAML's double quotes hold JSON's strings and a few more.
+    // YAML's double quotes accept JSON's strings and a few more.
     if (quote == '"') {
       const auto string = nlohmann::json::parse(word, nullptr, false);
       if (string.is_string()) return string.get<std::string>();
@@ -187,7 +188,8 @@ class YoloReader {
            LabelledFrame& frame) {
     const std::vector<double> n = numbers_of(line, file);
     const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
-    // More than one number after the box makes a polygon, as of segmentation: "class x y x y x y".
+    // With more numbers after the box the line is a polygon, as in segmentation: "class x y x y x
+    // y".
     const bool is_polygon = n.size() > 6;
     if (!whole || (is_polygon && n.size() % 2 == 0))
       throw Error("is no 'class x y width height' and no 'class' with a polygon",
