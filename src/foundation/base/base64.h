@@ -6,7 +6,7 @@
 
 namespace airtruth {
 
-// RFC 4648, with padding.
+// The base64 text of bytes, with padding (RFC 4648).
 std::string base64_of(std::string_view bytes);
 
 }  // namespace airtruth

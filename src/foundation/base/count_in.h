@@ -9,8 +9,8 @@
 
 namespace airtruth {
 
-// A number of frames or sequences in a record: whole, 0 to 2^53. Error with the file for what is
-// none; get<int64_t>() would cut it to the type's width. Json is one of nlohmann's.
+// A number of frames or sequences in a record: a whole number from 0 to 2^53. Throws Error with the
+// file for any other value, which get<int64_t>() would truncate. Json is a type of nlohmann::json.
 template <typename Json>
 std::int64_t count_in(const Json& record, const char* key, const std::filesystem::path& file) {
   constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;

@@ -9,10 +9,11 @@
 
 namespace airtruth {
 
-// A line between its commas, blanks and carriage returns trimmed; nothing is quoted.
+// The cells of a line, split at its commas. Blanks and carriage returns around a cell are removed.
+// Quotes have no meaning.
 std::vector<std::string> cells_of(std::string_view line);
 
-// The cell as a number. Error where it is none, or not finite.
+// The cell as a number. Throws Error where it is not a number or not finite.
 double finite_number(const std::string& cell, const Where& where);
 
 }  // namespace airtruth

@@ -8,9 +8,9 @@
 
 namespace airtruth {
 
-// Calls each(0) .. each(count - 1) on `jobs` threads (0: one per core). The first failure lets the
-// others end what they are at, and is thrown again; Interrupted after a stop. `progress` is told of
-// every call that is over, one at a time.
+// Calls each(0) to each(count - 1) on `jobs` threads (0: one per core). After the first failure the
+// other threads finish their current calls, and the function rethrows the failure. It throws
+// Interrupted after a stop. It calls `progress` after each finished call, one call at a time.
 void in_parallel(std::size_t count,
                  int jobs,
                  const std::function<void(std::size_t)>& each,

@@ -6,8 +6,8 @@
 
 namespace airtruth {
 
-// The library never prints: it hands one-line warnings to whoever called. An empty function drops
-// them.
+// The library never prints: it passes one-line warnings to its caller through this function. An
+// empty function discards them.
 using Warn = std::function<void(const std::string& message)>;
 
 inline void warn(const Warn& to, const std::string& message) {

@@ -8,7 +8,8 @@
 
 namespace airtruth {
 
-// The upper one of two middle values. There is at least one value.
+// The median; for an even number of values, the upper of the two middle values. There must be at
+// least one value.
 template <class T>
 T median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -16,8 +17,8 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-// The mean of the two middle values where their number is even, as statistics packages have it.
-// There is at least one value.
+// The median as statistics packages define it: for an even number of values, the mean of the two
+// middle values. There must be at least one value.
 inline double median_between(std::vector<double> values) {
   const double upper = median(values);
   if (values.size() % 2 == 1) return upper;

@@ -9,8 +9,8 @@
 
 namespace airtruth {
 
-// An axis-parallel box in floating pixel coordinates (docs/conventions.md): it covers [x, x +
-// width).
+// An axis-parallel box in floating pixel coordinates (docs/conventions.md). It covers
+// [x, x + width) and [y, y + height).
 struct Box {
   double x = 0;
   double y = 0;
@@ -23,7 +23,8 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
-// A box of whole pixels: the pixels x .. x + width - 1, and never empty.
+// A box of whole pixels: the columns x to x + width - 1 and the rows y to y + height - 1. It is
+// never empty.
 struct PixelBox {
   int x = 0;
   int y = 0;
@@ -38,7 +39,8 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
-// The whole pixels that a box touches; far outside any picture it is cut at a million pixels.
+// The whole pixels that a box touches. Its edges are clamped to +-1,000,000 pixels, which is far
+// outside any picture.
 inline PixelBox pixels_of(const Box& box) {
   const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
   const int x = bounded(std::floor(box.x));
@@ -61,7 +63,7 @@ inline PixelBox bounds(const PixelBox& a, const PixelBox& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
-// Grows point by point; empty until the first.
+// The bounds of the points that were added. They are empty before the first point.
 class BoxBounds {
  public:
   void add(const Pixel& p) {

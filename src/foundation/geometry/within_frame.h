@@ -5,13 +5,13 @@
 
 #include "foundation/geometry/transform.h"
 
-// What happens while one frame is taken: when each pixel sees, and how poses go on meanwhile.
-// Times dt_s are seconds from the frame's own time, which is the middle of the exposure of the
-// sensor's middle row (or column).
+// The time within one frame: when each pixel is exposed, and how poses change meanwhile. A time
+// dt_s is in seconds from the frame's own time, which is the middle of the exposure of the sensor's
+// middle row (or column).
 namespace airtruth {
 
-// A pose's motion, even over the short time of a frame: velocity of its origin, and turning about
-// it, both in world axes.
+// The motion of a pose, which is uniform over the short time of a frame: the velocity of its origin
+// and the rate of rotation about its origin, both in world axes.
 struct Twist {
   Vector3 velocity_mps = Vector3::Zero();
   Vector3 rate_radps = Vector3::Zero();
@@ -19,32 +19,36 @@ struct Twist {
 
 // The rotation by a rotation vector (radians).
 Quaternion rotation_from_vector(const Vector3& vector_rad);
-// The inverse; the shorter way round.
+// The rotation vector (radians) of a rotation, by the shorter of the two turns.
 Vector3 vector_from_rotation(const Quaternion& rotation);
 
-// Where the pose is after dt_s.
+// The pose after dt_s.
 Rigid carried(const Rigid& world_from_x, const Twist& twist, double dt_s);
 
-enum class Readout { kDown, kUp, kRight, kLeft };  // which way the rows (columns) are read
+// The direction in which the sensor reads its rows (columns).
+enum class Readout { kDown, kUp, kRight, kLeft };
 
 struct Shutter {
   double exposure_s = 0;
-  double readout_s = 0;  // from the first row to the last; 0: a global shutter
+  // The time from the first row to the last; 0 is a global shutter.
+  double readout_s = 0;
   Readout readout = Readout::kDown;
 
   bool is_instant() const { return exposure_s <= 0 && readout_s <= 0; }
-  // Middle of the exposure of the row (column) that the pixel lies in. All of a pixel has one time:
-  // that of its own centre line, so `pixel` is taken at floor + 0.5.
+  // The middle of the exposure of the row (column) of a pixel. All points of a pixel have the time
+  // of its centre line: `pixel` is rounded to floor + 0.5.
   double middle_s(const Pixel& pixel, int width, int height) const;
 };
 
-// The measured shake of the camera in a frame and its change per second; by one of two models
-// (camera/motion/motion.h).
+// The measured shake of the camera in a frame and its change per second, in one of the two models
+// of camera/motion/motion.h.
 struct Shake {
   Homography frame_from_reference = Homography::Identity();
   Homography frame_from_reference_per_s = Homography::Zero();
-  std::optional<Quaternion> rotation;    // cam_from_nominal_cam
-  Vector3 rate_radps = Vector3::Zero();  // of that rotation, in cam's axes
+  // cam_from_nominal_cam.
+  std::optional<Quaternion> rotation;
+  // The rate of that rotation, in the axes of cam.
+  Vector3 rate_radps = Vector3::Zero();
 
   Homography homography_at(double dt_s) const {
     return frame_from_reference + dt_s * frame_from_reference_per_s;

@@ -7,15 +7,15 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 
-// Between a picture's samples and linear light.
+// Converts between the samples of a picture and linear light.
 //
-// Linear RGB has the sRGB primaries and 1 = the brightest code value. The transfer curve of video
-// is taken as sRGB's (IEC 61966-2-1), which is how such video is shown on a screen.
+// Linear RGB has the sRGB primaries; 1 is the brightest code value. Video is decoded with the
+// transfer curve of sRGB (IEC 61966-2-1), because screens show such video with this curve.
 namespace airtruth::image {
 
 using Rgb = std::array<float, 3>;
 
-// sRGB, 0..1 to 0..1, by the exact piecewise curve; values outside are clamped.
+// The exact piecewise curve of sRGB, from 0..1 to 0..1. Values outside this range are clamped.
 float linear_from_srgb(float coded);
 float srgb_from_linear(float linear);
 
@@ -62,18 +62,19 @@ inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
           (rgb[0] - y) / (2 * (1 - kr_)) * c_scale_ + 128};
 }
 
-// Linear light of one pixel, chroma held over its block.
+// The linear light of one pixel. All pixels of a chroma block have the block's chroma.
 Rgb linear_at(
     const Picture& picture, const ColourCode& code, int x, int y, const ToneCurve& tone = {});
 
-// The whole picture as packed sRGB, chroma held over its block, for previews and stills.
+// The whole picture as packed sRGB for previews and stills. All pixels of a chroma block have the
+// block's chroma.
 Rgb8 rgb8_from_picture(const Picture& picture);
 
-// A part of it, [x, x + width) x [y, y + height), which may stick out of the picture: outside is
-// black.
+// The part [x, x + width) x [y, y + height) of a picture as packed sRGB. Pixels outside the picture
+// are black.
 Rgb8 rgb8_from_picture(const Picture& picture, int x, int y, int width, int height);
 
-// Back, with chroma averaged over its block.
+// A picture from packed sRGB. Chroma is the average over its block.
 Picture picture_from_rgb8(const Rgb8& rgb, const Colour& colour);
 
 }  // namespace airtruth::image

@@ -11,10 +11,12 @@ namespace {
 
 constexpr int kCellColumns = 32;
 constexpr int kCellRows = 24;
-constexpr double kLeastOfCut = 6;      // code values, mean over the picture
-constexpr double kOverNeighbours = 3;  // times what the frames around a cut differ by
+// The least difference at a cut: the mean over the picture, in code values.
+constexpr double kLeastOfCut = 6;
+// The least ratio of the difference at a cut to that of the frames around it.
+constexpr double kOverNeighbours = 3;
 
-// The first place of a cell, of `count` over `size` places.
+// The first pixel of a cell where `count` cells divide `size` pixels.
 int cell_begin(int cell, int count, int size) { return (cell * size + count - 1) / count; }
 
 }  // namespace

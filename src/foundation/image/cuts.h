@@ -7,27 +7,28 @@
 
 #include "foundation/image/picture.h"
 
-// Where one shot of a clip ends and another begins, from pictures alone. Whoever links frames to
-// one another (motion, blur, smoothing) links none across a cut.
+// Detects the cuts between the shots of a clip from the pictures alone. Code that links frames to
+// one another (motion, blur, smoothing) links no frames across a cut.
 namespace airtruth::image {
 
-// How far a picture differs from the one before: the mean absolute difference of luma, code values,
-// each picture averaged over 32 x 24 cells.
+// The difference between a picture and the one before it: each picture is averaged over 32 x 24
+// cells, and the difference is the mean absolute difference of luma over the cells, in code values.
 class Differences {
  public:
-  // Empty for the first picture.
+  // The difference to the picture of the previous call; empty for the first picture.
   std::optional<double> add(const Picture& picture);
 
  private:
   std::vector<double> before_;
 };
 
-// Differences to the left and right of a frame's own that its own is held against.
+// The number of differences before and after a frame with which its own difference is compared.
 inline constexpr int kCutNeighbours = 2;
 
-// Does a frame that differs by `here` from the one before begin a shot? It does where that is 6
-// code values or more, and more than three times what any of its neighbours (up to kCutNeighbours
-// before it and after it) differs by: a pan or a change of exposure takes several frames.
+// Whether a frame whose difference to the frame before is `here` begins a shot. It does where
+// `here` is at least 6 code values and more than three times the difference of each neighbour (up
+// to kCutNeighbours before and after). A pan or a change of exposure takes several frames and
+// therefore does not count.
 bool is_cut(std::span<const double> before, double here, std::span<const double> after);
 
 }  // namespace airtruth::image

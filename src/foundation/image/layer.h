@@ -8,9 +8,9 @@
 
 namespace airtruth::image {
 
-// What `render` makes and `composite` eats: the intruders of one frame on a patch of the frame's
-// own pixel grid. Colour is linear light with sRGB primaries, premultiplied by coverage: result =
-// colour + (1 - alpha) * background.
+// A Layer holds the rendered intruders of one frame on a patch of the frame's pixel grid. `render`
+// produces it, and `composite` blends it into the frame. Colour is linear light with sRGB
+// primaries, premultiplied by coverage: result = colour + (1 - alpha) * background.
 struct LayerPixel {
   float red = 0;
   float green = 0;

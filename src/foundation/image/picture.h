@@ -9,20 +9,16 @@
 
 namespace airtruth::image {
 
-// How a picture's samples stand for colour. All 8-bit.
-enum class Chroma { kNone, k420, k422, k440, k444 };  // kNone: grey
-enum class Matrix {
-  kRgb,
-  kBt601,
-  kBt709,
-  kBt2020
-};                                     // kRgb: planes are G, B, R at full size (Chroma::k444)
-enum class Range { kLimited, kFull };  // luma 16..235, chroma 16..240; or 0..255
-enum class Siting {
-  kLeft,
-  kCenter,
-  kTopLeft
-};  // where a subsampled chroma sample sits (4:2:0 and 4:2:2)
+// How the samples of a picture encode colour. All samples have 8 bits.
+// The chroma subsampling; kNone is a grey picture.
+enum class Chroma { kNone, k420, k422, k440, k444 };
+// The matrix between Y'CbCr and R'G'B'. For kRgb the planes are G, B, R at full size
+// (Chroma::k444).
+enum class Matrix { kRgb, kBt601, kBt709, kBt2020 };
+// kLimited: luma 16..235 and chroma 16..240. kFull: 0..255.
+enum class Range { kLimited, kFull };
+// The position of a subsampled chroma sample (4:2:0 and 4:2:2).
+enum class Siting { kLeft, kCenter, kTopLeft };
 
 struct Colour {
   Chroma chroma = Chroma::k420;
@@ -32,7 +28,7 @@ struct Colour {
   bool operator==(const Colour&) const = default;
 };
 
-// One plane of samples, rows `stride` bytes apart. Memory is not zeroed when made.
+// One plane of samples. Rows begin `stride` bytes apart. The memory is not initialised.
 struct Plane {
   int width = 0;
   int height = 0;
@@ -45,8 +41,8 @@ struct Plane {
   }
 };
 
-// A frame as its decoder left it: Y, Cb, Cr (or Y alone, or G, B, R). A chroma plane of an
-// odd-sized picture is (size + 1) / 2. Movable; copy with clone().
+// A frame in the planes of its decoder: Y, Cb, Cr, or Y alone, or G, B, R. A halved side of a
+// chroma plane has (size + 1) / 2 samples. A Picture is movable; clone() copies it.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -58,23 +54,23 @@ struct Picture {
   Picture clone() const;
 };
 
-// 1 where the chroma of this layout is halved, else 0.
+// 1 where this layout halves the width or height of chroma, else 0.
 int log2_chroma_width(Chroma chroma);
 int log2_chroma_height(Chroma chroma);
 
 Picture make_picture(int width, int height, const Colour& colour);
 
-// The part of a picture within `box`, which lies inside it and begins on even numbers where chroma
-// is halved.
+// The part of a picture within `box`. The box must lie inside the picture, and its corner must be
+// even where chroma is halved.
 Picture crop(const Picture& picture, const PixelBox& box);
-// Writes `part` over `picture`, its corner at (x, y), which are even where chroma is halved; what
-// lies outside the picture is left out. Both have one colour.
+// Writes `part` over `picture` with its corner at (x, y), which must be even where chroma is
+// halved. The function skips pixels outside the picture. Both pictures must have the same Colour.
 void paste(Picture& picture, const Picture& part, int x, int y);
 
-// Every sample equal (padding between rows does not count) and same size and colour.
+// Whether both pictures have the same size, Colour and samples. Padding between rows is ignored.
 bool identical(const Picture& a, const Picture& b);
 
-// Packed 8-bit sRGB, for stills, plots and masks: red, green, blue by pixel, no padding.
+// Packed 8-bit sRGB for stills, plots and masks: red, green and blue of each pixel, no padding.
 struct Rgb8 {
   int width = 0;
   int height = 0;

@@ -3,15 +3,17 @@
 
 namespace airtruth::image {
 
-// How a camera codes light: sRGB's curve (IEC 61966-2-1), or the same with another exponent: a
-// power of (coded + 0.055) / 1.055, and near black the straight line that touches it.
+// The curve by which a camera encodes linear light: the curve of sRGB (IEC 61966-2-1), or the same
+// curve with another exponent. The curve is a power of (coded + 0.055) / 1.055; near black it is
+// the straight line through 0 that is tangent to this power.
 struct ToneCurve {
-  double gamma = 0;  // the exponent, 1.2 to 3; 0: sRGB's own
+  // The exponent, 1.2 to 3; 0 is the curve of sRGB itself.
+  double gamma = 0;
 
-  // From 0 on, 1 to 1, and beyond 1 by the same power.
+  // Both functions map 0 to 0 and 1 to 1. They continue by the same power beyond 1.
   double linear_from_coded(double coded) const;
   double coded_from_linear(double linear) const;
-  // 0..1; what lies outside is clamped.
+  // The same for 0..1. Values outside this range are clamped.
   float linear_from_coded_clamped(float coded) const;
 };
 
