@@ -150,7 +150,7 @@ image::Ycc Matte::change(std::size_t index, float cb, float cr) const {
   for (std::size_t c = 0; c < 3; ++c) {
     const float under = curve_.linear_from_coded(background[c]);
     const float brightest =
-        std::max(1.0f, under);  // a highlight of the layer saturates as a sensor does
+        std::max(1.0f, under);  // A highlight of the layer saturates as in a sensor.
     blend[c] = curve_.coded_from_linear(std::min(add[c] + (1 - over.alpha) * under, brightest));
   }
   const image::Ycc ycc = colour_code_.ycc_from_rgb(blend);

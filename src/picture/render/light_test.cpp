@@ -118,7 +118,7 @@ TEST(LightAround, ABlackSphereHasABrightRim) {
   EXPECT_NEAR(stage.middle(black, only(even(1)), at_distance(100)).green, kCoat, 0.002);
   const image::Layer layer = stage.whole(black, only(even(1)), at_distance(100));
   const image::LayerPixel rim =
-      layer.pixels[layer.index(kStageSide / 2 + 9, kStageSide / 2)];  // of 12 px
+      layer.pixels[layer.index(kStageSide / 2 + 9, kStageSide / 2)];  // The rim is at 12 px.
   const double cosine = std::sqrt(1 - std::pow(9.5 / 12, 2));
   EXPECT_NEAR(rim.green / rim.alpha, 0.04 + 0.96 * std::pow(1 - cosine, 5), 0.02);
 }

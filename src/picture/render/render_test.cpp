@@ -195,8 +195,9 @@ TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
   const Model model(mesh);
   const image::Layer layer = render(view_through(lens), light, {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.2, 1e-4);  // in the shadow
-  EXPECT_NEAR(
-      layer.pixels[layer.index(100, 120)].red, 0.5 * std::sqrt(0.5) + 0.2, 1e-4);  // out of it
+  EXPECT_NEAR(layer.pixels[layer.index(100, 120)].red,
+              0.5 * std::sqrt(0.5) + 0.2,
+              1e-4);  // Outside the shadow.
 }
 
 TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {

@@ -66,7 +66,8 @@ struct Reader::State {
   std::int64_t last_pts = AV_NOPTS_VALUE;
   std::int64_t pts_step = 1;
   std::optional<std::int64_t> first_pts;
-  // Decoded by the constructor and, with cuts, what comes after the frame that is next.
+  // Decoded frames that are not yet handed out: the constructor decodes the first one, and with
+  // cuts the queue also holds the frames after the next.
   std::deque<Frame> ahead;
   image::Differences difference;
   // Differences between each frame and the one before it, from the frame `first_difference` on.

@@ -354,7 +354,8 @@ void Writer::finish() {
   s.unfinished->finish([&s] {
     std::error_code failed;
     if (s.options.format == Format::kPng && fs::exists(s.path))
-      fs::remove(s.path, failed);  // empty
+      // The folder is empty at this point.
+      fs::remove(s.path, failed);
     fs::rename(s.part, s.path, failed);
     if (failed) s.fail("cannot create: " + failed.message());
   });

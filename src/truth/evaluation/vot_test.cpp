@@ -11,10 +11,11 @@ namespace airtruth::evaluation {
 namespace {
 
 const Box kTruth{100, 100, 20, 10};
-const Box kHalf{110, 100, 20, 10};  // shares 10 of 30 columns
+// Its columns with kTruth: 10 are shared, of 30.
+const Box kHalf{110, 100, 20, 10};
 
 Trajectory run_of(const std::string& marks) {
-  // b: begun, f: failed, -: unknown, h: shares a third, x: exact, n: no box.
+  // b: begun, f: failed, -: unknown, h: an overlap of a third, x: exact, n: no box.
   Trajectory run;
   for (const char c : marks) {
     VotFrame frame;
@@ -38,29 +39,29 @@ TEST(PixelOverlap, CountsWholePixelsAsTheToolkitDoes) {
   EXPECT_DOUBLE_EQ(pixel_overlap(kTruth, kHalf, 640, 480), 1.0 / 3);
   EXPECT_EQ(pixel_overlap({0.4, 0.4, 10, 10}, {0, 0, 10, 10}, 0, 0), 1);
   EXPECT_DOUBLE_EQ(pixel_overlap({0.6, 0, 10, 10}, {0, 0, 10, 10}, 0, 0), 90.0 / 110);
-  // Halves to even: 0.5 is 0, 1.5 is 2.
+  // Halves are rounded to even: 0.5 becomes 0, and 1.5 becomes 2.
   EXPECT_EQ(pixel_overlap({0.5, 0, 10, 10}, {0, 0, 10, 10}, 0, 0), 1);
   EXPECT_DOUBLE_EQ(pixel_overlap({1.5, 0, 10, 10}, {0, 0, 10, 10}, 0, 0), 80.0 / 120);
-  // Cut by the picture's edge: 5 columns of each remain.
+  // The picture's edge clips the boxes: 5 columns of each remain.
   EXPECT_EQ(pixel_overlap({-5, 0, 10, 10}, {-5, 0, 10, 20}, 640, 10), 1);
   EXPECT_EQ(pixel_overlap({700, 0, 10, 10}, {700, 0, 10, 10}, 640, 480), 0);
 }
 
 TEST(Restart, ByHand) {
-  // 30 frames: begun, 11 answers of a third (9 of them in the burn-in), failed at 12, begun anew at
-  // 17, exact to the end.
+  // The run has 30 frames: begun, 11 answers of a third (9 of them in the burn-in), failed at 12,
+  // begun again at 17, exact to the end.
   const std::string marks = "bhhhhhhhhhhhf----bxxxxxxxxxxxx";
   ASSERT_EQ(marks.size(), 30u);
   const RestartRuns runs{still(30), {run_of(marks)}};
   const Restart score = restart_score({&runs, 1}, {1, 2});
-  // Two of a third, and of the 12 exact ones the last three.
+  // Two answers of a third count, and of the 12 exact ones the last three.
   EXPECT_DOUBLE_EQ(score.accuracy, (2.0 / 3 + 3) / 5);
   EXPECT_EQ(score.failures, 1);
   EXPECT_DOUBLE_EQ(score.reliability, std::exp(-1.0));
-  // Both fragments are there at 1 and 2: the mean of a third and 1.
+  // Both fragments are active at 1 and 2: the mean of a third and 1.
   EXPECT_DOUBLE_EQ(score.eao.value(), (1.0 / 3 + 1) / 2);
   ASSERT_EQ(score.eao_curve.size(), 13u);
-  // At 12 the failed one is padded with 0, which leaves 11 thirds over 12.
+  // At 12 the failed fragment is padded with 0, which gives 11 thirds over 12.
   EXPECT_DOUBLE_EQ(score.eao_curve[12], (11.0 / 3 / 12 + 1) / 2);
   EXPECT_FALSE(restart_score({&runs, 1}, {50, 60}).eao);
 }
@@ -71,11 +72,11 @@ TEST(Restart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
   RestartRuns runs{still(20), {run_of("bxxxxxxxxxxhh--nxxhx")}};
   for (const std::size_t absent : {13u, 16u, 17u}) runs.truth.boxes[absent].reset();
   const Restart score = restart_score({&runs, 1}, {1, 19});
-  // From frame 10 on: 1, a third twice; 13 and 14 are unknown; no box, two answers where nothing is
-  // to be seen, a third, 1. Over eight frames.
+  // From frame 10 on: 1 and a third twice; 13 and 14 are unknown; then no box, two answers where
+  // the target is absent, a third, and 1. The mean is over eight frames.
   EXPECT_DOUBLE_EQ(score.accuracy, (1 + 1.0 / 3 + 1.0 / 3 + 0 + 0 + 0 + 1.0 / 3 + 1) / 8);
   EXPECT_NEAR(score.accuracy, 0.375, 1e-12);
-  // Nothing said where there is nothing, as in frame 13: 1.
+  // No answer where the target is absent, as in frame 13, has an overlap of 1.
   EXPECT_DOUBLE_EQ(score.eao_curve[13], (10 + 2.0 / 3 + 1) / 13);
   EXPECT_NEAR(score.eao.value(), 0.9001656896, 1e-7);
 }
@@ -97,7 +98,7 @@ TEST(FrameOverlap, OfEmptyRegionsAsTheToolkitHasIt) {
 }
 
 TEST(MultiStart, ByHand) {
-  // Fails at frame 5: ten frames of nothing from there.
+  // The run fails at frame 5, where ten frames without an overlap begin.
   const MultiStartRuns runs{
       still(20),
       {{0, false, run_of("bxxxxnnnnnnnnnnnnnnn")}, {19, true, run_of("bhhhhhhhhhhhhhhhhhhh")}}};
@@ -105,10 +106,10 @@ TEST(MultiStart, ByHand) {
   EXPECT_DOUBLE_EQ(score.robustness, 25.0 / 40);
   EXPECT_DOUBLE_EQ(score.accuracy, (4 + 19.0 / 3) / 25);
   EXPECT_DOUBLE_EQ(score.eao.value(), (1 + 1.0 / 3) / 2);
-  // The curve ends before `high`: one point of it is the score, and [4, 4] holds none.
+  // The curve ends before `high`. One point of it gives the score, and [4, 4] contains no point.
   EXPECT_EQ(score.eao_curve.size(), 5u);
   EXPECT_FALSE(multistart_score({&runs, 1}, {4, 4}).eao);
-  // Beyond its end a failed run stays, with the toolkit's j - 1.
+  // A failed run stays active beyond its end, with the toolkit's divisor j - 1.
   EXPECT_DOUBLE_EQ(multistart_score({&runs, 1}, {25, 26}).eao.value(), 4.0 / 24);
   // vot-toolkit 0.8.0, compute_eao_partial with high = 26.
   const MultiStart wide = multistart_score({&runs, 1}, {18, 26});
@@ -123,7 +124,8 @@ TEST(MultiStart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
   MultiStartRuns runs{still(8), {{0, false, run_of("bxxnxhxx")}}};
   for (std::size_t i = 3; i < 6; ++i) runs.truth.boxes[i].reset();
   const MultiStart score = multistart_score({&runs, 1}, {1, 8});
-  // Nothing said in frame 3 is right (1), two answers in 4 and 5 are wrong (0), the start has 0.
+  // No answer in frame 3 is correct (1), the two answers in 4 and 5 are wrong (0), and the start
+  // has 0.
   EXPECT_DOUBLE_EQ(score.accuracy, 5.0 / 8);
   EXPECT_NEAR(score.eao.value(), 0.8187074829931973, 1e-12);
 }
@@ -131,7 +133,8 @@ TEST(MultiStart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
 TEST(MultiStart, AFrameWithoutTargetIsNoFailure) {
   MultiStartRuns runs{still(25), {{0, false, run_of("bxxxxnnnnnnnnnnnnnnnxxxxx")}}};
   for (std::size_t i = 10; i < 12; ++i) runs.truth.boxes[i].reset();
-  // 5 to 9 are lost, 10 and 11 are not seen, 12 to 19 are lost: never ten in a row.
+  // The target is lost from 5 to 9, not visible at 10 and 11, and lost from 12 to 19: never for ten
+  // frames in a row.
   EXPECT_EQ(multistart_score({&runs, 1}, {1, 1}).robustness, 1);
 }
 
@@ -159,8 +162,8 @@ TEST(EaoRange, HoldsHalfAroundTheCommonLength) {
   EXPECT_EQ(eao_range({}), std::pair(0, 0));
 }
 
-// 60 frames have a curve from 0 to 59, of which a multi-start range [low, high] reads low to
-// high - 1.
+// A run of 60 frames has a curve from 0 to 59. A multi-start range [low, high] uses its points low
+// to high - 1.
 TEST(EaoRange, IsCutToTheCurves) {
   EXPECT_EQ(within_curves({60, 60}, 60), std::pair(58, 59));
   EXPECT_EQ(within_curves({59, 60}, 60), std::pair(58, 59));
@@ -193,14 +196,15 @@ TEST(Outcomes, AreOfTheLastAnswerThereWas) {
   EXPECT_EQ(all[0].x_px, 10);
   EXPECT_DOUBLE_EQ(all[0].normalised, 0.5);
   EXPECT_DOUBLE_EQ(all[0].overlap, 1.0 / 3);
-  // Between the rays through x = 110 and 120 (y = 105), by the law of cosines.
+  // The angle between the rays through x = 110 and 120 (y = 105), by the law of cosines.
   const double f = 240 / std::tan(std::acos(-1.0) / 6);
   const Vector3 a(110 - 320, 105 - 240, f);
   const Vector3 b(120 - 320, 105 - 240, f);
   EXPECT_NEAR(all[0].angle_mrad.value(), 1000 * std::acos(a.dot(b) / (a.norm() * b.norm())), 1e-5);
   EXPECT_EQ(all[1].frame, 3u);
   EXPECT_EQ(all[1].overlap, 0);
-  EXPECT_EQ(all[1].centre_px, 0);  // of the answer while the target was not seen
+  // The latest answer is the one while the target was not visible.
+  EXPECT_EQ(all[1].centre_px, 0);
 }
 
 TEST(Breakdown, SortsIntoItsBins) {

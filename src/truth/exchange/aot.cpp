@@ -14,19 +14,20 @@
 #include "truth/exchange/text.h"
 
 // Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit": docs/DATASET.md,
-// core/flight.py, core/frame.py, core/metrics): one groundtruth.json; `samples` holds a flight a
-// clip, its `entities` one entry for each object of each frame, and one without id and bb for a
-// frame that shows none. Boxes are [left, top, width, height] from (0, 0); ids are a kind and a
-// number, "Airplane1". A picture is Images/FLIGHT/TIMEFLIGHT.png with the entity's time in
-// nanoseconds: the metrics join detections to truth by that name alone, over all flights, and the
+// core/flight.py, core/frame.py, core/metrics): one groundtruth.json; `samples` holds one flight
+// for each clip, its `entities` one entry for each object of each frame, and one without id and bb
+// for a frame without an object. Boxes are [left, top, width, height] from (0, 0); ids are a kind
+// and a number, "Airplane1". A picture is Images/FLIGHT/TIMEFLIGHT.png with the entity's time in
+// nanoseconds: the metrics join detections to truth only by that name, over all flights, and the
 // loader makes it from time and flight. `metadata` holds fps and the duration in milliseconds.
 namespace airtruth::exchange {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Added to every time: as AOT's own, which count from 1970, all have 19 digits. So the names of
-// pictures sort by time, and those of two flights differ whatever the flights are called.
+// Origin of the times, in nanoseconds. With it all times have 19 digits, as AOT's own, which count
+// from 1970. Picture names therefore sort by time, and those of two flights differ whatever the
+// flights' names are.
 constexpr std::int64_t kTimeOriginNs = 1'500'000'000'000'000'000;
 // Largest distance of a time from the first frame, 5 years. A time farther away is invalid.
 constexpr double kLongestClipS = 1.5e8;

@@ -17,11 +17,11 @@
 // COCO (Lin et al. 2014; cocodataset.org, "Data format"): one JSON file with images, annotations
 // and categories; ids from 1, boxes [x, y, width, height] from the top-left corner at (0, 0).
 // pycocotools (PythonAPI/pycocotools/coco.py) reads id, bbox, area, iscrowd and segmentation of
-// every annotation; without masks the segmentation is the box as a polygon, which is what loadRes()
-// itself makes of a box. An annotation with iscrowd = 1 is a region in which detections do not
-// count, no object.
-// Videos and tracks as the video data sets that grew from it have them: videos, video_id, frame_id,
-// track_id.
+// every annotation; without masks the segmentation is the box as a polygon, as loadRes()
+// itself makes it from a box. An annotation with iscrowd = 1 is a region in which detections do not
+// count, and not an object.
+// Videos and tracks follow the video data sets that are derived from COCO: videos, video_id,
+// frame_id, track_id.
 namespace airtruth::exchange {
 namespace {
 

@@ -9,12 +9,12 @@
 #include "truth/exchange/text.h"
 #include "truth/exchange/xml_file.h"
 
-// "CVAT for video 1.1" (docs.cvat.ai, "XML annotation format"), a file a clip: a <track> an object,
-// with a <box> in every frame that shows it and one with outside="1" where it has gone. Frames from
-// 0, corners from (0, 0). Where there are pictures, an <image> a frame names its file: CVAT's and
-// datumaro's readers (dataset_manager/formats/cvat.py; plugins/data_formats/cvat/base.py) take
-// images/frame_000000.png for a frame without one, and datumaro's refuses a name whose file is not
-// there.
+// "CVAT for video 1.1" (docs.cvat.ai, "XML annotation format"): one file for each clip, with one
+// <track> for each object. A track has a <box> in every frame that shows the object, and one with
+// outside="1" after it has left. Frames count from 0, corners from (0, 0). Where there are
+// pictures, one <image> for each frame names its file: CVAT's and datumaro's readers
+// (dataset_manager/formats/cvat.py; plugins/data_formats/cvat/base.py) take images/frame_000000.png
+// for a frame without one, and datumaro's refuses a name whose file is not there.
 namespace airtruth::exchange {
 namespace {
 

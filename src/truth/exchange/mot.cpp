@@ -12,17 +12,17 @@
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 
-// MOTChallenge (Milan et al. 2016, "MOT16", table 4): a folder a clip with img1/000001.jpg ...,
-// seqinfo.ini and gt/gt.txt. Lines of "frame, id, left, top, width, height, conf, class,
-// visibility" with frames, ids and pixels from 1. A tenth column, which the readers of that format
-// pass over, holds the range in metres (-1: unknown).
+// MOTChallenge (Milan et al. 2016, "MOT16", table 4): one folder for each clip, with
+// img1/000001.jpg ..., seqinfo.ini and gt/gt.txt. The lines are "frame, id, left, top, width,
+// height, conf, class, visibility" with frames, ids and pixels from 1. A tenth column, which the
+// readers of that format ignore, holds the range in metres (-1: unknown).
 //
-// The class of every object is 1 unless asked otherwise: TrackEval's MOT16, MOT17 and MOT20 keep
-// class 1 alone (trackeval/datasets/mot_challenge_2d_box.py, get_preprocessed_seq_data).
-// tracks.txt, a line "id,class" a track, which other readers do not know, keeps the class.
+// The class of every object is 1 by default: TrackEval's MOT16, MOT17 and MOT20 keep
+// only class 1 (trackeval/datasets/mot_challenge_2d_box.py, get_preprocessed_seq_data).
+// tracks.txt, with a line "id,class" for each track, stores the class; other readers ignore it.
 // seqinfo.ini has the seven keys of the published ones, with whole numbers, since datumaro refuses
-// others (plugins/data_formats/mot.py); what else is known of the clip is in comments. What is
-// unknown is 0, and a visibility that no label of a clip knows is 1.
+// others (plugins/data_formats/mot.py); comments hold further properties of the clip.
+// Unknown values are 0; the visibility is 1 where no label of the clip states one.
 namespace airtruth::exchange {
 namespace {
 

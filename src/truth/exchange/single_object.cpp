@@ -10,20 +10,20 @@
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 
-// Folders with one object each, a line of x, y, width, height a frame.
+// Folders with one object each, and one line of x, y, width, height for each frame.
 //
 // OTB (Wu et al. 2013): groundtruth_rect.txt, img/0001.jpg; pixels from 1; "0,0,0,0" where the
-// target is not there, which the toolkit passes over.
+// target is absent; the toolkit skips such frames.
 // GOT-10k (Huang et al. 2019): groundtruth.txt, 00000001.jpg, absence.label, cut_by_image.label,
-// cover.label (0 to 8 for the share that is seen), meta_info.ini, list.txt. Pixels from 1, as its
+// cover.label (0 to 8 for the visible share), meta_info.ini, list.txt. Pixels from 1, as its
 // toolkit's reference tracker takes them. The toolkit (got10k/datasets/got10k.py) reads all three
-// labels of every sequence; pytracking's loader takes the lines of meta_info.ini by their place. So
-// all are written: what is unknown is "unknown" in meta_info.ini, cover 8 where there is a box, and
-// cut where the box reaches the picture's edge. A last line of meta_info.ini names those labels.
-// VOT (Kristan et al. 2013 on; vot-toolkit's vot/dataset/common.py): groundtruth.txt,
+// labels of every sequence; pytracking's loader takes the lines of meta_info.ini by their position.
+// Therefore all are written: an unknown value is "unknown" in meta_info.ini, cover 8 where there is
+// a box, and cut where the box reaches the picture's edge. A last line of meta_info.ini names those
+// labels. VOT (Kristan et al. 2013 on; vot-toolkit's vot/dataset/common.py): groundtruth.txt,
 // color/00000001.jpg, a file `sequence` with a whole fps, list.txt, occlusion.tag, range_m.value,
 // and anchor.value with the starts of the multi-start experiment (1 forward, -1 backward, 0 none;
-// vot/experiment/multistart.py). Pixels from 0; "nan,nan,nan,nan" where the target is not there.
+// vot/experiment/multistart.py). Pixels from 0; "nan,nan,nan,nan" where the target is absent.
 namespace airtruth::exchange {
 namespace {
 

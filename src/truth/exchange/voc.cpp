@@ -10,11 +10,11 @@
 // Pascal VOC (Everingham et al. 2010; VOC2012 development kit, section 4): Annotations/NAME.xml,
 // JPEGImages/NAME.jpg, ImageSets/Main/PART.txt. Pixels count from 1 and both corners belong to the
 // box: xmin = x + 1, xmax = x + width. Corners are whole numbers, of the pixels that the box
-// touches within the picture. The development kit's VOCreadrecxml.m wants folder, filename,
+// touches within the picture. The development kit's VOCreadrecxml.m requires folder, filename,
 // source.database, size and segmented, and finds the picture at FOLDER/JPEGImages/FILENAME; its XML
-// reader (VOCxml2struct.m) takes elements, tabs and line ends alone. Python's readers take int() of
-// the corners, of truncated and of difficult. So truncated, occluded and difficult are always
-// there: 0 where they are unknown, and then named in <unknown>.
+// reader (VOCxml2struct.m) supports only elements, tabs and line ends. Python's readers apply int()
+// to the corners, of truncated and of difficult. Therefore truncated, occluded and difficult are
+// always present: 0 where they are unknown; <unknown> then names them.
 namespace airtruth::exchange {
 namespace {
 

@@ -11,11 +11,11 @@
 #include "truth/exchange/text.h"
 
 // YOLO as Ultralytics reads it (docs.ultralytics.com, "Detection dataset format"):
-// images/PART/*.jpg and labels/PART/*.txt of the same name, a line "class x y width height" an
-// object, class from 0, the box's centre and size as shares of the picture. A picture that shows
-// nothing has an empty file. Its loader (ultralytics/data/utils.py) refuses a picture with a
-// coordinate outside of 0..1: boxes are cut at the picture's edge. `path` in data.yaml is absolute,
-// since a relative one counts from the user's own folder of data sets.
+// images/PART/*.jpg and labels/PART/*.txt of the same name, one line "class x y width height" for
+// each object, class from 0, the box's centre and size as shares of the picture. A picture without
+// an object has an empty file. Its loader (ultralytics/data/utils.py) refuses a picture with a
+// coordinate outside of 0..1: boxes are clipped at the picture's edge. `path` in data.yaml is
+// absolute, since a relative one counts from the user's own folder of data sets.
 namespace airtruth::exchange {
 namespace {
 
