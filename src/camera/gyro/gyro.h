@@ -9,15 +9,17 @@
 
 namespace airtruth::motion {
 
-// Rates of turning as a camera's gyroscope told them, about its own axes (whichever those are).
+// One measurement of a camera's gyroscope: the rates of rotation about the axes of the gyroscope,
+// whose directions in the camera are unknown.
 struct GyroSample {
-  double time_s = 0;  // on the video's clock, but for an offset that is solved
+  // The time on the video's clock, apart from an offset that fit_gyro() estimates.
+  double time_s = 0;
   Vector3 rate_radps = Vector3::Zero();
 };
 
 // One packet of a GoPro's telemetry (GPMF: key, type, size and count, then values, big-endian,
-// nested in DEVC and STRM), its samples spread evenly over [begin_s, end_s). Nothing where the
-// packet has no GYRO or is damaged.
+// nested in DEVC and STRM). The samples are spread evenly over [begin_s, end_s). The result is
+// empty where the packet has no GYRO or is damaged.
 std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
                                        double begin_s,
                                        double end_s);
@@ -30,14 +32,14 @@ struct GyroFit {
   double rms_radps = 0;
 };
 
-// Axes, offset and bias by which the gyro agrees best with measured rotations (least squares; axes
-// by Kabsch 1976). Empty where fewer than 40 measured steps turn at all, or where the two do not
-// agree (correlation below 0.5).
+// The axes, offset and bias with which the gyroscope fits the measured rotations best (least
+// squares; axes by Kabsch 1976). The result is empty where fewer than 40 measured steps contain a
+// rotation, or where the correlation is below 0.5.
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
                                 const std::vector<FrameMotion>& motion);
 
-// Frames that were not measured, from the gyro, between those that were; the rest of the clip after
-// a bridge follows on. They stay flagged as bridged.
+// The motion with the rotation of unmeasured frames replaced by the gyroscope's. The frames after
+// such a bridge continue from its end. Replaced frames keep the state kBridged.
 std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
                                          const std::vector<GyroSample>& gyro,
                                          const GyroFit& fit);

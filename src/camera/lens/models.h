@@ -5,18 +5,19 @@
 
 #include "camera/lens/lens.h"
 
-// The three models' own arithmetic; everybody else uses lens.h.
+// The arithmetic of the three lens models. Other modules use lens.h.
 namespace airtruth::lens {
 
-// How far a model reaches: the largest angle from the axis, and a bound on the distorted radius
-// (pixels from the principal point over the focal length) that any ray up to there is mapped to.
+// The valid field of a model: the largest angle from the axis, and an upper bound on the distorted
+// radius (distance from the principal point in pixels over the focal length) of any ray within that
+// angle.
 struct Field {
   double max_angle_rad = 0;
   double max_radius = 0;
 };
 
-// A curve with less slope than this, per radian, counts as having stopped rising: beyond it a
-// double no longer tells an angle from its pixel within 1e-9 rad.
+// The least slope, per radian, of a curve that still rises. At a lower slope an angle cannot be
+// recovered from its pixel within 1e-9 rad in double precision.
 inline constexpr double kFlat = 1e-4;
 
 Field field_of(const Pinhole& lens);

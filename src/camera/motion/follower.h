@@ -12,20 +12,25 @@
 // The two models of motion behind Estimator.
 namespace airtruth::motion {
 
-constexpr int kPatience = 15;  // bridged frames in a row before tracking starts anew
-constexpr double kCutShare =
-    0.12;  // fewer survivors than this between two textured frames: the scene changed
+// The number of consecutive bridged frames after which tracking starts anew.
+constexpr int kPatience = 15;
 
-constexpr double kFollowedShare =
-    0.5;  // of the corners before: so many that fit across a cut of the picture say it is none
+// The share of corners that are found again between two textured frames of one scene. With a
+// smaller share, the scene has changed.
+constexpr double kCutShare = 0.12;
 
-// What to do with a frame that could not be measured.
+// The share of the previous frame's corners whose motion must fit across a cut of the picture. With
+// this share or more, the frame is not a cut.
+constexpr double kFollowedShare = 0.5;
+
+// The decision about a frame that could not be measured.
 struct Loss {
   bool is_cut = false;
   bool starts_anew = false;
 };
-// before, survivors: corners followed from the frame before, and those that were found again;
-// fresh: corners that the frame itself has. begins_shot: as Estimator::next().
+// `before` is the number of corners tracked from the previous frame, `survivors` the number of them
+// that were found again, and `fresh` the number of corners of the frame itself. `begins_shot` is as
+// in Estimator::next().
 inline Loss loss_of(std::size_t fresh,
                     std::size_t before,
                     std::size_t survivors,
@@ -39,7 +44,7 @@ inline Loss loss_of(std::size_t fresh,
   return {cut, cut || bridged_in_row >= kPatience || before < fewest};
 }
 
-// Does a frame go on from the one before it, by what was followed of its corners?
+// Whether a frame continues the one before it, from the number of corners that were tracked.
 inline bool is_followed(bool begins_shot, int inliers, std::size_t before) {
   return !begins_shot || inliers >= kFollowedShare * static_cast<double>(before);
 }
@@ -48,11 +53,12 @@ class Follower {
  public:
   virtual ~Follower() = default;
   virtual FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) = 0;
-  // Where up is, as a unit vector in the reference camera; empty where no horizon is known. What
-  // lies under the horizon is near, and counts less (nearness.h). A homography does not ask.
+  // Sets the up direction as a unit vector in the reference camera; empty where no horizon is
+  // known. Points below the horizon are near and have less weight (nearness.h). The model
+  // homography ignores the direction.
   virtual void set_up(const std::optional<Vector3>&) {}
-  // How far the rotation may have strayed from the truth since the frame before, as a standard
-  // deviation: where a key frame was tied to others, and where tracking began anew.
+  // The standard deviation of the error that the rotation gained since the frame before. It gains
+  // error where a key frame is linked to others, and where tracking starts anew.
   virtual double stray_rad() const { return 0; }
 };
 

@@ -9,23 +9,25 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 
-// Near ground moves against what is far while the camera flies, and an intruder moves with what is
-// far. Over level ground a point goes astray by up to (way flown / height) x sine of its depression
-// under the horizon, since its range is height / sine. How much that is, the corners tell.
+// The weights of near points. While the camera flies, near ground moves against far points
+// (parallax), and an intruder moves with the far points. Over level ground the parallax of a point
+// is at most (distance flown / height) x sine of its depression below the horizon, because its
+// range is height / sine. The amount of parallax is estimated from the corners themselves.
 namespace airtruth::motion {
 
-// Ground that lies by less under the horizon counts as far: its range is 14 heights or more. At
-// 25 m/s and 50 m of height it moves by 0.05 mrad a frame of 1/30 s against the horizon.
+// The depression below the horizon, in degrees, under which ground counts as far: its range is then
+// 14 heights or more. At 25 m/s and a height of 50 m such ground moves by 0.05 mrad per frame of
+// 1/30 s against the horizon.
 constexpr double kFarDepressionDeg = 4;
 
 struct Nearness {
-  // Sine of the depression times the number of frames between two views. 0: above the horizon, or
-  // nothing is known of where that is.
+  // The sine of the depression times the number of frames between two views. It is 0 above the
+  // horizon, and where the horizon is unknown.
   double value = 0;
   bool is_far = true;  // above the horizon or less than kFarDepressionDeg under it
 };
 
-// in_any: the ray, and up, in one camera; up is a unit vector.
+// The ray and the up direction are in the same camera frame; up is a unit vector.
 inline Nearness nearness_of(const Vector3& ray_in_any,
                             const Vector3& up_in_any,
                             std::int64_t frames) {
@@ -33,8 +35,9 @@ inline Nearness nearness_of(const Vector3& ray_in_any,
   return {sine * static_cast<double>(frames), sine < std::sin(radians(kFarDepressionDeg))};
 }
 
-// The variance that parallax adds to a squared miss of two coordinates, per squared nearness: the
-// median over the near points of what they miss by beyond noise. 0 where there are none.
+// Estimates the variance that parallax adds to the squared residual of two coordinates, per squared
+// nearness: the median over the near points of their squared residual beyond noise. It is 0 where
+// there are no near points.
 class Parallax {
  public:
   explicit Parallax(double noise) : noise_(noise) {}
@@ -54,10 +57,10 @@ class Parallax {
   std::vector<double> ratios_;
 };
 
-// How much a point counts: (noise / (noise + parallax))^2 in variances, the square since neighbours
-// go astray alike and do not average out, times the weight of Geman and McClure (1987) against
-// outliers. Ground that does not go astray counts in full: a camera high above it, or at rest,
-// loses nothing.
+// The weight of a point: (noise / (noise + parallax))^2, both as variances, times the weight of
+// Geman and McClure (1987) against outliers. The ratio is squared because the parallax of
+// neighbours is correlated and does not average out. Ground without parallax has full weight, as
+// below a camera at great height or at rest.
 inline double weight_of(
     double squared_miss, double noise, double scale, double limit, double of_parallax) {
   if (squared_miss > limit * limit + 4 * of_parallax) return 0;

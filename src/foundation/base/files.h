@@ -10,18 +10,18 @@ namespace airtruth {
 
 namespace fs = std::filesystem;
 
-// Whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than
+// The whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than
 // max_bytes.
 std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{1} << 30);
 
-// Writes beside the final name, flushes to disk and renames, so that `path` holds either what it
-// held before or all of `bytes`. Throws Error where that fails (folder missing, no permission, disk
-// full) and leaves nothing. kLater is for many small files: they outlive a power cut only after
-// flush_files().
+// Writes a temporary file beside `path`, flushes it to disk and renames it, so that `path` holds
+// either its previous content or all of `bytes`. Throws Error where that fails (folder missing, no
+// permission, disk full); no temporary file is left. kLater is for many small files: they survive a
+// power failure only after flush_files().
 enum class Flush { kNow, kLater };
 void write_file(const fs::path& path, std::string_view bytes, Flush flush = Flush::kNow);
 
-// Error where the path exists and may not be replaced.
+// Throws Error where the path exists and may not be replaced.
 void refuse_existing(const fs::path& path, bool overwrite);
 
 // Everything that was written to the file system of `folder` is on the disk when this returns.
@@ -38,7 +38,7 @@ std::string sha256_of(std::string_view bytes);
 // Is the text well-formed UTF-8? Returns the byte offset of the first fault, or npos.
 std::size_t utf8_fault(std::string_view text);
 
-// Error where a path is no UTF-8: records are JSON and TOML, which hold no other text.
+// Throws Error where a path is not UTF-8: records are JSON and TOML, which hold UTF-8 only.
 void require_utf8(const fs::path& path);
 
 // $XDG_CACHE_HOME/airtruth, else ~/.cache/airtruth, else a folder under the temporary directory.
