@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures are compared with what the ffmpeg program makes of the same two.
+// Compares the pictures with the output of the ffmpeg program for the same two.
 #include "picture/video/patch_codec.h"
 
 #include <cmath>
@@ -70,7 +70,7 @@ std::string by_the_ffmpeg_program(const Picture& reference,
 }
 
 TEST(PatchCodec, MakesWhatTheFfmpegProgramMakes) {
-  // Grey is left out: the program stretches its range on the way.
+  // Grey is omitted: the program stretches its range.
   const std::pair<Chroma, const char*> layouts[] = {
       {Chroma::k420, "yuv420p"}, {Chroma::k422, "yuv422p"}, {Chroma::k444, "yuv444p"}};
   for (const auto& [chroma, name] : layouts) {

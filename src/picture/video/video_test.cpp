@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every decoded sample is compared with what the ffmpeg program makes of the same file.
+// Compares every decoded sample with the output of the ffmpeg program for the same file.
 #include <cstdlib>
 #include <fstream>
 
@@ -171,7 +171,7 @@ TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
     EXPECT_NE(reader.info().rotation_deg, 0);
     EXPECT_EQ(reader.info().width, rotation == 180 ? 64 : 48);
     EXPECT_TRUE(all_planes(reader) == raw("turned.mp4", "yuv420p"))
-        << rotation;  // ffmpeg turns it upright itself
+        << rotation;  // The ffmpeg program rotates the picture itself.
   }
 }
 
@@ -213,8 +213,8 @@ TEST_F(Video, LosslessOutputGivesEverySampleBack) {
   }
 }
 
-// Two shots and a slow change; the frame that begins the second one is said to, and no other, and
-// every frame is the one that comes without looking ahead.
+// A clip of two shots and a slow change. Only the frame that begins the second shot is marked, and
+// every frame equals the one that a reader without cuts returns.
 TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
   ffmpeg(
       "-f lavfi -i color=0x404040:s=64x48:r=25:d=0.4 -f lavfi -i testsrc=s=64x48:r=25:d=0.4 "
@@ -234,7 +234,7 @@ TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
   EXPECT_FALSE(plain.next());
   EXPECT_EQ(frames, 20);
   EXPECT_EQ(cuts, std::vector<std::int64_t>{10});
-  // From a later frame on, and up to the last before the cut.
+  // Reads from a later frame on, and up to the last one before the cut.
   Reader later(folder_ / "cut.mkv", {.first_frame = 7, .with_cuts = true});
   for (int k = 0; k < 5; ++k) EXPECT_EQ(later.next()->begins_shot, k == 3) << k;
   Reader first(folder_ / "cut.mkv", {.frame_count = 10, .with_cuts = true});
@@ -363,7 +363,7 @@ TEST_F(Video, SameFramesGiveTheSameFile) {
   }
 }
 
-// A .jpg of a decoded picture shows the colours that the picture has, however they are coded.
+// A .jpg of a decoded picture has the picture's colours, whatever their coding.
 TEST_F(Video, JpegsOfPicturesKeepTheirColours) {
   image::Rgb8 rgb = image::make_rgb8(96, 64);
   for (int y = 0; y < 64; ++y)
@@ -444,7 +444,7 @@ TEST_F(Video, DecodesTheRealClipsAsFfmpegDoes) {
   }
 }
 
-// Largest difference of two lots of samples; 256 where their numbers differ.
+// Largest difference between two sets of samples; 256 where their sizes differ.
 int worst(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return 256;
   int most = 0;
@@ -462,8 +462,7 @@ std::string planar(const std::string& packed) {
   return result;
 }
 
-// Each of them against what ffmpeg makes of it, to one step: sixteen bits may be rounded either
-// way.
+// Compares each with ffmpeg's output, to one step: sixteen bits may be rounded either way.
 TEST_F(Video, ReadsStillsOfEveryDepth) {
   const std::string source = "-f lavfi -i testsrc=size=46x30:rate=1 -frames:v 1 ";
   for (const char* format : {"pal8", "rgb48be", "rgba64be", "rgba", "rgb24"}) {
@@ -489,7 +488,7 @@ TEST_F(Video, AMaskOfOneBitIsAMask) {
   EXPECT_TRUE(mask.is_free(4, 4));
 }
 
-// Where the matrix sends the unit vectors says where the picture's corners must go.
+// The images of the unit vectors under the matrix determine the positions of the picture's corners.
 TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
   for (const double degrees : {0.0, 90.0, 180.0, 270.0}) {
     for (const bool flip : {false, true}) {
@@ -503,8 +502,8 @@ TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
       const image::Picture shown = oriented(picture.clone(), orientation_of(matrix.data()));
       const bool turned = matrix[0] == 0;
       ASSERT_EQ(shown.width, turned ? 2 : 3);
-      // A step in the shown picture along where the matrix sends x (y) is a step along x (y) in the
-      // stored one.
+      // A step along the image of x (y) in the shown picture is a step along x (y) in the stored
+      // one.
       const auto sign = [](std::int32_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
       const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]),
                 cy = sign(matrix[4]);
