@@ -11,19 +11,21 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/image/picture.h"
 
-// How something small looks against what is around it. The same arithmetic for a real aircraft and
-// for an inserted one, from pixels alone: no alpha, no truth.
+// Measures the appearance of a small object against its surroundings. The same arithmetic applies
+// to a real and to an inserted aircraft, from pixels alone: it uses neither alpha nor truth.
 namespace airtruth::comparison {
 
 // A square crop about a box.
 struct Patch {
-  int x = 0, y = 0;    // its corner in the picture
-  cv::Mat rgb;         // 8-bit
-  cv::Mat grey;        // float code values
-  cv::Mat silhouette;  // 8-bit, 255: stands out from its surroundings
+  int x = 0, y = 0;  // corner in the picture, px
+  cv::Mat rgb;       // 8-bit
+  cv::Mat grey;      // float code values
+  // 8-bit; 255 where the object stands out from its surroundings.
+  cv::Mat silhouette;
 };
 
-// The box with half its larger side around it, at least 8 px. Empty where that leaves the picture.
+// Crops the box with a margin of half its larger side, at least 8 px. Returns empty where the crop
+// leaves the picture.
 std::optional<Patch> patch_of(const image::Picture& picture, const Box& box);
 
 struct Looks {
@@ -48,7 +50,8 @@ Looks looks_of(const Patch& patch);
 // Hellinger (1909) distance of two histograms, 0..1.
 double distance(const std::array<double, 24>& a, const std::array<double, 24>& b);
 
-// What a judge sees: gradient orientations by ring, noise and edge statistics; no place, no size.
+// Returns the features that a judge reads: gradient orientations by ring, noise and edge
+// statistics. They hold neither position nor size.
 std::vector<float> features_of(const Patch& patch);
 
 }  // namespace airtruth::comparison

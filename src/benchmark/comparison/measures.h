@@ -10,20 +10,20 @@
 #include "benchmark/comparison/looks.h"
 #include "foundation/geometry/transform.h"
 
-// The numbers of a comparison, from the looks of both aircraft in every frame.
+// Computes the quantities of a comparison from the appearance of both aircraft in every frame.
 namespace airtruth::comparison {
 
 struct Compared {
   std::int64_t frame = 0;
   Looks real, made;
   std::vector<float> real_features, made_features;
-  // How far the background moved in the picture since the frame before, where it can be seen.
+  // Shift of the background in the picture since the previous frame; empty where it is unknown.
   std::optional<Pixel> background_shift_px;
 };
 
 std::vector<Pair> pairs_of(const std::vector<Compared>& all);
 
-// patches.csv: a line each for the real and the inserted one, what the judge reads.
+// Returns patches.csv: one line of the judge's features for each real and each inserted patch.
 std::string patches_csv(const std::vector<Compared>& all);
 
 // comparison.md and comparison.json.

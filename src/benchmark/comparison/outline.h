@@ -8,8 +8,9 @@ namespace airtruth::comparison {
 
 struct Outline {
   double edge_width_px = 0;  // 10 to 90 % of the step, median along the outline; 0: no clear edge
-  double halo = 0;  // how far the sky beside the outline goes beyond the sky further off, away from
-                    // the aircraft, as a share of the step
+  // Overshoot of the sky beside the outline relative to the sky further off, away from the
+  // aircraft, as a share of the step.
+  double halo = 0;
 };
 
 // `level`: the surroundings (surroundings_of()). All of one size; `grey` and `level` float.

@@ -9,9 +9,9 @@
 
 namespace airtruth::comparison {
 
-// Waypoints and times on which an aircraft of that mesh keeps beside the real one, `scale` times as
-// large as it, in the view of a camera that stands at the origin and looks north. Time 0 is the
-// first box's frame. Error where there is no room beside it.
+// Waypoints and times on which an aircraft of that mesh stays beside the real one, `scale` times as
+// large, in the view of a camera at the origin that looks north. Time 0 is the frame of the first
+// box. Throws Error where there is no room beside the real aircraft.
 struct Beside {
   std::vector<Vector3> waypoints_ned_m;
   std::vector<double> times_s;
@@ -23,12 +23,13 @@ Beside path_beside(const RealBoxes& boxes,
                    double frame_rate_hz,
                    double scale = 1);
 
-// How far a camera looks up, 0 to 60 degrees, that sees an aircraft in that attitude (as a level
-// camera has it): where the aircraft is most nearly upright. Light comes from above in the world
-// and not in the picture, and most of what is filmed from the ground flies level.
+// Returns the upward pitch, 0 to 60 degrees, of a camera that sees an aircraft in that attitude
+// (which is stated for a level camera): the pitch at which the aircraft is most nearly upright.
+// Light comes from above in the world and not in the picture, and most aircraft that are filmed
+// from the ground fly level.
 double camera_pitch_deg(const YawPitchRoll& attitude);
 
-// The same picture with the world turned under it, so that the camera looks up by that much.
+// Rotates the world so that the picture stays the same and the camera looks up by that angle.
 void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude);
 
 }  // namespace airtruth::comparison

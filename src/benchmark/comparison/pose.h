@@ -11,32 +11,33 @@
 #include "foundation/base/log.h"
 #include "foundation/geometry/transform.h"
 
-// Which attitude, and which type, has the silhouette that a real aircraft shows.
+// Finds the attitude, and the type, whose silhouette matches a real aircraft's.
 namespace airtruth::comparison {
 
 struct PoseFit {
-  // As a camera that looks north, level, sees the aircraft straight ahead.
+  // The attitude as seen by a level camera that looks north, with the aircraft straight ahead.
   YawPitchRoll attitude;
-  // Intersection over union of the two silhouettes, mean over the masks, both bounded alike; 0..1.
+  // Intersection over union of the two silhouettes, both cropped to their bounds; mean over the
+  // masks, 0 to 1.
   double overlap = 0;
-  // The real one's width over its height, over that of the render.
+  // Width over height of the real silhouette, divided by the same ratio of the rendered one.
   double aspect_ratio = 1;
 };
 
-// Renders silhouettes of the mesh from 78 directions and searches them, mirrored and turned in the
-// picture, for the one that fits the first mask; then closes in on the four best, by
-// all masks, in steps of 8, 4 and 2 degrees. A
-// silhouette is the same from the front and below as from behind and above: of two such attitudes
-// the one that is seen from below is given. Of attitudes that fit alike
-// the more upright one is given. The aircraft's up is within 60 degrees of the
-// picture's, except where it is seen from more than 45 degrees below. `masks`: 8-bit, 255:
-// aircraft, bounded tightly; one or more. Throws Interrupted on stop.
+// Renders silhouettes of the mesh from 78 directions and searches them, mirrored and rotated in the
+// picture, for the best match with the first mask. It then refines the four best matches with all
+// masks, in steps of 8, 4 and 2 degrees. A silhouette is the same from the front and below as from
+// behind and above; of two such attitudes the result is the one seen from below. Of attitudes that
+// match equally well the result is the more upright one. The aircraft's up axis is within 60
+// degrees of the picture's, except where the aircraft is seen from more than 45 degrees below.
+// `masks`: one or more tightly bounded masks, 8-bit, 255 for the aircraft. Throws Interrupted on
+// stop.
 PoseFit fit_pose(const std::vector<cv::Mat>& masks,
                  const aircraft::Mesh& mesh,
                  const std::stop_token& stop = {});
 
-// Types that look unlike one another, one of each kind, in mostly white paint as most civil
-// aircraft are: what is searched where nothing is stated.
+// Types of distinct appearance, one of each kind, in mostly white paint like most civil aircraft.
+// They are searched where the user states no types.
 std::vector<std::string> types_to_match();
 
 struct TypeFit {

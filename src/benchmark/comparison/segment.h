@@ -8,7 +8,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// What stands out from the sky around it, from pixels alone: no alpha, no truth.
+// Finds what stands out from the sky around it, from pixels alone, without alpha or truth.
 namespace airtruth::comparison {
 
 // Luma of a part of a picture as float code values. The area lies within the picture.
@@ -25,7 +25,8 @@ cv::Mat surroundings_of(const cv::Mat& grey, const cv::Mat& where);
 // all 0 where there is none.
 cv::Mat silhouette_of(const cv::Mat& grey, double reach_px);
 
-// An aircraft as it stands out: its bounds in whole pixels, and which of their pixels it has.
+// An aircraft in the picture: its bounds in whole pixels, and the pixels within them that belong to
+// it.
 struct Seen {
   Box box;
   cv::Mat mask;  // of the box's size; 8-bit, 255: aircraft

@@ -72,7 +72,8 @@ evaluation::MultiStartRuns multistart_runs(const TruthClip& truth, const Results
   const std::int64_t length = std::ssize(truth.clip.frames);
   for (std::size_t i = 0; i < results.multistart.size(); ++i) {
     const std::int64_t anchor = results.anchors[i];
-    // One in the very middle is as far from both ends: forward, as anchors_of() has it.
+    // An anchor in the exact middle is equally far from both ends; it runs forward, as in
+    // anchors_of().
     const bool goes_forward = std::ssize(results.multistart[i].frames) == length - anchor;
     const bool goes_backward = std::ssize(results.multistart[i].frames) == anchor + 1;
     runs.runs.push_back({anchor,
@@ -82,8 +83,8 @@ evaluation::MultiStartRuns multistart_runs(const TruthClip& truth, const Results
   return runs;
 }
 
-// What a folder holds for each truth. Error where that is nothing; warns of what it holds for
-// sequences that are not there, and of sequences that it lacks.
+// Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
+// for sequences that the set lacks, and of sequences without results.
 std::vector<Results> results_in(const fs::path& folder,
                                 const std::vector<TruthClip>& truths,
                                 const AssessOptions& options) {
@@ -305,7 +306,7 @@ Assessment assess(const fs::path& set,
   assessment.until_loss = options.until_loss;
   assessment.truths = truths_of(dataset::LabelledSet(set), options.warn);
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
-  // Results first: what is wrong with them is said before minutes of video are read.
+  // Results are read first, so that their faults are reported before minutes of video are read.
   std::map<std::string, std::vector<Results>> found;
   for (const fs::path& folder : results) {
     const std::string name = name_of(folder);

@@ -22,8 +22,8 @@ namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-// As on the page (dataset/page/common.js): black is of truth alone, and the first six are told
-// apart with every kind of colour vision.
+// The colours of the page (dataset/page/common.js): black is for the truth alone, and the first six
+// are distinguishable with every kind of colour vision.
 constexpr Colour kTruthColour = {0, 0, 0};
 constexpr Colour kTruthOnPictures = {255, 255, 255};  // with a dark rim
 constexpr std::array<Colour, 12> kColours = {{{0, 114, 178},
@@ -257,7 +257,7 @@ class Figures {
     plot.write();
   }
 
-  // What a tracker answered on a sequence; nullptr where it was not run.
+  // Answers of a tracker on a sequence; nullptr where it was not run.
   const ScoredSequence* scored(std::size_t tracker, std::size_t truth) const {
     for (const ScoredSequence& sequence : assessment_.trackers[tracker].sequences)
       if (sequence.truth == truth && sequence.score) return &sequence;

@@ -29,20 +29,21 @@ using evaluation::Mark;
 using evaluation::Trajectory;
 
 constexpr std::int64_t kSkip = 5;  // frames from a failure to the next start
-constexpr int kMostCrashes = 3;    // of a run with restarts; after them each start is a failure
+// Crashes allowed in a run with restarts; after them each start counts as a failure.
+constexpr int kMostCrashes = 3;
 
 tracking::TrackerOptions tracker_options(const RunOptions& options, std::uint64_t seed) {
   return {
       .seed = seed, .start_s = options.start_s, .answer_s = options.answer_s, .stop = options.stop};
 }
 
-// A tracker for one run, its answers and its times. Once it is broken it answers nothing.
+// A tracker for one run, with its answers and its times. A failed tracker gives no more answers.
 class Follower {
  public:
   Follower(const std::string& command, const RunOptions& options, std::uint64_t seed)
       : command_(command), options_(tracker_options(options, seed)) {}
 
-  // Begun on a picture; false where it broke.
+  // Starts the tracker on a picture. Returns false where it failed.
   bool begin(const image::Picture& picture, const Box& box) {
     return guarded([&] {
       if (!tracker_) tracker_ = tracking::make_tracker(command_, options_);
@@ -255,7 +256,7 @@ class Running {
       fs::create_directories(summary_.folder / "logs");
       write_file(summary_.folder / "logs" / (file.stem().string() + ".log"), log);
     }
-    // The boxes last: they are what says that a run is done.
+    // The boxes are written last: their file marks the run as done.
     write_file(times_file(file, protocol), text_of(record.seconds));
     write_file(file, text_of(record.frames));
     const std::lock_guard lock(mutex_);
@@ -305,7 +306,7 @@ class Running {
     return *picture;
   }
 
-  // From an anchor to the clip's end, or backward to its beginning.
+  // Runs from an anchor to the clip's end, or backward to its beginning.
   void follow_from(const exchange::Clip& clip,
                    Frames& frames,
                    const evaluation::Anchor& anchor,

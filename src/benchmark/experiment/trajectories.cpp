@@ -47,8 +47,8 @@ Trajectory read_trajectory(const fs::path& file, int origin_px) {
   return trajectory;
 }
 
-// Empty where there is none; 0 for a blank line, which is how VOT's toolkit leaves a frame without
-// a time. Of several columns (GOT-10k's repetitions) the first.
+// Empty where there is no time; 0 for a blank line, which VOT's toolkit writes for a frame without
+// a time. Of several columns (GOT-10k's repetitions) the first is read.
 std::vector<double> read_times(const fs::path& file, std::size_t frames) {
   if (!fs::exists(file)) return {};
   const std::vector<exchange::Line> filled = exchange::lines_of(file);
@@ -73,7 +73,8 @@ const exchange::Label* label_of(const exchange::LabelledFrame& frame) {
 
 using Tracks = std::map<std::int64_t, std::map<std::int64_t, Box>>;  // [frame][id]
 
-// The one with the largest overlap with the truth in the first frame where any has one.
+// The track with the greatest overlap with the truth in the first frame where any track overlaps
+// it.
 std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchange::Clip& clip) {
   for (const exchange::LabelledFrame& frame : clip.frames) {
     const exchange::Label* label = label_of(frame);
@@ -121,7 +122,8 @@ bool is_mot(const fs::path& file) {
   const auto lines = exchange::lines_of(file);
   if (lines.empty() || lines.front().text.starts_with('m')) return false;
   const std::size_t count = exchange::numbers_of(lines.front(), file).size();
-  // Seven or more, but eight are a polygon's, unless it begins like a frame and an id.
+  // MOTChallenge has seven or more columns. Eight columns are a polygon, unless the line begins
+  // like a frame and an id.
   return count == 7 || count >= 9;
 }
 
@@ -165,7 +167,7 @@ bool is_anchor_name(const fs::path& file, const std::string& sequence) {
   return file.stem().string().size() == sequence.size() + 1 + kAnchorDigits;
 }
 
-// Text before binary where a run has both, as the toolkit reads them.
+// Where a run has both files, the text file is read, as in the toolkit.
 std::vector<fs::path> vot_files(const fs::path& folder) {
   std::vector<fs::path> files = exchange::files_with(folder, ".txt");
   for (const fs::path& file : exchange::files_with(folder, kBinary))

@@ -47,7 +47,7 @@ VotFrame polygon_of(const std::vector<double>& n, int origin_px) {
   return answer(bounds.box().value_or(Box{}));
 }
 
-// What is wrong with a mask; empty for a sound one.
+// Describes the fault of a mask; empty for a valid mask.
 std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
   if (n.size() < kMaskHead) return "is a mask of fewer than four numbers";
   for (const double value : n)
@@ -64,7 +64,7 @@ std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
   return std::nullopt;
 }
 
-// Of a sound mask: the box that bounds its ones.
+// Bounding box of the ones of a valid mask.
 VotFrame mask_box(const std::vector<double>& n, int origin_px) {
   const auto width = static_cast<std::int64_t>(n[2]);
   BoxBounds bounds;

@@ -14,17 +14,23 @@
 namespace airtruth::tracking {
 namespace {
 
-constexpr int kLeastSidePx = 6;    // of the object at the coarsest level
-constexpr int kLeastWindowPx = 8;  // a smaller object is looked at with some of its surroundings
+constexpr int kLeastSidePx = 6;  // of the object at the coarsest level
+// A smaller object is tracked with some of its surroundings.
+constexpr int kLeastWindowPx = 8;
 constexpr int kLeastTemplatePx = 5;
 constexpr std::size_t kLeastSurvivors = 12;
-constexpr double kSurvivors = 0.02;  // share of a level's candidates that the next one looks at
-// Windows that look like the object and share more than this with it are it.
+// Share of a level's candidates that the next level evaluates.
+constexpr double kSurvivors = 0.02;
+// Windows with high scores that share more than this with the object count as the object.
 constexpr double kHardOverlap = 0.1;
-constexpr double kHardApartPx = 2;        // of a level, from one such window to the next
-constexpr std::size_t kHardLooked = 400;  // best candidates among which they are sought
-constexpr double kAnew = 1.5;             // change of scale after which classifiers begin anew
-constexpr double kLeastObjectPx = 3;      // its scale does not shrink it below this width
+// Distance between two such windows, in pixels of a level.
+constexpr double kHardApartPx = 2;
+// Number of best candidates among which they are searched.
+constexpr std::size_t kHardLooked = 400;
+// Change of scale after which the classifiers start anew.
+constexpr double kAnew = 1.5;
+// The scale does not shrink the object below this width.
+constexpr double kLeastObjectPx = 3;
 
 struct Candidate {
   Place place;
@@ -211,7 +217,7 @@ class Am3 : public Tracker {
     }
   }
 
-  // The best few, each as the windows of the next finer level that it stands for.
+  // The best candidates, each as the windows of the next finer level that it covers.
   std::vector<Candidate> refined(const View& view,
                                  int level,
                                  std::vector<Candidate> candidates) const {
@@ -255,8 +261,8 @@ class Am3 : public Tracker {
     return answer;
   }
 
-  // Windows with the highest votes, a little apart. Which of them are not the object shows once it
-  // is found; three times as many as will be learned.
+  // Windows with the highest votes, at some distance from one another. Which of them are negatives
+  // is known only after the object is found, so three times as many are kept as will be learned.
   void remember_alike(const View& view, int level, std::vector<Candidate> candidates) {
     const std::size_t looked = std::min(candidates.size(), kHardLooked);
     sort_best(candidates, looked);

@@ -10,7 +10,7 @@ namespace {
 
 // Of means of grey levels; below it a Gaussian is a spike that nothing fits.
 constexpr float kLeastVariance = 0.25f;
-// Log-ratios beyond this saturate every probability, and what is learned becomes arbitrary.
+// Larger log-ratios saturate every probability, and the learned values become arbitrary.
 constexpr float kMostRatio = 11.5f;
 
 float sigmoid(float z) { return 1 / (1 + std::exp(-z)); }
@@ -35,7 +35,8 @@ class Ratio {
   float mean_object_, mean_around_, object_, around_, constant_;
 };
 
-// In eight sums side by side: one would be added up in order, a number at a time.
+// Eight parallel sums let the compiler vectorise; a single sum would be added in order, one number
+// at a time.
 float dot(std::span<const float> a, std::span<const float> b) {
   constexpr std::size_t kSums = 8;
   std::array<float, kSums> sums{};
@@ -96,7 +97,7 @@ void Classifier::add_feature(const Weak& weak,
     const float weight = r.weight * unit_;
     for (std::size_t i = 0; i < bases.size(); ++i) {
       const std::ptrdiff_t at = bases[i];
-      // Wraps round as the sums do, and ends right.
+      // The arithmetic wraps modulo 2^32 like the sums, and the difference is right.
       const std::uint32_t sum = below[at + r.width] - below[at] - above[at + r.width] + above[at];
       values[i] += weight * static_cast<float>(sum);
     }

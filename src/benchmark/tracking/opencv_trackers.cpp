@@ -47,9 +47,9 @@ Box whole(const Box& box) {
           std::max(1.0, std::round(box.height))};
 }
 
-// What a tracker is begun on: the object, with some of its surroundings where it is small. OpenCV's
-// MIL and Boosting draw Haar features until they find some that fit into the box, which in one of
-// four by two pixels is never.
+// The box on which a tracker starts: the object, with some surroundings where it is small. OpenCV's
+// MIL and Boosting draw random Haar features until some fit into the box; into a box of four by two
+// pixels none ever fits.
 class Window {
  public:
   Window() = default;
@@ -81,8 +81,8 @@ class Window {
   Box window_;
 };
 
-// OpenCV throws for boxes at the border and of a few pixels; that is a tracker that lost its
-// object.
+// OpenCV throws for boxes at the border and for boxes of a few pixels; the tracker then counts as
+// having lost its object.
 Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
   Answer answer{last, 1, false};
   try {
@@ -196,8 +196,8 @@ class Legacy : public Tracker {
 };
 
 // OpenCV's Haar features, boosting and TLD draw from the C library's rand(), one sequence for the
-// whole process: what a tracker answers would depend on those that ran before it and beside it.
-// Here each has a sequence of its own, from its seed, and they take turns.
+// whole process, so that a tracker's answers would depend on other trackers before and beside it.
+// Here each tracker has its own sequence, from its own seed, and the trackers take turns.
 class WithOwnRand : public Tracker {
  public:
   WithOwnRand(std::unique_ptr<Tracker> tracker, std::uint64_t seed)

@@ -18,7 +18,8 @@ constexpr double kSidePx = 48;  // geometric mean of the object's sides in its p
 constexpr int kColumns = 14;    // of points
 constexpr int kRows = 8;
 constexpr int kWindowPx = 9;
-constexpr double kLeastTexture = 0.05;  // of the strongest in the object
+// Share of the strongest texture in the object.
+constexpr double kLeastTexture = 0.05;
 constexpr std::size_t kLeastPoints = 20;
 constexpr std::size_t kLeastPairs = 50;
 constexpr double kLeastApartPx = 5;
@@ -46,7 +47,7 @@ cv::Mat view(const image::Plane& plane) {
           static_cast<std::size_t>(plane.stride)};
 }
 
-// A grid over the object, where there is texture.
+// A grid of points over the object, at places with texture.
 Points points_in(const cv::Mat& picture) {
   cv::Mat texture;
   cv::cornerMinEigenVal(picture, texture, kWindowPx);
@@ -68,7 +69,7 @@ struct Flow {
   Points from, to;
 };
 
-// Points that come back to where they began, when followed there and back.
+// Points that return to their origin when they are tracked forward and backward.
 Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points) {
   Points there;
   Points back;
@@ -96,7 +97,7 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   return flow;
 }
 
-// Median over pairs of points of how their distance changed.
+// Median over pairs of points of the ratio of their distances.
 std::optional<double> median_ratio(const Flow& flow) {
   std::vector<double> ratios;
   for (std::size_t a = 0; a < flow.from.size(); ++a)

@@ -21,8 +21,10 @@ constexpr float kSmoothing =
 constexpr Rgb kSunColour = {
     1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
 
-constexpr float kVeiledSun = 0.12f;    // of a cloud's brightness: next to nothing has a direction
-constexpr float kBrightestSun = 6.0f;  // of the brightest sample: a sky that is nearly black
+// Sun as a share of a cloud's brightness: almost none of the light has a direction.
+constexpr float kVeiledSun = 0.12f;
+// Sun as a multiple of the brightest sample, for a sky that is nearly black.
+constexpr float kBrightestSun = 6.0f;
 // Of visible light: grass 0.06, moist earth 0.07, gravel 0.13, macadam 0.18 (IES 2000, "Lighting
 // handbook", reflectances of outside surfaces). What pyranometers call albedo, 0.2 for fields and
 // woods, holds the infrared, of which leaves give back half.
@@ -179,8 +181,9 @@ struct Seen {
   Sums blue;
   Sums cloud;
   Sums ground;
-  float clearness = 0;  // does the sun shine? 1 where some of the sky is blue
-  float all = 0;        // weight of all blocks
+  // 1 where some of the sky is blue, and the sun therefore shines.
+  float clearness = 0;
+  float all = 0;  // weight of all blocks
 };
 
 Seen seen_in(const std::vector<Block>& blocks) {
@@ -234,7 +237,8 @@ Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
                        (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
   for (std::size_t c = 0; c < 3; ++c)
     ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
-  constexpr float kLeastGround = 0.05f;  // of the picture: less may be anything
+  // Smallest share of the picture that counts as ground; a smaller part may be anything.
+  constexpr float kLeastGround = 0.05f;
   const bool is_ground_seen = seen.ground.weight > kLeastGround * seen.all;
   ambient.ground =
       is_ground_seen ? seen.ground.mean() : ground_of(kGroundAlbedo, elevation_deg, ambient);
@@ -287,7 +291,8 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
 }
 
 void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
-  constexpr float kJump = 0.04F;  // less is what moves through the picture
+  // A smaller change comes from motion in the picture.
+  constexpr float kJump = 0.04F;
   const Rgb change = exposure_change(blocks_before_, blocks);
   blocks_before_ = blocks;
   if (!smooth_) return;

@@ -24,7 +24,8 @@ constexpr int kWidth = 1280;
 constexpr int kHeight = 960;
 constexpr double kFocalPx = 480;
 constexpr double kRateHz = 30;
-constexpr double kFarthestM = 1e5;  // a position beyond this was never meant
+// Positions further away are invalid.
+constexpr double kFarthestM = 1e5;
 
 struct Position {
   int number = 0;  // of the frame, from 1
@@ -125,7 +126,8 @@ std::optional<Box> outline_box(const Model& model, const Frame& frame) {
   return annotation::exact_box(sight, model.silhouette, frame.from_camera, frame.time_s).box;
 }
 
-// The pixels that a colour key takes: those of which a third shows, or the one that shows most.
+// The pixels that a colour key selects: those of which at least a third is covered, or else the one
+// that is covered most.
 std::optional<PixelBox> keyed_box(const Model& model, const Frame& frame, const Box& outline) {
   constexpr float kKeyed = 0.3f;
   const render::View view{

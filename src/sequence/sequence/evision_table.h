@@ -37,11 +37,14 @@ struct EvisionFramePair {
 struct EvisionOptions {
   std::string airliner = "733/733-AirBaltic";
   std::string light_aircraft = "c172/news";
-  int spread_px = 3;  // what a warp adds to each side of a box; the first frame is not warped
-  bool recover_motion =
-      true;          // from the centres of all the sequences over one background (evision_motion.h)
-  bool bank = true;  // as a coordinated turn along the path would have it; else wings level
-  double scale = 1;  // of the aircraft
+  // Pixels that a warp adds to each side of a box; the first frame is not warped.
+  int spread_px = 3;
+  // Recovers the motion from the centres of the boxes of all sequences over one background
+  // (evision_motion.h).
+  bool recover_motion = true;
+  // True: the aircraft banks as in a coordinated turn along its path; false: its wings stay level.
+  bool bank = true;
+  double scale = 1;                                   // of the aircraft
   std::function<void(const EvisionFramePair&)> each;  // sees every compared frame
   std::stop_token stop;
 };
@@ -51,9 +54,10 @@ struct EvisionRow {
   int frames = 0;           // with a defined intruder position
   int published_boxes = 0;  // of those, and not empty
   int compared = 0;         // both boxes there, neither cut by the frame
-  int without_box_published =
-      0;                     // the whole aircraft is in the picture and the published box is empty
-  int without_box_ours = 0;  // the middle of its outline is in the picture and ours is empty
+  // Frames in which the whole aircraft is in the picture and the published box is empty.
+  int without_box_published = 0;
+  // Frames in which the centre of its outline is in the picture and this program's box is empty.
+  int without_box_ours = 0;
   double published_width_px = 0;  // medians over the compared frames
   double published_height_px = 0;
   double width_off_px = 0;  // of |ours - published|

@@ -112,7 +112,7 @@ Finished open_finished(const fs::path& folder) {
   try {
     const auto record = nlohmann::json::parse(read_file(record_file));
     finished.name = record.at("name").get<std::string>();
-    // A record that was tampered with names no file elsewhere.
+    // A manipulated record must not name files outside its folder.
     if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
       throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
                   {record_file.string()});
@@ -151,7 +151,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   while (auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
     if (frame->index >= total) {
-      // An import may stop before its video does.
+      // An imported clip may end before its video.
       if (!sequence.scene) break;
       throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
     }

@@ -19,9 +19,11 @@ namespace {
 constexpr double kStandardGravityMps2 = 9.80665;
 constexpr double kSampleStep_s = 0.05;
 constexpr int kMostSamples = 4000;
-constexpr double kTurnStep_s = 0.01;      // over which the turn rate is taken
-constexpr double kHeadingMps = 1;         // slower over the ground, a heading means nothing
-constexpr double kToleratedShare = 1e-3;  // of a limit: a path drawn at the limit is within it
+constexpr double kTurnStep_s = 0.01;  // over which the turn rate is taken
+// At lower ground speeds a heading has no meaning.
+constexpr double kHeadingMps = 1;
+// Tolerance as a share of a limit, so that a path drawn at the limit is within it.
+constexpr double kToleratedShare = 1e-3;
 
 double ground_speed_mps(const Vector3& v) { return std::hypot(v.x(), v.y()); }
 

@@ -52,7 +52,7 @@ std::optional<composite::AlphaMask> read_alpha_mask(const std::filesystem::path&
                                                     const annotation::LensFacts& lens,
                                                     const std::string& intruder_id,
                                                     std::int64_t frame) {
-  // A truth.jsonl that was tampered with names no file elsewhere.
+  // A manipulated truth.jsonl must not name files outside its folder.
   if (intruder_id.find('/') != std::string::npos || intruder_id == "..")
     throw Error("has an intruder '" + intruder_id.substr(0, 80) + "'; expected a plain file name",
                 {(folder / "truth.jsonl").string()});

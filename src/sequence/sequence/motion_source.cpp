@@ -57,7 +57,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
   smoothed_ = !none_ && scene.motion.reference == "smoothed";
   needs_change_ = needs_change;
   if (model == "rotation") lens_ = lens;
-  // A gyro's clock begins with the file.
+  // The gyroscope's clock starts with the file.
   if (lens_ && scene.background.first_frame == 0) gyro_ = gyro_of(scene.background.video);
   if (!video_sha256.empty() && !none_) cache_ = cache;
   options_.seed = scene.seed;

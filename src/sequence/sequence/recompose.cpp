@@ -27,7 +27,7 @@ double difference(const image::Picture& a, const image::Picture& b, const PixelB
   return static_cast<double>(sum) / (static_cast<double>(area.width) * area.height);
 }
 
-// A codec's error near the aircraft's edges is some times that of soft sky, and no more.
+// A codec's error near the aircraft's edges is at most a few times its error in smooth sky.
 constexpr double kTimesElsewhere = 4;
 constexpr double kLevels = 4;
 constexpr int kAroundPx = 8;
@@ -56,7 +56,7 @@ std::string picture_fault(const image::Picture& made,
   return "";
 }
 
-// What older sequences do not say is taken out of a truth that was computed again.
+// Removes from a recomputed truth the fields that older sequences lack.
 void as_older_truth(annotation::Frame& truth) {
   for (annotation::Intruder& intruder : truth.intruders) {
     intruder.covered_box_px.reset();

@@ -278,7 +278,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   const fs::path folder = out / scene.name;
   StagedFolder staged(folder, options.overwrite);
 
-  // All that can be wrong with the inputs is found here, before anything that takes long.
+  // All faults of the inputs are found here, before any long work.
   video::Reader reader = open(scene, options);
   const StatedScene stated_scene = stated(scene, reader.info());
   Setting setting(stated_scene, size_of(reader.info()), options);
@@ -287,7 +287,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   std::optional<Outputs> outputs;
   outputs.emplace(staged.path(), setting.scene, setting.world.lens, info, options.threads);
 
-  // What must be known of the whole clip before its first frame.
+  // Quantities of the whole clip that are required before its first frame.
   complete_camera(setting, stated_scene, reader.info(), options);
   const std::string video_sha256 = sha256_of_video(scene.background.video);
   MotionSource motion = measured_motion(setting, video_sha256, reader, options);

@@ -15,7 +15,7 @@
 namespace airtruth::sequence {
 namespace {
 
-// A folder that a finished run left, or an empty one: nothing else is ever replaced.
+// Only a folder that a finished run made, or an empty one, may be replaced.
 bool replaceable(const fs::path& folder) {
   return fs::is_directory(folder) &&
          (fs::is_empty(folder) || fs::exists(folder / "sequence.json") ||
