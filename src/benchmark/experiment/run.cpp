@@ -28,7 +28,8 @@ using Json = nlohmann::ordered_json;
 using evaluation::Mark;
 using evaluation::Trajectory;
 
-constexpr std::int64_t kSkip = 5;  // frames from a failure to the next start
+// Number of frames from a failure to the next start (VOT2013).
+constexpr std::int64_t kSkip = 5;
 // Crashes allowed in a run with restarts; after them each start counts as a failure.
 constexpr int kMostCrashes = 3;
 

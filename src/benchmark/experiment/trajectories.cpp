@@ -122,8 +122,8 @@ bool is_mot(const fs::path& file) {
   const auto lines = exchange::lines_of(file);
   if (lines.empty() || lines.front().text.starts_with('m')) return false;
   const std::size_t count = exchange::numbers_of(lines.front(), file).size();
-  // MOTChallenge has seven or more columns. Eight columns are a polygon, unless the line begins
-  // like a frame and an id.
+  // MOTChallenge's lines have seven or more columns here. Eight columns are a polygon, unless the
+  // line begins like a frame and an id.
   return count == 7 || count >= 9;
 }
 

@@ -19,7 +19,8 @@ namespace airtruth::experiment {
 namespace {
 
 constexpr int kJpegQuality = 8;
-constexpr double kCloseSurroundings = 3;  // of the box's longer side
+// Side of the close-up as a multiple of the box's longer side.
+constexpr double kCloseSurroundings = 3;
 constexpr double kLeastClosePx = 48;
 
 std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {

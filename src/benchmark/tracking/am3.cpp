@@ -14,7 +14,8 @@
 namespace airtruth::tracking {
 namespace {
 
-constexpr int kLeastSidePx = 6;  // of the object at the coarsest level
+// Smallest side of the object at the coarsest level, in that level's pixels.
+constexpr int kLeastSidePx = 6;
 // A smaller object is tracked with some of its surroundings.
 constexpr int kLeastWindowPx = 8;
 constexpr int kLeastTemplatePx = 5;
@@ -124,7 +125,7 @@ class Am3 : public Tracker {
     return classifiers_[static_cast<std::size_t>(level * options_.voters + voter)];
   }
 
-  // The object's box where the window is now; its size is not that of the window.
+  // Returns the object's box for the window's present place; the two differ in size.
   Box box() const {
     const double width = object_width_ * scale_;
     const double height = object_height_ * scale_;
@@ -154,7 +155,7 @@ class Am3 : public Tracker {
     return {Pyramid(plane, {0, 0, width, height}, levels_), left, top, scale_};
   }
 
-  // A window of the view that lies in the picture.
+  // Whether a window of the view lies in the picture.
   bool fits(const View& view, int level, const Place& place) const {
     if (place.x < 0 || place.y < 0 ||
         place.x + side_at(width_, level) > view.pyramid.width(level) ||
@@ -338,7 +339,7 @@ class Am3 : public Tracker {
       }
   }
 
-  // Windows drawn from an annulus about the object.
+  // Random windows from an annulus around the object.
   std::vector<Place> around(
       const View& view, int level, const Place& centre, double inner, double outer) {
     std::vector<Place> places;

@@ -35,8 +35,7 @@ class Ratio {
   float mean_object_, mean_around_, object_, around_, constant_;
 };
 
-// Eight parallel sums let the compiler vectorise; a single sum would be added in order, one number
-// at a time.
+// Eight sums run side by side, because a single sum would be added in order, one number at a time.
 float dot(std::span<const float> a, std::span<const float> b) {
   constexpr std::size_t kSums = 8;
   std::array<float, kSums> sums{};

@@ -44,7 +44,7 @@ std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOption
 }
 
 bool is_trax(std::string_view tracker) {
-  // A command may hold anything; a name before it may not hold a colon.
+  // A command may contain any character; the name before it must not contain a colon.
   const std::string_view word = tracker.substr(0, std::min(tracker.find(':'), tracker.size()));
   const std::size_t equals = word.find('=');
   const std::string_view kind = equals == std::string_view::npos ? word : word.substr(equals + 1);

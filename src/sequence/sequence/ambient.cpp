@@ -16,18 +16,22 @@ namespace {
 using image::Rgb;
 
 constexpr int kGrid = 48;  // blocks along the longer side
-constexpr float kSmoothing =
-    0.1f;  // share of a new frame; about a third of a second at 30 frames/s
+// Weight of a new frame in the smoothed light; the time constant is about a third of a second at 30
+// frames/s.
+constexpr float kSmoothing = 0.1f;
 constexpr Rgb kSunColour = {
-    1.0f, 0.965f, 0.91f};  // direct sun at middle elevations against its own sky
+    // Colour of the direct sun at medium elevations relative to the sky around it.
+    1.0f,
+    0.965f,
+    0.91f};
 
 // Sun as a share of a cloud's brightness: almost none of the light has a direction.
 constexpr float kVeiledSun = 0.12f;
 // Sun as a multiple of the brightest sample, for a sky that is nearly black.
 constexpr float kBrightestSun = 6.0f;
-// Of visible light: grass 0.06, moist earth 0.07, gravel 0.13, macadam 0.18 (IES 2000, "Lighting
-// handbook", reflectances of outside surfaces). What pyranometers call albedo, 0.2 for fields and
-// woods, holds the infrared, of which leaves give back half.
+// Reflectance of the ground for visible light: grass 0.06, moist earth 0.07, gravel 0.13, macadam
+// 0.18 (IES 2000, "Lighting handbook", reflectances of outside surfaces). The albedo of
+// pyranometers, 0.2 for fields and woods, includes the infrared, of which leaves reflect half.
 constexpr float kGroundAlbedo = 0.1f;
 
 struct Block {
@@ -35,7 +39,7 @@ struct Block {
   float brightness = 0;
   float weight = 1;
   bool is_below = false;  // below the horizon, as the camera's pose has it
-  // What each kind of sky would have there: Skies::clear_seen(), overcast_seen().
+  // The luminance of each kind of sky at this block: Skies::clear_seen(), overcast_seen().
   float clear_seen = 1;
   float overcast_seen = 1;
 };
@@ -44,7 +48,7 @@ float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
-// Where a pixel of the frame looks, in world axes; empty where the lens has no direction.
+// Direction of a pixel of the frame in world axes; empty where the lens has no direction.
 std::optional<Vector3> direction_of(const annotation::Sight& sight,
                                     const Homography& nominal_from_frame,
                                     int x,
@@ -142,7 +146,7 @@ float smoothstep(float low, float high, float value) {
   return t * t * (3 - 2 * t);
 }
 
-// How blue: 0 grey (cloud), 1 clear sky. Neither where a channel clips or all is dark.
+// Blueness: 0 for grey (cloud), 1 for a clear sky. Clipped and dark blocks have no value.
 std::optional<float> blueness(const Rgb& rgb) {
   constexpr float kDarkest = 0.02f;
   constexpr float kBrightest = 0.95f;
@@ -156,7 +160,8 @@ std::optional<float> blueness(const Rgb& rgb) {
 struct Sums {
   Rgb colour{};
   float weight = 0;
-  float expected = 0;  // what a sky of level irradiance 1 would have in its place
+  // Luminance here of a sky whose level irradiance is 1.
+  float expected = 0;
 
   void add(const Rgb& linear, float by, float expected_here = 0) {
     for (std::size_t c = 0; c < 3; ++c) colour[c] += by * linear[c];
@@ -176,7 +181,7 @@ struct Sums {
   }
 };
 
-// What is seen of the sky and of the ground.
+// The visible sky and ground.
 struct Seen {
   Sums blue;
   Sums cloud;
@@ -187,7 +192,8 @@ struct Seen {
 };
 
 Seen seen_in(const std::vector<Block>& blocks) {
-  constexpr float kGroundOverSky = 0.6f;  // brightness: darker than any cloud's base
+  // Brightness of ground relative to the sky; every cloud's base is brighter.
+  constexpr float kGroundOverSky = 0.6f;
   constexpr std::size_t kFewest = 8;
   Seen seen;
   const float sky = brightness(mean(blocks, 0.5f, 1.01f));
@@ -309,7 +315,7 @@ Ambient AmbientEstimator::with_scene(Ambient measured) const {
     for (std::size_t c = 0; c < 3; ++c)
       measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
   }
-  // A stated sky is even, as an overcast one nearly is.
+  // A stated sky is uniform, as an overcast sky nearly is.
   if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
   if (light_.ground_albedo)

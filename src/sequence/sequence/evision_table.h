@@ -44,16 +44,18 @@ struct EvisionOptions {
   bool recover_motion = true;
   // True: the aircraft banks as in a coordinated turn along its path; false: its wings stay level.
   bool bank = true;
-  double scale = 1;                                   // of the aircraft
-  std::function<void(const EvisionFramePair&)> each;  // sees every compared frame
+  double scale = 1;                                   // scale of the aircraft
+  std::function<void(const EvisionFramePair&)> each;  // called for every compared frame
   std::stop_token stop;
 };
 
 struct EvisionRow {
   std::string sequence;
-  int frames = 0;           // with a defined intruder position
-  int published_boxes = 0;  // of those, and not empty
-  int compared = 0;         // both boxes there, neither cut by the frame
+  int frames = 0;  // frames with a defined intruder position
+  // Number of these frames with a published box that is not empty.
+  int published_boxes = 0;
+  // Frames with both boxes, of which neither is cut by the frame.
+  int compared = 0;
   // Frames in which the whole aircraft is in the picture and the published box is empty.
   int without_box_published = 0;
   // Frames in which the centre of its outline is in the picture and this program's box is empty.

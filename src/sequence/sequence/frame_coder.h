@@ -7,11 +7,11 @@
 #include "picture/composite/matte.h"
 #include "picture/video/patch_codec.h"
 
-// The mark of the clip's codec on what is inserted, frame after frame.
+// Reproduces the traces of the clip's codec on the inserted pixels, frame after frame.
 //
-// A video encoder predicts a frame from the one before it, as it was decoded. So each part of a
-// frame is coded with what the last finished frame showed there as its reference: with the intruder
-// as the codec left it, and the background alone likewise. Frames are handed over in their order.
+// A video encoder predicts a frame from the previous one as it was decoded. Each part of a frame is
+// therefore coded with the last finished frame at the same place as its reference: once with the
+// intruder as the codec left it, and once with the background alone. Frames are passed in order.
 namespace airtruth::sequence {
 
 class FrameCoder final : public composite::PatchCoder {
@@ -24,7 +24,7 @@ class FrameCoder final : public composite::PatchCoder {
                         const image::Picture& with_layer,
                         const image::Picture& background) override;
 
-  // Ends a frame: what was coded in it is what the next one is predicted from.
+  // Ends a frame: its coded parts are the prediction for the next frame.
   void finish_frame(const image::Picture& painted);
 
  private:
@@ -44,7 +44,7 @@ class FrameCoder final : public composite::PatchCoder {
 
   video::PatchCodec codec_;
   std::vector<Past> past_;
-  std::vector<Window> windows_;  // of the frame that is under way
+  std::vector<Window> windows_;  // of the current frame
 };
 
 }  // namespace airtruth::sequence

@@ -17,12 +17,12 @@
 namespace airtruth::sequence {
 namespace {
 
-// How far beyond the light that reaches it the layer's samples change.
+// Distance beyond the light of the intruder within which the layer's samples change.
 int margin_px(const scene::CameraModel& model) {
   return sensor_of(model).reach_px() + (has_codec(model) ? composite::kCodecBlockPx - 1 : 0);
 }
 
-// Air and lens, after the light has left the intruder.
+// Effects of air and lens on the light that has left the intruder.
 image::Layer through_air_and_lens(image::Layer layer,
                                   const scene::CameraModel& model,
                                   const Ambient& ambient,
@@ -109,7 +109,7 @@ class ChromaKey : public Painter {
   }
 
  private:
-  // What changed, shared out among the intruders by where geometry says they are.
+  // The changed pixels, divided among the intruders by their geometry.
   std::vector<composite::Visible> changed(const image::Picture& before,
                                           const image::Picture& after,
                                           const image::Layer& layer,
@@ -137,7 +137,8 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
                                                    const image::Picture& after,
                                                    const image::Layer& layer,
                                                    const Moment& moment) const {
-  constexpr double kLanczosReachPx = 5;  // an 8x8 kernel spreads an edge by four pixels
+  // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
+  constexpr double kLanczosReachPx = 5;
   std::vector<composite::Visible> visible(world_.actors.size());
   for (std::size_t i = 0; i < visible.size(); ++i) {
     if (!moment.search[i]) continue;

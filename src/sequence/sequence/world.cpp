@@ -110,8 +110,8 @@ Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake,
   return world_from_cam;
 }
 
-// Rate of turning along a path, in world axes; one-sided where the path begins or ends.
-// rotation(state, dt_s) is what turns.
+// Angular rate along a path in world axes, from one-sided differences where the path begins or
+// ends. rotation(state, dt_s) gives the rotation.
 template <typename Rotation>
 Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
   constexpr double kStep_s = 1e-3;
