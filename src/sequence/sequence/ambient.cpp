@@ -19,11 +19,8 @@ constexpr int kGrid = 48;  // blocks along the longer side
 // Weight of a new frame in the smoothed light; the time constant is about a third of a second at 30
 // frames/s.
 constexpr float kSmoothing = 0.1f;
-constexpr Rgb kSunColour = {
-    // Colour of the direct sun at medium elevations relative to the sky around it.
-    1.0f,
-    0.965f,
-    0.91f};
+// Colour of the direct sun at medium elevations relative to the sky around it.
+constexpr Rgb kSunColour = {1.0f, 0.965f, 0.91f};
 
 // Sun as a share of a cloud's brightness: almost none of the light has a direction.
 constexpr float kVeiledSun = 0.12f;
