@@ -204,8 +204,8 @@ Rgb as_opengl(const Placed& placed,
               float sun,
               const Eigen::Vector3f& view,
               const Light& light) {
-  // Specular reflectance of painted metal. The specular colours of the model files are not
-  // physical.
+  // Share of painted metal. It replaces the specular colours of the model files, which are chosen
+  // for the look of the game.
   constexpr float kGlossShare = 0.08f;
   const float glint =
       sun > 0 ? sun * glint_of(surface, placed.to_sun_in_body, view, material.shininess) : 0;
