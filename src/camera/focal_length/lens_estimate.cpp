@@ -183,7 +183,7 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   result.rms_px = std::sqrt(best.miss);
   result.other_rms_px = std::sqrt(result.fisheye ? pinhole.miss : fisheye.miss);
   result.pairs = static_cast<int>(pairs.size());
-  // Two halves of the pairs on their own say how sure it is.
+  // The difference between the estimates of two halves of the pairs gives the uncertainty.
   const Best odd = search(pairs, 1, 2, result.fisheye, size);
   const Best even = search(pairs, 0, 2, result.fisheye, size);
   result.sigma_px = std::max(0.004 * best.focal_px, std::abs(odd.focal_px - even.focal_px) / 2);

@@ -11,32 +11,39 @@
 
 namespace airtruth::motion {
 
-// A lens of one number, its focal length, from a video alone: while the camera turns, far points
-// keep their angles to one another, which through a wrong lens they do not. Corners are followed
-// until the camera has turned by some degrees; for every candidate the rotation between the two
-// frames is fitted (rotation_fit.h), and the candidate with the least left over is the lens.
+// Estimates the focal length of a lens without distortion from a video alone. While the camera
+// turns, the angles between far points stay constant; through a wrong lens they would appear to
+// change. Corners are tracked until the camera has turned by some degrees. For every candidate lens
+// the rotation between the two frames is fitted (rotation_fit.h); the candidate with the least
+// residual is the result.
 class LensEstimator {
  public:
   LensEstimator(int width, int height, const image::Mask* own_aircraft = nullptr);
   ~LensEstimator();
 
-  // Frames in order.
-  // begins_shot: nothing is followed into it from the picture before (foundation/image/cuts.h).
+  // Adds the next frame, in order. No corner is tracked across the begin of a shot
+  // (foundation/image/cuts.h).
   void add(const image::Picture& picture, bool begins_shot = false);
 
   struct Result {
     bool fisheye = false;  // equidistant; else pinhole
     double focal_px = 0;
-    double sigma_px = 0;  // from half the pairs each
-    double low_px = 0;    // every focal length from here to high_px fits as well, within 2 % of the
-    double high_px = 0;  // mean squared misfit; the search ends at 0.25 and 6 widths of the picture
-    bool is_certain = false;  // that interval is narrow enough to take the value as the camera's
-    double rms_px = 0;        // of what is left over
-    double other_rms_px = 0;  // the same of the best lens of the other kind
+    // The uncertainty, from two estimates with one half of the pairs each.
+    double sigma_px = 0;
+    // Every focal length from low_px to high_px fits equally well: its mean squared residual is
+    // within 2 % of the least. The search ends at 0.25 and 6 widths of the picture.
+    double low_px = 0;
+    double high_px = 0;
+    // Whether that interval is narrow enough to use focal_px as the camera's focal length.
+    bool is_certain = false;
+    // The root mean square residual.
+    double rms_px = 0;
+    // The same for the best lens of the other kind.
+    double other_rms_px = 0;
     int pairs = 0;
   };
-  // Empty, with the reason, where the camera turned too little. An estimate that is not certain
-  // comes with the reason too.
+  // The estimate. It is empty where the camera turned too little. `why` states the reason for an
+  // empty result, and for an estimate that is not certain.
   std::optional<Result> result(std::string& why) const;
 
  private:

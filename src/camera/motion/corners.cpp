@@ -11,13 +11,17 @@ namespace airtruth::motion {
 namespace {
 
 constexpr int kPyramidLevels = 4;
-constexpr int kGuessedLevels = 1;  // a guess is good to a pixel or two
-constexpr int kBackLevels =
-    1;  // the way back starts where the corner was: the fine levels say enough
+// The pyramid levels for a corner with a guessed position, which is good to a pixel or two.
+constexpr int kGuessedLevels = 1;
+// The pyramid levels for tracking back, which starts at the corner's original position.
+constexpr int kBackLevels = 1;
 constexpr int kWindowPx = 13;
-constexpr int kGrid = 8;          // corners are spread over kGrid x kGrid cells
-constexpr int kMaskMarginPx = 9;  // corners keep this far from the own aircraft
-constexpr int kFarInCell = 3;     // far corners in a cell, over what others have
+// Corners are spread over kGrid x kGrid cells.
+constexpr int kGrid = 8;
+// The least distance of a corner from the own aircraft.
+constexpr int kMaskMarginPx = 9;
+// The limit on far corners per cell, as a multiple of the limit on other corners.
+constexpr int kFarInCell = 3;
 
 }  // namespace
 

@@ -146,7 +146,7 @@ TEST(Estimator, FlagsACut) {
   EXPECT_EQ(estimator.next(frame(other, 5), 5 / 30.0).state, State::kMeasured);
 }
 
-// Of skies alone there are no corners whose loss would tell.
+// A picture of sky alone has no corners whose loss would reveal a cut.
 TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
   Estimator estimator(kWidth, kHeight, {});
   for (int k = 0; k < 4; ++k) estimator.next(blank(), k / 30.0);

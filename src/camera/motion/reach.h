@@ -8,7 +8,7 @@
 
 namespace airtruth::motion {
 
-// How far a homography carries. One plane holds what lies ahead of the reference camera alone: for
+// The limit of a homography. One plane shows only what lies ahead of the reference camera: for
 // a turn, the map of unit determinant from the frame to the reference has at a pixel the
 // denominator cos(a) / cos(b), where a and b are the angles of the pixel's ray from the axes of
 // reference and frame (Hartley and Zisserman, Multiple View Geometry, 13.2: H = K R K^-1). It is
@@ -16,8 +16,9 @@ namespace airtruth::motion {
 // camera backward, and the plane shows it somewhere else; shortly before that a pixel of the frame
 // is stretched over hundreds on the plane.
 //
-// A frame with such a pixel is not measured against the reference, however well it follows its own
-// neighbours: it gets the state kTurnedAway, and the motion of the last frame within reach.
+// A frame with such a pixel is not measured against the reference, even where its motion against
+// its neighbours is known. It gets the state kTurnedAway and the motion of the last frame within
+// reach.
 class ReachGuard {
  public:
   ReachGuard(int width, int height) : width_(width), height_(height) {}

@@ -23,14 +23,14 @@ struct RotationFit {
   double rms_rad = 0;  // of the inliers
 };
 
-// The rotation that carries one set of bearings to the other: RANSAC (Fischler and Bolles 1981) on
-// pairs of points, then least squares (Kabsch 1976; Horn 1987) with the weights of Geman and
-// McClure (1987), repeated. limit_rad: of an inlier. Empty where fewer than min_inliers agree, or
-// less than 15 % of all, or where all that agree lie about one direction (a turn about it is
-// not known).
+// The rotation that maps one set of bearings to the other: RANSAC (Fischler and Bolles 1981) on
+// pairs of points, then repeated least squares (Kabsch 1976; Horn 1987) with the weights of Geman
+// and McClure (1987). limit_rad is the largest residual of an inlier. The result is empty with
+// fewer than min_inliers inliers or fewer than 15 % of all points, and where all inliers lie close
+// to one direction, since the rotation about that direction is then unknown.
 //
-// Where enough points are far, these alone choose the rotation that the fit starts from. How far
-// the near ones move against them is then measured, and each counts by what that leaves of it
+// Where enough points are far, the far points alone determine the rotation with which the fit
+// starts. The parallax of the near points is then measured, and it reduces their weights
 // (nearness.h).
 std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
                                         double limit_rad,
