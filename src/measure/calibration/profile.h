@@ -38,13 +38,14 @@ struct CameraProfile {
   std::string words() const;
 };
 
-// All profiles of the library, sorted by name.
+// All profiles of the library, in the order of profile_table().
 std::span<const CameraProfile> camera_profiles();
 
 // The name that stands for no profile: the values of the clip stay unchanged.
 inline constexpr const char* kNoProfile = "none";
 
-// The profile with the given name. Throws Error with the nearest existing name if there is none.
+// The profile with the given name; for kNoProfile, one without values. Throws Error with the
+// nearest existing name if there is none.
 const CameraProfile& camera_profile(const std::string& name, const Where& where = {});
 
 // The profile for an unknown camera: the medians of the optical values over the cameras of the
