@@ -5,21 +5,21 @@
 #include <string_view>
 #include <vector>
 
-// How fast, how steep and how banked aircraft of a class fly: what draws paths that suit a type,
-// and what tells a path that the type cannot fly. docs/flight-limits.md has the table with its
-// sources. Speeds are true airspeeds in still air.
+// The speeds, climb rates and bank angles of aircraft classes. They bound the paths that are drawn
+// for a type, and they reveal a path that the type cannot fly. docs/flight-limits.md has the table
+// with its sources. Speeds are true airspeeds in still air.
 namespace airtruth::aircraft {
 
 struct FlightLimits {
   std::string_view name;  // of the class: "light piston"
-  // What the class can fly at all: the lowest stall speed and the highest limit speed among its
-  // types, so that a path outside is flown by none of them.
+  // The envelope of the class: the lowest stall speed and the highest limit speed among its types,
+  // so that none of them can fly a path outside it.
   double slowest_mps = 0;
   double fastest_mps = 0;
   double most_bank_deg = 0;
   double most_climb_mps = 0;    // sustained
   double most_descent_mps = 0;  // as a positive number
-  // What it ordinarily flies near other traffic: what is drawn where nothing is stated.
+  // The usual values near other traffic. Paths are drawn from them where a scene states none.
   double usual_low_mps = 0;
   double usual_high_mps = 0;
   double usual_bank_deg = 0;

@@ -14,7 +14,7 @@ namespace airtruth::aircraft {
 
 struct PublishedSize {
   std::vector<std::string> names;  // patterns over catalogue names
-  std::string type;                // "Cessna 172P", or what it is where it is no aircraft
+  std::string type;                // "Cessna 172P"; a description where it is not an aircraft
   double span_m = 0;               // 0: no size is published
   double length_m = 0;
   double height_m = 0;
@@ -29,7 +29,7 @@ std::span<const PublishedSize> published_sizes();
 // The row of a catalogue name; null where there is none.
 const PublishedSize* published_size(const std::string& catalogue_name);
 
-// How far a model is off: model / published - 1.
+// The relative size error of a model: model / published - 1.
 struct SizeError {
   double span = 0;
   double length = 0;
@@ -41,8 +41,8 @@ SizeError size_error(const Extents& model, const PublishedSize& published);
 // more than 1 %. Else 1.
 double scale_to_published(const Extents& model, const PublishedSize& published);
 
-// All of a mesh by one factor about the origin of the body: positions and the axes' places.
-// Normals, directions and textures are what they were.
+// Scales a mesh by one factor about the origin of the body: its positions and the centres of its
+// spinning parts. Normals, directions and textures do not change.
 void scale_mesh(Mesh& mesh, double factor);
 
 // One line on a catalogue's model as it is loaded, by the factor that it was scaled by: "Cessna

@@ -6,7 +6,7 @@
 
 namespace airtruth::aircraft {
 
-// What a surface does with light, but for its colour.
+// How a surface reflects light, apart from its colour.
 enum class Finish : std::uint8_t {
   kPaint,  // scatters, under a clear coat that mirrors
   kGlass,  // mirrors as the clear coat does, over a dark inside
@@ -15,8 +15,8 @@ enum class Finish : std::uint8_t {
 };
 constexpr std::uint8_t kFinishes = 4;
 
-// By the words of a material's name in its file: runs of letters, in any case. docs/aircraft.md
-// lists those that say glass or metal. Paint where none does.
+// The finish that the words of a material's name in its file state. A word is a run of letters in
+// any case. docs/aircraft.md lists the words for glass and metal. Other names are paint.
 Finish finish_named(std::string_view material);
 
 }  // namespace airtruth::aircraft

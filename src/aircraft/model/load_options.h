@@ -9,8 +9,7 @@
 // that states none.
 namespace airtruth::aircraft {
 
-// How a model file without a wrapper lies: which of its axes point along the body's, and its
-// unit.
+// The axes of a model file without a wrapper, relative to those of the body, and its unit.
 struct ModelAxes {
   std::string forward =
       "-x";  // one of x, y, z with an optional minus; as FlightGear's .ac files: nose at -x

@@ -9,7 +9,7 @@
 
 namespace airtruth::aircraft {
 
-// A model as its reader hands it back: plain arrays. Textures are pictures still.
+// A model as its reader returns it: plain arrays, with textures as sRGB pictures.
 struct RawPicture {
   Picture picture;
   bool repeat_u = true;
