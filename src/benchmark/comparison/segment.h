@@ -32,10 +32,10 @@ struct Seen {
   cv::Mat mask;  // of the box's size; 8-bit, 255: aircraft
 };
 
-// The aircraft within a loose box: silhouette_of() in the box with a margin of a quarter of its
-// larger side, at least 4 px. Empty where nothing stands out, where what stands out reaches the
-// margin's own edge (it cannot be bounded), where it is smaller than 3 px both ways, or where the
-// margin leaves the picture.
+// Finds the aircraft within a loose box: silhouette_of() in the box with a margin of a quarter of
+// its larger side, at least 4 px. Returns empty where nothing stands out; where the silhouette
+// reaches the margin's edge, so that its bounds are unknown; where it is smaller than 3 px in both
+// directions; or where the margin leaves the picture.
 std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose);
 
 }  // namespace airtruth::comparison

@@ -9,7 +9,8 @@
 #include "foundation/image/picture.h"
 #include "world/scene/scene.h"
 
-// From where the sun must shine so that an inserted aircraft is light and dark where a real one is.
+// Finds the sun's direction for which the light and dark parts of an inserted aircraft lie where a
+// real aircraft has them.
 namespace airtruth::comparison {
 
 // A frame of the clip, and the real aircraft's tight box in it.
@@ -21,22 +22,23 @@ struct SunFrame {
 
 struct SunFit {
   double azimuth_deg = 0, elevation_deg = 0;  // in the scene's world
-  // Of red, green and blue within the box, each less its surroundings, in code values over all
-  // frames: the root of half the mean square of inserted less real where both are blurred by a
-  // twelfth of the box (poses fit no better), and half that of their values sorted (how much is how
-  // bright); and how the blurred two correlate, -1..1.
+  // Both compare red, green and blue within the box, each relative to its surroundings, over all
+  // frames. difference_codes, in code values, is the root of the mean of two mean squares of
+  // inserted minus real: where both are blurred by a twelfth of the box (poses are not more
+  // accurate), and between their sorted values (the distribution of brightness). correlation is
+  // that of the two blurred pictures, -1 to 1.
   double difference_codes = 0;
   double correlation = 0;
 };
 
-// Paints the scene's first intruder into each frame under suns all over the sky, `spacing_deg` of
-// azimuth and two thirds of that in elevation apart (from 10 degrees above the horizon on), closes
-// in on the best three by a half and a quarter of the spacing, and takes the one with the least
-// difference. A sun that brightens one side and one that brightens the whole can look alike, so
-// that the best of a wide spacing may be far from the best of all: 40 degrees serve to compare
-// poses and liveries, 15 to find the sun. The scene's camera model counts as far as it is stated; a
-// point spread that is not is 0.8 px. Frames are drawn in draft quality. Empty where the two
-// aircraft cannot both be seen in any frame. Throws Interrupted on stop.
+// Renders the scene's first intruder into each frame under suns all over the sky from 10 degrees
+// above the horizon, `spacing_deg` apart in azimuth and two thirds of that in elevation. The search
+// then refines the best three at a half and a quarter of the spacing, and returns the sun with the
+// smallest difference. A sun that brightens one side and a sun that brightens the whole aircraft
+// can look alike, so the best sun of a wide spacing may be far from the true optimum: 40 degrees
+// suffice to compare poses and liveries, 15 degrees to find the sun. The scene's camera model is
+// used as far as it is stated; an unstated point spread is 0.8 px. Frames are rendered in draft
+// quality. Returns empty where no frame shows both aircraft. Throws Interrupted on stop.
 std::optional<SunFit> fit_sun(const scene::Scene& scene,
                               const std::vector<SunFrame>& frames,
                               double spacing_deg,

@@ -57,7 +57,8 @@ struct ClearSky {
   Ambient seen() const { return AmbientEstimator(light, {}, nullptr).next(picture, sight, {}); }
 };
 
-// Whichever part of the sky is in view: low or high, towards the sun or away from it.
+// The result does not depend on the part of the sky in view: low or high, towards the sun or away
+// from it.
 TEST(Ambient, AClearSkysLightIsThatOfTheWholeSkyWhereverTheCameraLooks) {
   for (const double pitch_deg : {25.0, 50.0})
     for (const double azimuth_deg : {100.0, 180.0}) {
@@ -93,8 +94,8 @@ image::Picture grey_sky(int luma) {
   return picture;
 }
 
-// Before a cut the sky nearly clips, so that its jump cannot be followed as one of exposure: what
-// is smoothed stays too bright, and at a cut begins anew.
+// Before a cut the sky nearly clips, so its jump cannot be followed as one of exposure: the
+// smoothed light stays too bright, and starts anew at a cut.
 TEST(Ambient, ACutBeginsTheLightAnew) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(20, {96, 72});
   annotation::Sight sight;

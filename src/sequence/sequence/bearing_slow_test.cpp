@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings on a real clip that turns much, held against where the pixels are.
+// Compares bearings on a real clip with large rotations with the positions of the pixels.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -10,7 +10,8 @@ namespace {
 
 using Parameters = Eigen::Vector4d;  // shift (px), roll (rad), drift
 
-constexpr double kCentrePx = 3;  // how well a box tells its centre
+// Standard error of a box's centre, px.
+constexpr double kCentrePx = 3;
 constexpr double kPrior = 0.1;
 constexpr int kIterations = 15;
 

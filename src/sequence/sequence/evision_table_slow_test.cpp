@@ -23,7 +23,7 @@ TEST(EvisionTable, SizesAreAsPublishedAndNoFrameInViewLacksABox) {
   }
 }
 
-// With another aircraft the sizes do not come out: the test above can fail.
+// With another aircraft the sizes differ, which shows that the test above can fail.
 TEST(EvisionTable, ALongerAirlinerDoesNotFit) {
   const char* shared = std::getenv("AIRTRUTH_SHARED");
   if (shared == nullptr)

@@ -60,7 +60,7 @@ PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
   return area;
 }
 
-// Boxes of an import, as a rendered sequence's truth would have them.
+// Boxes of an imported clip, in the form of a rendered sequence's truth.
 annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
   annotation::Frame frame;
   frame.frame = labelled.frame;

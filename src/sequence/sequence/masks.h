@@ -25,14 +25,14 @@ struct MaskFile {
 
 std::string mask_name(const std::string& intruder_id, std::int64_t frame);
 
-// Of all intruders of one frame. The layer's intruders are in the truth's order.
+// Returns the masks of all intruders of one frame. The layer's intruders are in the truth's order.
 std::vector<MaskFile> mask_files(const annotation::Frame& truth,
                                  const image::Layer& layer,
                                  const image::Mask* own_aircraft,
                                  const lens::ImageSize& size);
 
-// Reads one back, over the whole frame; empty where it is not there. Error where it is no grey
-// picture of the frame's size.
+// Reads the mask of an intruder back, over the whole frame; returns empty where the file does not
+// exist. Throws Error where the file is not a grey picture of the frame's size.
 std::optional<composite::AlphaMask> read_alpha_mask(const std::filesystem::path& folder,
                                                     const annotation::LensFacts& lens,
                                                     const std::string& intruder_id,

@@ -6,8 +6,8 @@
 
 namespace airtruth::sequence {
 
-// A contact sheet of one aircraft as the renderer sees it: nose, tail, both sides, above, below,
-// two oblique views and how it looks at 40 and 10 pixels, each with its name.
+// Returns a contact sheet of one aircraft as the renderer sees it: nose, tail, both sides, above,
+// below, two oblique views, and its appearance at 40 and 10 pixels, each with its name.
 image::Rgb8 portrait(const aircraft::Aircraft& aircraft);
 
 // One view, from the front left and above, 150 px square: a tile of a sheet of many aircraft.

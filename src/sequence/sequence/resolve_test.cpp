@@ -79,7 +79,7 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   EXPECT_NEAR(resolve().light.sun_azimuth_deg, 310, 1e-9);
 }
 
-// Whatever part of the clip a scene uses, it takes the one calibration.
+// All scenes over a clip use the same calibration, whatever part of the clip they use.
 TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
   calibration::Calibration found;
   found.values["sensor.codec_step"] = {{1.0 / 3, 1}};
@@ -104,8 +104,8 @@ std::string said_by(const std::function<void()>& what) {
   return "";
 }
 
-// A clip without edges: stopped without a word from the scene, the median over cameras with
-// fallback, the profile's value where one is named, nothing where none is wanted.
+// A clip without edges: an error where the scene allows no fallback, the median over cameras with
+// fallback, the profile's value where one is named, and no value where none is requested.
 TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
   calibration::Calibration found;
   found.width = info_.width, found.height = info_.height;
@@ -148,8 +148,8 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   EXPECT_NE(warnings[1].find("no colour; it is left out"), std::string::npos) << warnings[1];
 }
 
-// As of clips that are not H.264; `auto` asks for all that can be had, and takes the step where it
-// is.
+// The values of a clip that is not H.264. `auto` requests every value that can be measured, and
+// uses the codec step where there is one.
 TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   constexpr const char* kKey = "sensor.codec_step";
   calibration::Calibration found;

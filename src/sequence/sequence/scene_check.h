@@ -6,10 +6,10 @@
 
 namespace airtruth::sequence {
 
-// Error for all that is wrong with a scene and can be known before a frame of its clip is read: the
-// mask, the lens, the camera file, the paths of camera and intruders, the aircraft's names, and
-// whether the method can draw through this lens with this camera model. `info` is of the
-// background, or of what will be made as such.
+// Throws Error for every fault of a scene that can be found before a frame of its clip is read: in
+// the mask, the lens, the camera file, the paths of camera and intruders, the aircraft's names, and
+// where the method cannot render through this lens with this camera model. `info` describes the
+// background, or the one that will be made.
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info);
 
 }  // namespace airtruth::sequence

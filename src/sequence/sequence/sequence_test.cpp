@@ -309,7 +309,7 @@ TEST_F(Sequence, ThePapersMethodAgreesWithTheMatte) {
         drawn += std::abs(mine - background[k].picture.luma().row(y)[x]);
       }
     const double area = static_cast<double>(box.width) * box.height;
-    // The light is not quite the same: OpenGL has one colour from above and one from below.
+    // The light differs slightly: OpenGL has one colour from above and one from below.
     EXPECT_LT(between / area, 12) << "mean luma difference, frame " << k;
     EXPECT_LT(between, drawn / 2) << "no nearer to the matte than the bare background is, frame "
                                   << k;
@@ -359,7 +359,7 @@ TEST_F(Sequence, WithEverythingOnTheBackgroundKeepsItsSamplesAndTruthItsWord) {
     EXPECT_TRUE(truth.shake.rotation);
   }
   EXPECT_GT(visible, 3);
-  // The record alone makes the same frames again, and any number of threads the same bytes.
+  // The record alone reproduces the frames, and the bytes do not depend on the number of threads.
   const Recomposition again = recompose(finished, 3, {});
   EXPECT_TRUE(again.faults.empty()) << (again.faults.empty() ? "" : again.faults.front());
   const std::string truth_of_one = read_file(finished.folder / "truth.jsonl");
@@ -395,7 +395,7 @@ TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid)
   EXPECT_NE(said("[sensor]\ngamma = 2\n[realism]\nfile = \"tone.toml\"\n")
                 .find("was measured with sRGB's tone curve; the scene's is 2"),
             std::string::npos);
-  // FFV1 tells no quantiser.
+  // FFV1 reports no quantiser.
   const std::string why = said("[sensor]\ncodec_step = \"auto\"\n");
   EXPECT_NE(why.find("sensor.codec_step cannot be measured"), std::string::npos) << why;
   EXPECT_NE(why.find("fallback"), std::string::npos) << why;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What truth.jsonl says of a rendered sequence, against answers from elsewhere.
+// Compares the truth.jsonl of a rendered sequence with independent computations.
 #include <cmath>
 #include <map>
 
@@ -125,8 +125,9 @@ TEST_F(TruthOf, WhatHidesAnIntruderDoesNotDependOnThePointSpread) {
   EXPECT_GT(by_nothing, 0);
 }
 
-// The flight's own pose is the answer: a direction of the first frame's camera, turned as the
-// camera truly turned until frame k. The scene's camera stands still, so nominal bearings stay.
+// The flight's own pose gives the expected value: a direction of the first frame's camera, rotated
+// as the camera truly rotated until frame k. The scene's camera stands still, so nominal bearings
+// stay.
 TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
   const synthetic::Flight flight(turning_flight());
   const auto cam_from_world = [&](int k) {
@@ -190,8 +191,8 @@ TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {
     ASSERT_TRUE(a.covered_box_px && b.covered_box_px && a.visible_box_px);
     EXPECT_EQ(a.covered_box_px, b.covered_box_px) << k;
     wider += a.visible_box_px->width > a.covered_box_px->width + 2 ? 1 : 0;
-    // The other road: the projected shape, swept by the shutter; the point spread adds 1.3 px to a
-    // side that is opaque up to its edge, and takes thin parts away.
+    // An independent computation: the projected shape, swept by the shutter. The point spread adds
+    // 1.3 px to a side that is opaque up to its edge, and removes thin parts.
     const Box& exact = *a.exact_box_px;
     EXPECT_NEAR(a.covered_box_px->x, exact.x, 2) << k;
     EXPECT_NEAR(a.covered_box_px->right(), exact.right(), 2) << k;
@@ -221,8 +222,8 @@ TEST_F(TruthOf, TheEvisionRectangleIsTheCoveredBox) {
     EXPECT_EQ(evision.frames[k]->rect_px, *finished.truth.frames[k].intruders[0].covered_box_px);
 }
 
-// Grey pictures of the frame's size: their sum is alpha_sum_px, their bounds are covered_box_px,
-// and no pixel of two intruders or of the own aircraft is given away twice.
+// The masks are grey pictures of the frame's size: their sum is alpha_sum_px, their bounds are
+// covered_box_px, and no pixel of two intruders or of the own aircraft counts twice.
 TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
   image::Rgb8 mask = image::make_rgb8(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y)
