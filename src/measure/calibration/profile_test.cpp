@@ -80,7 +80,8 @@ TEST(CameraProfile, TheUsualCameraIsTheMedianWithTheSpreadBetweenCameras) {
   EXPECT_GE(spread.value, *least);
   EXPECT_LE(spread.value, *most);
   EXPECT_GT(spread.sigma, (*most - *least) / 4);
-  EXPECT_FALSE(usual.values.contains("shutter.readout_s"));  // of one camera it says nothing
+  // The usual camera has no value that only one camera of the library could give.
+  EXPECT_FALSE(usual.values.contains("shutter.readout_s"));
   EXPECT_EQ(usual.words(),
             "the median over " + std::to_string(camera_profiles().size()) + " cameras");
 }
