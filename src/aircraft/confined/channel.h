@@ -9,8 +9,9 @@
 #include "aircraft/model/load_options.h"
 #include "foundation/base/error.h"
 
-// What the program and airtruth-model-reader say to each other over one socket: messages of a kind,
-// a length and bytes. The reader asks for each file by name and gets its bytes; it never opens one.
+// The protocol between the program and airtruth-model-reader over one socket. A message has a kind,
+// a length and bytes. The reader requests each file by name and receives its bytes; it never opens
+// a file.
 namespace airtruth::aircraft {
 
 enum class Message : std::uint8_t {

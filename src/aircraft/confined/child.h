@@ -7,8 +7,8 @@
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
 
-// Models of strangers are read in a child process, airtruth-model-reader, which can do nothing but
-// hand back plain arrays: see src/aircraft/model_reader/confine.h.
+// Untrusted models are read in a child process, airtruth-model-reader, which can only return plain
+// arrays: see src/aircraft/model_reader/confine.h.
 namespace airtruth::aircraft {
 
 constexpr double kReaderSeconds = 20;  // wall time after which the child is ended

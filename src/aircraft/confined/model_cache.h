@@ -7,9 +7,9 @@
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
 
-// Converted models of strangers, kept by content: the model file's bytes and the options name the
-// entry, which lists every other file that was asked for with the SHA-256 of what was read. It is
-// taken where all of them are still the same, and is checked as what a reader hands back.
+// A cache of converted untrusted models. The model file's bytes and the options identify an entry,
+// which lists every other requested file with the SHA-256 of its content. An entry is used where
+// all of these files are unchanged, and it is checked like the result of a reader.
 namespace airtruth::aircraft {
 
 struct ModelCache {

@@ -11,8 +11,8 @@
 
 namespace airtruth::model_reader {
 
-// What assimp sees of the disk: the model's files, whole and for reading alone. Files that it asks
-// for and cannot have are remembered.
+// The file system that assimp sees: the model's files, complete and read-only. The class records
+// the requested files that do not exist.
 class AssimpFiles : public Assimp::IOSystem {
  public:
   explicit AssimpFiles(aircraft::ModelFiles& files) : files_(files) {}

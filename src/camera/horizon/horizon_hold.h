@@ -25,7 +25,7 @@ class HorizonHold {
   bool see(const Quaternion& cam_from_reference, const Vector3& up_in_cam);
   // Where up is expected in a frame; empty before the first sighting.
   std::optional<Vector3> expected_up(const Quaternion& cam_from_reference) const;
-  // The measured rotation, put right.
+  // The measured rotation, corrected by the horizons.
   Quaternion held(const Quaternion& cam_from_reference) const;
 
  private:
