@@ -8,8 +8,9 @@
 namespace airtruth::comparison {
 namespace {
 
-constexpr int kHalving = 2;              // the shift is found at half the size
-constexpr double kLeastTexture = 0.7;    // code values of fine detail that a shift can be told by
+constexpr int kHalving = 2;  // the shift is found at half the size
+// Fine detail, in code values, below which no shift can be determined.
+constexpr double kLeastTexture = 0.7;
 constexpr double kLeastResponse = 0.15;  // of the correlation's peak, 1: all power in one place
 
 }  // namespace

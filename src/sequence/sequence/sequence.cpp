@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame's way through render() is told here, from top to bottom: what is read before the first
-// frame, the stages of one frame, and what is written after the last.
+// The path of a frame through render(), from top to bottom: the inputs that are read before the
+// first frame, the stages of one frame, and the output that is written after the last.
 #include "sequence/sequence/sequence.h"
 
 #include <algorithm>
