@@ -80,7 +80,7 @@ TEST(CameraProfile, TheUsualCameraIsTheMedianWithTheSpreadBetweenCameras) {
   EXPECT_GE(spread.value, *least);
   EXPECT_LE(spread.value, *most);
   EXPECT_GT(spread.sigma, (*most - *least) / 4);
-  // The usual camera has no value that only one camera of the library could give.
+  // The usual camera has optical values only; a readout time belongs to one camera.
   EXPECT_FALSE(usual.values.contains("shutter.readout_s"));
   EXPECT_EQ(usual.words(),
             "the median over " + std::to_string(camera_profiles().size()) + " cameras");
