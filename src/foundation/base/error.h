@@ -41,7 +41,8 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-// Our own mistake: throws std::logic_error, exit code 1. Kept in release.
+// Checks an invariant of the program. A false condition is a bug: the function throws
+// std::logic_error, and the program ends with exit code 1. Release builds keep the check.
 void check(bool condition, std::string_view what);
 
 }  // namespace airtruth

@@ -14,7 +14,7 @@ namespace airtruth {
 // over the whole word.
 int edit_distance(std::string_view a, std::string_view b);
 
-// The candidate nearest to `word`, or empty if none is near enough to be what was meant.
+// The candidate nearest to `word`, or empty if no candidate is near enough to be a misspelling.
 std::optional<std::string> nearest_spelling(std::string_view word,
                                             std::span<const std::string> candidates);
 

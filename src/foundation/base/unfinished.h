@@ -7,9 +7,9 @@
 
 namespace airtruth {
 
-// What must not outlive a process that ends in the middle of a step: a file or folder that is half
-// written, a process that was started. It is undone by the destructor of whoever owns it; and where
-// the process ends without destructors, by undo_unfinished(). Thread-safe.
+// Owns something that must not outlive a process that ends in the middle of a step: a half-written
+// file or folder, or a child process. The destructor undoes it; where the process ends without
+// destructors, undo_unfinished() does. The class is thread-safe.
 class Unfinished {
  public:
   // `undo` runs on another thread than the owner's, while the owner may still be at work; it must
