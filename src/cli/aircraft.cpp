@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/portrait.h"
+#include "sequence/demo/portrait.h"
 #include "show/report/tiles.h"
 
 namespace airtruth::cli {

@@ -17,7 +17,7 @@
 #include "measure/calibration/profile.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/mask_picture.h"
+#include "sequence/frame/mask_picture.h"
 
 namespace airtruth::cli {
 namespace {

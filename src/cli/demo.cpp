@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/sequence/demo.h"
+#include "sequence/demo/demo.h"
 
 #include <memory>
 
@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
 #include "world/scene/scene.h"
 

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
-#include "sequence/sequence/evision_table.h"
+#include "sequence/evision/evision_table.h"
 
 namespace airtruth::cli {
 namespace {

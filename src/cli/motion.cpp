@@ -16,7 +16,7 @@
 #include "foundation/base/output_check.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
-#include "sequence/sequence/motion_source.h"
+#include "sequence/setup/motion_source.h"
 
 namespace airtruth::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/replay/finished.h"
 
 namespace airtruth::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/mask_picture.h"
-#include "sequence/sequence/virtual_flight.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/frame/mask_picture.h"
 
 namespace airtruth::cli {
 namespace {

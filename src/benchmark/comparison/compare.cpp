@@ -26,10 +26,10 @@
 #include "foundation/base/median.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/sequence/staging.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 #include "truth/annotation/truth.h"
 
 namespace airtruth::comparison {

@@ -10,10 +10,10 @@
 #include "benchmark/comparison/segment.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "sequence/sequence/ambient.h"
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/paint.h"
-#include "sequence/sequence/world.h"
+#include "sequence/frame/paint.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
+#include "sequence/surroundings/ambient.h"
 
 namespace airtruth::comparison {
 namespace {

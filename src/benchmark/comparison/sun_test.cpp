@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/comparison/segment.h"
-#include "sequence/sequence/ambient.h"
-#include "sequence/sequence/paint.h"
-#include "sequence/sequence/world.h"
+#include "sequence/frame/paint.h"
+#include "sequence/setup/world.h"
+#include "sequence/surroundings/ambient.h"
 
 namespace airtruth::comparison {
 namespace {

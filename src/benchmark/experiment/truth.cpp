@@ -9,7 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/replay/finished.h"
 #include "show/report/thumbnails.h"
 #include "truth/annotation/in_view.h"
 #include "truth/annotation/lens_facts.h"

@@ -5,10 +5,10 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/mask_picture.h"
-#include "sequence/sequence/virtual_flight.h"
-#include "sequence/sequence/world.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/frame/mask_picture.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -15,8 +15,8 @@
 #include "foundation/base/file_lock.h"
 #include "foundation/base/files.h"
 #include "foundation/base/pattern.h"
+#include "foundation/base/stopwatch.h"
 #include "sequence/sequence/sequence.h"
-#include "sequence/sequence/stopwatch.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -173,7 +173,7 @@ class Work {
 
 BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
   check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
-  const sequence::Stopwatch watch;
+  const Stopwatch watch;
   // Sequence records hold full background paths, because virtual flights lie in the data set.
   require_utf8(fs::absolute(out));
   for (const auto& [name, video] : options.videos) {

@@ -8,10 +8,10 @@
 #include "dataset/build/backgrounds.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
-#include "sequence/sequence/flyable.h"
-#include "sequence/sequence/from_scene.h"
 #include "sequence/sequence/sequence.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/flyable.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -10,9 +10,9 @@
 #include "foundation/base/files.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
-#include "sequence/sequence/finished.h"
-#include "sequence/sequence/masks.h"
-#include "sequence/sequence/recompose.h"
+#include "sequence/frame/masks.h"
+#include "sequence/replay/finished.h"
+#include "sequence/replay/recompose.h"
 #include "truth/annotation/in_view.h"
 #include "truth/annotation/lens_facts.h"
 

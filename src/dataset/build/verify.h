@@ -26,7 +26,7 @@ struct Status {
 Status status(const fs::path& root);
 
 struct VerifyOptions {
-  // Renders every n-th frame again and compares it (sequence/sequence/recompose.h); 0 means none.
+  // Renders every n-th frame again and compares it (sequence/replay/recompose.h); 0 means none.
   std::int64_t deep_every = 0;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;

@@ -15,9 +15,9 @@
 #include "dataset/catalogue/small_catalogue.h"
 #include "dataset/catalogue/sun_position.h"
 #include "foundation/base/error.h"
-#include "sequence/sequence/flyable.h"
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/flyable.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::dataset {
 namespace {

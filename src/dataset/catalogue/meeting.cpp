@@ -8,8 +8,8 @@
 
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 #include "truth/annotation/exact_box.h"
 
 namespace airtruth::dataset {

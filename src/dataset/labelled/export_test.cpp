@@ -19,7 +19,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/replay/finished.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -14,8 +14,8 @@
 #include "foundation/base/files.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
-#include "sequence/sequence/finished.h"
-#include "sequence/sequence/masks.h"
+#include "sequence/frame/masks.h"
+#include "sequence/replay/finished.h"
 #include "truth/exchange/pixel_mask.h"
 
 namespace airtruth::dataset {

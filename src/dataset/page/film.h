@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "foundation/geometry/box.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/replay/finished.h"
 
 namespace airtruth::dataset {
 

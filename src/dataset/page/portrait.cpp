@@ -6,9 +6,9 @@
 #include <map>
 
 #include "picture/video/reader.h"
-#include "sequence/sequence/finished.h"
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/world.h"
+#include "sequence/replay/finished.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 #include "truth/annotation/in_view.h"
 #include "truth/annotation/lens_facts.h"
 

@@ -8,10 +8,10 @@
 #include <unistd.h>
 
 #include "foundation/base/files.h"
-#include "sequence/sequence/finished.h"
-#include "sequence/sequence/from_scene.h"
+#include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 #include "truth/annotation/bearing.h"
 
 namespace airtruth::sequence {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sequence/sequence/outputs.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/world.h"
 #include "world/scene/scene.h"
 
 namespace airtruth::sequence {

@@ -11,7 +11,7 @@
 #include "camera/lens/lens.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
-#include "sequence/sequence/masks.h"
+#include "sequence/frame/masks.h"
 #include "sequence/sequence/sequence.h"
 #include "show/report/pictures.h"
 #include "truth/annotation/evision.h"

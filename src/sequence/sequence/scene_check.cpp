@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence/scene_check.h"
 
-#include "sequence/sequence/from_scene.h"
-#include "sequence/sequence/motion_source.h"
-#include "sequence/sequence/paint.h"
+#include "sequence/frame/paint.h"
 #include "sequence/sequence/resolve.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::sequence {
 

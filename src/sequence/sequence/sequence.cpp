@@ -15,20 +15,20 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/stopwatch.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/ambient.h"
-#include "sequence/sequence/frame_truth.h"
-#include "sequence/sequence/from_scene.h"
+#include "sequence/frame/frame_truth.h"
+#include "sequence/frame/masks.h"
+#include "sequence/frame/paint.h"
 #include "sequence/sequence/input_files.h"
-#include "sequence/sequence/masks.h"
-#include "sequence/sequence/motion_source.h"
 #include "sequence/sequence/outputs.h"
-#include "sequence/sequence/paint.h"
 #include "sequence/sequence/resolve.h"
 #include "sequence/sequence/staging.h"
-#include "sequence/sequence/stopwatch.h"
 #include "sequence/sequence/tally.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/world.h"
+#include "sequence/surroundings/ambient.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -70,7 +70,8 @@ struct Setting {
         size(image_size),
         mask(read_mask(scene, size)),
         world(load_world(scene, size, options.warn, options.stop)),
-        painter(make_painter(scene, world, own_aircraft(), options)) {
+        painter(make_painter(
+            scene, world, own_aircraft(), {options.gpu, options.software_gl, options.stop})) {
     scene.motion.model = motion_model(scene);
     // sequence.json records the scale that is drawn, so that the same scene gives the same sizes
     // whatever the table of published sizes becomes.

@@ -14,9 +14,9 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/finished.h"
-#include "sequence/sequence/recompose.h"
-#include "sequence/sequence/virtual_flight.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/replay/finished.h"
+#include "sequence/replay/recompose.h"
 
 namespace airtruth::sequence {
 namespace {

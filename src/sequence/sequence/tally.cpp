@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sequence/sequence/flyable.h"
+#include "sequence/setup/flyable.h"
 
 namespace airtruth::sequence {
 namespace {

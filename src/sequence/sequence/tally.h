@@ -8,7 +8,7 @@
 #include "foundation/base/log.h"
 #include "picture/video/reader.h"
 #include "sequence/sequence/sequence.h"
-#include "sequence/sequence/world.h"
+#include "sequence/setup/world.h"
 #include "truth/annotation/truth.h"
 #include "world/scene/scene.h"
 

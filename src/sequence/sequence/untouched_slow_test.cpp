@@ -8,9 +8,9 @@
 
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
-#include "sequence/sequence/finished.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
-#include "sequence/sequence/virtual_flight.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/demo/demo.h"
+
+#include <cstdio>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/video/still.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/frame/mask_picture.h"
+#include "sequence/replay/finished.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// A Boeing 737 crosses from left to right and a Cessna overtakes on the right, both within a
+// kilometre.
+constexpr const char* kScene =
+    R"(# Made by `airtruth demo`; change it and run: airtruth render demo.toml --out . --overwrite
+name = "demo"
+seed = %llu
+
+[background]
+video = "flight.mp4"
+mask = "own_aircraft.png"
+
+[lens]
+model = "fisheye"
+vertical_fov_deg = %g
+
+[camera]
+position_ned_m = [0, 0, -%g]
+velocity_ned_mps = [%g, 0, 0]
+attitude_yaw_pitch_roll_deg = [0, 0, 0]
+
+[motion]
+reference = "first_frame"
+
+[light]
+sun_azimuth_deg = %g
+sun_elevation_deg = %g
+
+[[intruder]]
+id = "b737"
+aircraft = "738/738-Ryanair"
+waypoints_ned_m = [[330, -420, -290], [420, -60, -262], [560, 380, -250], [700, 900, -245]]
+speed_mps = 95
+
+[[intruder]]
+id = "c172"
+aircraft = "c172/news"
+waypoints_ned_m = [[70, 60, -172], [290, 62, -190], [900, 40, -230]]
+speed_mps = 52
+
+[output]
+video = "mp4"
+quality = 18
+)";
+
+constexpr double kVerticalFovDeg = 100;
+
+synthetic::FlightOptions flight_options(const DemoOptions& options) {
+  synthetic::FlightOptions flight;
+  flight.seed = options.seed;
+  flight.frame_count = options.frame_count;
+  flight.lens = lens::fisheye_from_vertical_fov(kVerticalFovDeg, {flight.width, flight.height});
+  return flight;
+}
+
+std::string scene_text(const synthetic::FlightOptions& flight, std::uint64_t seed) {
+  char text[4096];
+  const int length = std::snprintf(text,
+                                   sizeof text,
+                                   kScene,
+                                   static_cast<unsigned long long>(seed),
+                                   kVerticalFovDeg,
+                                   flight.altitude_m,
+                                   flight.speed_mps,
+                                   flight.sun_azimuth_deg,
+                                   flight.sun_elevation_deg);
+  return {text, static_cast<std::size_t>(length)};
+}
+
+std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& options,
+                                                       const std::string& stage) {
+  if (!options.progress) return {};
+  return [&options, stage](std::int64_t done, std::int64_t total) {
+    options.progress(stage, done, total);
+  };
+}
+
+}  // namespace
+
+Summary make_demo(const fs::path& out, const DemoOptions& options) {
+  refuse_existing(out / "demo", options.overwrite);
+  std::error_code failed;
+  fs::create_directories(out, failed);
+  if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
+  const synthetic::Flight flight(flight_options(options));
+  VirtualFlightOptions how;
+  how.stop = options.stop;
+  how.progress = staged(options, "flying");
+  write_flight(flight, out / "flight.mp4", how);
+  write_file(out / "flight.csv", synthetic::csv_from_flight(flight));
+  video::write_still(out / "own_aircraft.png", picture_of(flight.own_aircraft()));
+  write_file(out / "demo.toml", scene_text(flight.options(), options.seed));
+  Options render_options;
+  render_options.overwrite = options.overwrite;
+  render_options.warn = options.warn;
+  render_options.stop = options.stop;
+  const auto rendering = staged(options, "rendering");
+  render_options.progress = [rendering](const Progress& p) {
+    if (rendering) rendering(p.frames_done, p.frames_total);
+  };
+  const Summary summary = render(scene::read_scene(out / "demo.toml"), out, render_options);
+  OverlayOptions overlay;
+  overlay.overwrite = true;
+  overlay.stop = options.stop;
+  overlay.progress = staged(options, "overlay");
+  write_overlay(open_finished(summary.folder), out / "overlay.mp4", overlay);
+  return summary;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/frame/frame_truth.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "truth/annotation/bearing.h"
+
+namespace airtruth::sequence {
+namespace {
+
+annotation::State state_of(const Moment& moment,
+                           std::size_t i,
+                           const Vector3& p_in_cam,
+                           const image::Layer& layer,
+                           const composite::Visible* visible) {
+  using annotation::State;
+  if (visible != nullptr && visible->box) return State::kVisible;
+  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
+                     layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) return State::kHidden;
+  if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
+  return State::kOutside;
+}
+
+void add_bearings(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state,
+                  const Vector3& offset_in_world) {
+  const annotation::Bearing nominal = annotation::bearing_of(
+      cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
+  truth.nominal_azimuth_deg = nominal.azimuth_deg;
+  truth.nominal_elevation_deg = nominal.elevation_deg;
+  const auto seen =
+      annotation::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
+  if (!seen) return;
+  truth.azimuth_deg = seen->azimuth_deg;
+  truth.elevation_deg = seen->elevation_deg;
+}
+
+void add_geometry(annotation::Intruder& truth,
+                  const Moment& moment,
+                  const trajectory::State& state) {
+  const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
+  const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
+  const double range_m = offset.norm();
+  truth.position_ned_m = state.position_in_world;
+  truth.velocity_ned_mps = state.velocity_in_world_mps;
+  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
+  truth.position_in_cam_m = p_in_cam;
+  truth.range_m = range_m;
+  if (range_m > 0) {
+    const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
+    truth.range_rate_mps = offset.dot(relative) / range_m;
+    add_bearings(truth, moment, state, offset);
+  }
+}
+
+void add_pixels(annotation::Intruder& truth,
+                std::size_t i,
+                const image::Layer& layer,
+                const composite::Visible& visible) {
+  truth.visible_box_px = visible.box;
+  if (visible.box) truth.covered_box_px = visible.covered;
+  truth.visible_area_px = visible.pixels;
+  truth.alpha_sum_px = visible.alpha_sum_px;
+  truth.centroid_px = visible.centroid;
+  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
+  const double alone = layer.area_alone_px[i];
+  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
+  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
+  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
+  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
+  constexpr double kRounding = 1e-6;  // sums of float coverages
+  for (double* share :
+       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+    if (*share < kRounding) *share = 0;
+}
+
+std::vector<annotation::Intruder> intruders_of(const World& world,
+                                               const Moment& moment,
+                                               const image::Layer& layer,
+                                               const std::vector<composite::Visible>& visible) {
+  std::vector<annotation::Intruder> result;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    annotation::Intruder truth;
+    truth.id = world.actors[i].id;
+    truth.aircraft = world.actors[i].aircraft;
+    if (moment.states[i]) {
+      add_geometry(truth, moment, *moment.states[i]);
+      const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
+      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
+      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
+      if (seen != nullptr) add_pixels(truth, i, layer, *seen);
+    }
+    result.push_back(std::move(truth));
+  }
+  return result;
+}
+
+}  // namespace
+
+annotation::Frame frame_truth(const World& world,
+                              const video::Frame& frame,
+                              const FrameMotionTruth& motion,
+                              const Moment& moment,
+                              const Painted& painted) {
+  annotation::Frame truth;
+  truth.frame = frame.index;
+  truth.time_s = frame.time_s;
+  truth.damaged = frame.damaged;
+  truth.motion_state = motion.state;
+  truth.shake = motion.shake;
+  truth.camera_position_ned_m = moment.camera.position_in_world;
+  truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
+  truth.intruders = intruders_of(world, moment, painted.layer, painted.visible);
+  return truth;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "picture/video/frame.h"
+#include "sequence/frame/paint.h"
+#include "sequence/setup/world.h"
+#include "truth/annotation/truth.h"
+
+// The truth of one frame, put together in one place: for the run that makes the frame, and for the
+// check that makes it again and compares.
+namespace airtruth::sequence {
+
+// What the measured motion contributes to a frame's truth.
+struct FrameMotionTruth {
+  std::string state;  // "measured", "bridged", ... (motion::name), or "none" without a motion model
+  Shake shake;
+};
+
+// frame: the background's frame, for its number, time and damage. moment: where everything is, from
+// geometry alone. painted: what compositing changed in the frame's pixels. The intruders stand in
+// the scene's order. An intruder is kVisible exactly when at least one pixel shows it.
+annotation::Frame frame_truth(const World& world,
+                              const video::Frame& frame,
+                              const FrameMotionTruth& motion,
+                              const Moment& moment,
+                              const Painted& painted);
+
+}  // namespace airtruth::sequence

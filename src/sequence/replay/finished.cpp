@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/replay/finished.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "foundation/image/colour.h"
+#include "picture/video/reader.h"
+#include "picture/video/writer.h"
+#include "sequence/frame/paint.h"
+#include "sequence/setup/world.h"
+#include "show/report/pictures.h"
+#include "truth/exchange/labels.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// Every frame up to the last that is labelled is held, and numbers in the names of pictures can be
+// anything: 9 hours at 30 frames/s.
+constexpr std::int64_t kMostFrames = 1'000'000;
+
+video::Frame frame_at(const fs::path& path, std::int64_t index) {
+  video::ReaderOptions options;
+  options.first_frame = index;
+  options.frame_count = 1;
+  auto frame = video::Reader(path, options).next();
+  if (!frame) throw Error("holds no frame " + std::to_string(index), {path.string()});
+  return std::move(*frame);
+}
+
+std::size_t intruder_index(const annotation::Frame& truth, const std::string& id) {
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    const annotation::Intruder& intruder = truth.intruders[i];
+    const bool drawn = intruder.visible_box_px || intruder.state == annotation::State::kHidden;
+    if (id.empty() ? drawn : intruder.id == id) {
+      if (!intruder.exact_box_px) break;
+      return i;
+    }
+  }
+  throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" +
+              (id.empty() ? "" : " '" + id + "'") +
+              "; expected a frame in which one is in view (see truth.jsonl)");
+}
+
+PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
+  const double margin = std::max(4.0, 0.25 * std::max(box.width, box.height));
+  const double x0 = std::max(box.x, -8.0) - margin;
+  const double y0 = std::max(box.y, -8.0) - margin;
+  const double x1 = std::min(box.right(), lens.width + 8.0) + margin;
+  const double y1 = std::min(box.bottom(), lens.height + 8.0) + margin;
+  PixelBox area = pixels_of({x0, y0, x1 - x0, y1 - y0});
+  area.width = std::max(1, area.width);
+  area.height = std::max(1, area.height);
+  return area;
+}
+
+// Boxes of an imported clip, in the form of a rendered sequence's truth.
+annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
+  annotation::Frame frame;
+  frame.frame = labelled.frame;
+  frame.time_s = labelled.time_s.value_or(0);
+  for (const exchange::Label& label : labelled.labels) {
+    annotation::Intruder intruder;
+    intruder.id = label.category + " " + std::to_string(label.track);
+    intruder.aircraft = label.category;
+    intruder.state = annotation::State::kVisible;
+    intruder.exact_box_px = label.box_px;
+    intruder.visible_box_px = pixels_of(label.box_px);
+    intruder.range_m = label.range_m;
+    frame.intruders.push_back(intruder);
+  }
+  return frame;
+}
+
+Finished open_labelled(const fs::path& folder) {
+  const exchange::Clip clip = exchange::read_labels(folder / "labels.jsonl");
+  Finished finished;
+  finished.folder = folder;
+  finished.name = clip.name;
+  finished.video = clip.media;
+  if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    if (frame.frame >= kMostFrames)
+      throw Error(
+          fmt::format("labels frame {}; expected frames below {}", frame.frame, kMostFrames),
+          {(folder / "labels.jsonl").string()});
+    while (std::ssize(finished.truth.frames) < frame.frame) {
+      finished.truth.frames.emplace_back();
+      finished.truth.frames.back().frame = std::ssize(finished.truth.frames) - 1;
+    }
+    finished.truth.frames.push_back(frame_of(frame));
+  }
+  return finished;
+}
+
+}  // namespace
+
+Finished open_finished(const fs::path& folder) {
+  if (fs::exists(folder / "labels.jsonl")) return open_labelled(folder);
+  const fs::path record_file = folder / "sequence.json";
+  if (!fs::exists(record_file))
+    throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished",
+                {folder.string()});
+  Finished finished;
+  finished.folder = folder;
+  try {
+    const auto record = nlohmann::json::parse(read_file(record_file));
+    finished.name = record.at("name").get<std::string>();
+    // A manipulated record must not name files outside its folder.
+    if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
+      throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
+                  {record_file.string()});
+    finished.has_covered_boxes = record.contains("covered_alpha");
+    finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(std::string("is not a record of airtruth: ") + error.what(),
+                {record_file.string()});
+  }
+  const auto format = video::format_from_name(finished.scene->output.video);
+  finished.video = folder / (finished.name + video::extension(format));
+  if (!fs::exists(finished.video))
+    throw Error("is missing; the folder is not whole", {finished.video.string()});
+  finished.truth = annotation::read_truth(folder / "truth.jsonl");
+  return finished;
+}
+
+std::vector<std::string> intruder_ids(const annotation::Truth& truth) {
+  std::vector<std::string> ids;
+  for (const annotation::Frame& frame : truth.frames)
+    for (const annotation::Intruder& intruder : frame.intruders)
+      if (std::find(ids.begin(), ids.end(), intruder.id) == ids.end()) ids.push_back(intruder.id);
+  return ids;
+}
+
+void write_overlay(const Finished& sequence, const fs::path& out, const OverlayOptions& options) {
+  check_output_file(out, options.overwrite);
+  video::WriterOptions writer_options;
+  writer_options.format = video::format_of_file(out);
+  if (sequence.scene) writer_options.quality = sequence.scene->output.quality;
+  video::Reader reader(sequence.video);
+  video::StreamInfo info = reader.info();
+  video::Writer writer(out, info, writer_options);
+  const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
+  const std::vector<std::string> ids = intruder_ids(sequence.truth);
+  while (auto frame = reader.next()) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    if (frame->index >= total) {
+      // An imported clip may end before its video.
+      if (!sequence.scene) break;
+      throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
+    }
+    const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
+    frame->picture = image::picture_from_rgb8(report::overlay(frame->picture, truth, ids),
+                                              frame->picture.colour);
+    writer.write(*frame);
+    if (options.progress) options.progress(frame->index + 1, total);
+  }
+  writer.finish();
+}
+
+image::Rgb8 inspect(const Finished& sequence,
+                    std::int64_t frame,
+                    const std::string& intruder_id,
+                    int zoom) {
+  if (!sequence.scene)
+    throw Error("was imported, so that its background is not known", {sequence.folder.string()});
+  const scene::Scene& scene = *sequence.scene;
+  const auto count = static_cast<std::int64_t>(sequence.truth.frames.size());
+  if (frame < 0 || frame >= count)
+    throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " +
+                    std::to_string(count - 1),
+                {sequence.folder.string()});
+  const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
+  const std::size_t i = intruder_index(truth, intruder_id);
+  const video::Frame before =
+      frame_at(scene.background.video, scene.background.first_frame + frame);
+  const video::Frame after = frame_at(sequence.video, frame);
+  const World world = load_world(scene, {before.picture.width, before.picture.height}, {});
+  const Moment moment = moment_at(world, truth.frame, truth.time_s, truth.shake);
+  const image::Layer layer = render_layer(scene, world, moment, Ambient{});
+  const bool matte = scene.composite.method == "matte";
+  return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
+                         truth,
+                         area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
+                         zoom);
+}
+
+}  // namespace airtruth::sequence

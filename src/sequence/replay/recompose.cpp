@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/replay/recompose.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/video/reader.h"
+#include "sequence/frame/frame_truth.h"
+#include "sequence/frame/masks.h"
+#include "sequence/frame/paint.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// Mean difference of luma over a part of two pictures.
+double difference(const image::Picture& a, const image::Picture& b, const PixelBox& area) {
+  std::int64_t sum = 0;
+  for (int y = area.y; y < area.bottom(); ++y)
+    for (int x = area.x; x < area.right(); ++x)
+      sum += std::abs(int{a.luma().row(y)[x]} - int{b.luma().row(y)[x]});
+  return static_cast<double>(sum) / (static_cast<double>(area.width) * area.height);
+}
+
+// A codec's error near the aircraft's edges is at most a few times its error in smooth sky.
+constexpr double kTimesElsewhere = 4;
+constexpr double kLevels = 4;
+constexpr int kAroundPx = 8;
+
+std::string picture_fault(const image::Picture& made,
+                          const image::Picture& stored,
+                          const annotation::Frame& truth,
+                          bool lossless) {
+  if (made.width != stored.width || made.height != stored.height) return "is of another size";
+  if (lossless) return image::identical(made, stored) ? "" : "is not what it would be made as";
+  if (made.colour.range != stored.colour.range || made.colour.matrix != stored.colour.matrix)
+    return "";
+  const PixelBox whole{0, 0, made.width, made.height};
+  const double elsewhere = difference(made, stored, whole);
+  for (const annotation::Intruder& intruder : truth.intruders) {
+    if (!intruder.visible_box_px) continue;
+    const PixelBox& v = *intruder.visible_box_px;
+    const auto around = intersection(
+        {v.x - kAroundPx, v.y - kAroundPx, v.width + 2 * kAroundPx, v.height + 2 * kAroundPx},
+        whole);
+    const double here = difference(made, stored, *around);
+    if (here > kTimesElsewhere * elsewhere + kLevels)
+      return fmt::format(
+          "differs around {} by {:.1f} levels ({:.1f} elsewhere)", intruder.id, here, elsewhere);
+  }
+  return "";
+}
+
+// Removes from a recomputed truth the fields that older sequences lack.
+void as_older_truth(annotation::Frame& truth) {
+  for (annotation::Intruder& intruder : truth.intruders) {
+    intruder.covered_box_px.reset();
+    if (!truth.shake.rotation && truth.shake.frame_from_reference != Homography::Identity()) {
+      intruder.azimuth_deg.reset();
+      intruder.elevation_deg.reset();
+    }
+    if (truth.shake.rotation) {
+      intruder.nominal_azimuth_deg.reset();
+      intruder.nominal_elevation_deg.reset();
+    }
+  }
+}
+
+// Masks whose bytes are not those of the frame drawn again, and masks that should not be there.
+std::vector<std::string> mask_faults(const Finished& sequence,
+                                     const annotation::Frame& truth,
+                                     const image::Layer& layer,
+                                     const image::Mask* own_aircraft) {
+  const lens::ImageSize size{sequence.truth.lens.width, sequence.truth.lens.height};
+  const std::vector<MaskFile> made = mask_files(truth, layer, own_aircraft, size);
+  std::vector<std::string> faults;
+  for (const annotation::Intruder& intruder : truth.intruders) {
+    const std::string name = mask_name(intruder.id, truth.frame);
+    const auto again =
+        std::find_if(made.begin(), made.end(), [&](const auto& m) { return m.name == name; });
+    const bool is_there = fs::exists(sequence.folder / name);
+    if (is_there != (again != made.end()) ||
+        (is_there && read_file(sequence.folder / name) != again->png))
+      faults.push_back("has another " + name + " when it is drawn again");
+  }
+  return faults;
+}
+
+}  // namespace
+
+Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop) {
+  check(every > 0, "every n-th frame");
+  if (!sequence.scene) throw Error("was imported, not rendered", {sequence.folder.string()});
+  const scene::Scene& scene = *sequence.scene;
+  video::ReaderOptions options;
+  options.first_frame = scene.background.first_frame;
+  options.frame_count = scene.background.frame_count;
+  options.with_cuts = true;
+  video::Reader background(scene.background.video, options);
+  video::Reader stored(sequence.video);
+  const lens::ImageSize size{background.info().width, background.info().height};
+  const World world = load_world(scene, size, {}, stop);
+  const auto mask = read_mask(scene, size);
+  const image::Mask* mask_ptr = mask ? &*mask : nullptr;
+  const auto painter = make_painter(scene, world, mask_ptr, {});
+  AmbientEstimator ambient(scene.light, tone_of(scene.camera_model), mask_ptr);
+  const std::string& codec = scene.output.video;
+  Recomposition result;
+  const auto fault = [&](const annotation::Frame& truth, const std::string& what) {
+    result.faults.push_back("frame " + std::to_string(truth.frame) + " " + what);
+  };
+  for (const annotation::Frame& truth : sequence.truth.frames) {
+    if (stop.stop_requested()) throw Interrupted();
+    auto before = background.next();
+    const auto after = stored.next();
+    if (!before || !after) {
+      fault(truth, before ? "is not in the video" : "is not in the background");
+      break;
+    }
+    const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
+    const Ambient light =
+        ambient.next(before->picture, moment.sight, search_bounds(moment), before->begins_shot);
+    const bool is_compared = truth.frame % every == 0;
+    if (!is_compared && !painter->is_in_order()) continue;
+    const Painted painted = painter->paint(before->picture, moment, light);
+    if (!is_compared) continue;
+    // The measured motion is the input of both; all else is computed again.
+    annotation::Frame again =
+        frame_truth(world, *before, {truth.motion_state, truth.shake}, moment, painted);
+    if (!sequence.has_covered_boxes) as_older_truth(again);
+    ++result.compared;
+    if (scene.output.masks)
+      for (const std::string& what : mask_faults(sequence, again, painted.layer, mask_ptr))
+        fault(truth, what);
+    if (annotation::jsonl_line(again, sequence.truth.lens) !=
+        annotation::jsonl_line(truth, sequence.truth.lens))
+      fault(truth, "has another truth when it is computed again");
+    if (codec == "png") continue;  // sRGB, rounded on the way
+    const std::string found = picture_fault(before->picture, after->picture, truth, codec == "mkv");
+    if (!found.empty()) fault(truth, found);
+  }
+  return result;
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/flyable.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "aircraft/fleet/fleet.h"
+#include "aircraft/fleet/flight_limits.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::sequence {
+namespace {
+
+using Quantity = BeyondLimit::Quantity;
+
+trajectory::Path straight(double speed_mps, double climb_mps = 0) {
+  return trajectory::uniform({0, 0, -500}, {speed_mps, 0, -climb_mps}, {});
+}
+
+// A level circle of that radius at that speed, two turns of it. Its bank is atan(v^2 / (g r)).
+trajectory::Path circle(double speed_mps, double radius_m) {
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 144; ++i) {
+    const double a = radians(5.0 * i);
+    points.emplace_back(radius_m * std::sin(a), radius_m * (1 - std::cos(a)), -500);
+  }
+  return trajectory::spline_at_speed(points, speed_mps);
+}
+
+TEST(Flyable, ACessnaAt131MetresASecondIsBeyondItsClassAndAnAirlinerIsNot) {
+  const auto found = beyond_limits("c172/news", straight(131), 0, 10);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].quantity, Quantity::kFast);
+  EXPECT_DOUBLE_EQ(found[0].value, 131);
+  EXPECT_TRUE(beyond_limits("738/738-Ryanair", straight(131), 0, 10).empty());
+  EXPECT_TRUE(beyond_limits("c172/news", straight(55), 0, 10).empty());
+}
+
+TEST(Flyable, EachLimitIsNamedWithItsInstantItsNumberAndTheLimit) {
+  EXPECT_EQ(beyond_limits("738/738-Ryanair", straight(30), 0, 10)[0].quantity, Quantity::kSlow);
+  EXPECT_EQ(beyond_limits("c172/news", straight(50, 20), 0, 10)[0].quantity, Quantity::kClimb);
+  EXPECT_EQ(beyond_limits("c172/news", straight(50, -20), 0, 10)[0].quantity, Quantity::kDescent);
+  // 55 m/s on a radius of 124.6 m: atan(55^2 / (9.80665 x 124.6)) = 68.0 degrees.
+  const auto found = beyond_limits("c172/news", circle(55, 124.6), 2, 6);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].quantity, Quantity::kBank);
+  EXPECT_NEAR(found[0].value, 68.0, 0.1);
+  EXPECT_GE(found[0].time_s, 2);
+  EXPECT_LE(found[0].time_s, 6);
+  EXPECT_THAT(words_beyond_limits("c172/news", circle(55, 124.6), 2, 6),
+              testing::MatchesRegex("c172/news \\(light piston\\) cannot fly its path: at "
+                                    "[0-9.]+ s it banks 68.0 degrees, its class at most 60"));
+}
+
+// An attitude that is stated does not hide what the turn takes.
+TEST(Flyable, TheBankIsThatOfTheTurn) {
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 72; ++i)
+    points.emplace_back(
+        124.6 * std::sin(radians(5.0 * i)), 124.6 * (1 - std::cos(radians(5.0 * i))), -500);
+  trajectory::AttitudeOverride level;
+  level.roll_deg = 0;
+  const auto path = trajectory::spline_at_speed(points, 55, level);
+  ASSERT_EQ(beyond_limits("c172/news", path, 2, 6).size(), 1u);
+}
+
+TEST(Flyable, OnlyTheTimeOfTheClipCountsAndAnUnknownTypeHasNoLimits) {
+  const std::vector<Vector3> points = {
+      {0, 0, -500}, {100, 0, -500}, {200, 0, -500}, {1200, 0, -500}};
+  const std::vector<double> times = {0, 2, 4, 6};
+  const auto path = trajectory::spline_at_times(points, times);
+  EXPECT_FALSE(beyond_limits("c172/news", path, 0, 10).empty());
+  EXPECT_TRUE(beyond_limits("c172/news", path, 10, 12).empty());
+  EXPECT_TRUE(beyond_limits("mine.ac", straight(3000), 0, 10).empty());
+  EXPECT_TRUE(beyond_limits("balloon/balloon", straight(1), 0, 10).empty());
+}
+
+// The ranges that are drawn from are within the limits, and no class is without sense.
+TEST(Flyable, WhatIsUsualIsFlyable) {
+  for (const aircraft::FlightLimits& c : aircraft::flight_classes()) {
+    EXPECT_LT(c.slowest_mps, c.usual_low_mps) << c.name;
+    EXPECT_LT(c.usual_low_mps, c.usual_high_mps) << c.name;
+    EXPECT_LT(c.usual_high_mps, c.fastest_mps) << c.name;
+    EXPECT_LT(c.usual_bank_deg, c.most_bank_deg) << c.name;
+    EXPECT_LT(c.most_bank_deg, 90) << c.name;
+    EXPECT_LT(c.first_hour, c.last_hour) << c.name;
+  }
+}
+
+// Every type of the installed list has a class but those that fly like no other.
+TEST(Flyable, TypesOfTheListHaveAClass) {
+  std::vector<aircraft::Entry> entries;
+  try {
+    entries = aircraft::list_aircraft();
+  } catch (const Error&) {
+    GTEST_SKIP() << "no aircraft are installed";
+  }
+  for (const aircraft::Entry& entry : entries) {
+    const std::string type = entry.name.substr(0, entry.name.find('/'));
+    const bool odd = type == "balloon" || type == "bluebird" || type == "Ferry" ||
+                     type == "SpaceShuttle" || type == "SR-71";
+    EXPECT_EQ(aircraft::flight_limits(entry.name) == nullptr, odd) << entry.name;
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::sequence

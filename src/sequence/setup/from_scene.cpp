@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/from_scene.h"
+
+#include <utility>
+
+#include "camera/lens/calibration_file.h"
+#include "picture/render/renderer.h"
+
+namespace airtruth::sequence {
+namespace {
+
+std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
+  if (distortion.size() < size) distortion.resize(size, 0.0);
+  return distortion;
+}
+
+lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
+  if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
+    if (lens.model == "pinhole")
+      return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    if (lens.model == "fisheye")
+      return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
+  }
+  Pixel focal{0, 0};
+  if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
+  if (lens.vertical_fov_deg) {
+    const lens::Lens plain = lens.model == "fisheye"
+                                 ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
+                                 : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
+    focal = {plain.focal_px(), plain.focal_px()};
+  }
+  Pixel centre{size.width / 2.0, size.height / 2.0};
+  if (lens.principal_point_px)
+    centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
+  if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
+  if (lens.model == "fisheye")
+    return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
+  return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
+}
+
+}  // namespace
+
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
+  return at_place(lens.where, [&] {
+    return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
+  });
+}
+
+trajectory::Path camera_path(const scene::Camera& camera) {
+  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  return trajectory::uniform(
+      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+}
+
+trajectory::Path path_of(const scene::Intruder& intruder) {
+  const trajectory::AttitudeOverride attitude{
+      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  return at_place(intruder.where, [&] {
+    const trajectory::Path path =
+        intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
+        : intruder.speed_mps
+            ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
+            : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
+    return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
+  });
+}
+
+Vector3 to_sun_in_world(const scene::Light& light) {
+  return render::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg);
+}
+
+Shutter shutter_of(const scene::CameraModel& model) {
+  Shutter shutter;
+  check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
+  shutter.exposure_s = model.exposure_s.value_or(0);
+  shutter.readout_s = model.readout_s.value_or(0);
+  const std::string readout = model.readout.value_or("down");
+  shutter.readout = readout == "up"      ? Readout::kUp
+                    : readout == "right" ? Readout::kRight
+                    : readout == "left"  ? Readout::kLeft
+                                         : Readout::kDown;
+  return shutter;
+}
+
+image::ToneCurve tone_of(const scene::CameraModel& model) { return {model.gamma.value_or(0)}; }
+
+composite::Sensor sensor_of(const scene::CameraModel& model) {
+  composite::Sensor sensor;
+  sensor.sharpening = model.sharpening.value_or(0);
+  sensor.sharpening_px = model.sharpening_px.value_or(sensor.sharpening_px);
+  sensor.noise_gain = model.noise_gain.value_or(0);
+  sensor.noise_floor = model.noise_floor.value_or(0);
+  sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
+  sensor.chroma_spread_px = model.chroma_spread_px.value_or(0);
+  sensor.tone = tone_of(model);
+  return sensor;
+}
+
+bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_or(0) > 0; }
+
+}  // namespace airtruth::sequence

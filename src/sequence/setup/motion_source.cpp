@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/motion_source.h"
+
+#include <algorithm>
+#include <exception>
+
+#include <fmt/ranges.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/video/telemetry.h"
+#include "truth/annotation/lens_facts.h"
+
+namespace airtruth::sequence {
+std::string words_of(const lens::Lens& lens) {
+  const annotation::LensFacts facts = annotation::facts_of(lens);
+  return fmt::format("{} {} {} {}",
+                     facts.model,
+                     fmt::join(facts.focal_px, ","),
+                     fmt::join(facts.principal_point_px, ","),
+                     fmt::join(facts.distortion, ","));
+}
+
+std::string sha256_of_video(const fs::path& video) {
+  if (fs::is_regular_file(video)) return sha256_of_file(video);
+  if (!fs::is_directory(video)) return "";
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(video))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const fs::path& file : files)
+    all += file.filename().string() + ' ' + sha256_of_file(file) + '\n';
+  return sha256_of(all);
+}
+
+std::string motion_model(const scene::Scene& scene) {
+  const bool paper = scene.composite.method == "chroma-key";
+  if (scene.motion.model == "rotation" && paper)
+    throw Error(
+        "motion.model rotation is not for composite.method chroma-key, which warps planes; "
+        "expected model = \"homography\" or method = \"matte\"",
+        scene.motion.where);
+  if (scene.motion.model != "auto") return scene.motion.model;
+  return paper ? "homography" : "rotation";
+}
+
+MotionSource::MotionSource(const scene::Scene& scene,
+                           const lens::Lens& lens,
+                           bool needs_change,
+                           const std::string& video_sha256,
+                           const image::Mask* mask,
+                           const fs::path& cache)
+    : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
+  const std::string model = motion_model(scene);
+  none_ = model == "none";
+  smoothed_ = !none_ && scene.motion.reference == "smoothed";
+  needs_change_ = needs_change;
+  if (model == "rotation") lens_ = lens;
+  // The gyroscope's clock starts with the file.
+  if (lens_ && scene.background.first_frame == 0) gyro_ = gyro_of(scene.background.video);
+  if (!video_sha256.empty() && !none_) cache_ = cache;
+  options_.seed = scene.seed;
+  options_.smoothing_s = scene.motion.smoothing_s;
+  key_.video_sha256 = video_sha256;
+  if (scene.background.mask) key_.mask_sha256 = sha256_of_file(*scene.background.mask);
+  key_.first_frame = scene.background.first_frame;
+  key_.frame_count = scene.background.frame_count.value_or(-1);
+  if (lens_) key_.lens = words_of(*lens_);
+  key_.options = options_;
+  if (cache_.empty()) return;
+  if (auto found = motion::cached(cache_, key_)) {
+    from_cache_ = true;
+    set_pass(std::move(*found));
+  }
+}
+
+motion::Estimator MotionSource::estimator(int width, int height) const {
+  return lens_ ? motion::Estimator(*lens_, options_, mask_)
+               : motion::Estimator(width, height, options_, mask_);
+}
+
+void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
+  against_first_ = std::move(against_first);
+  std::vector<motion::FrameMotion> bridged = against_first_;
+  bridge_by_gyro(gyro_, bridged);
+  all_ = smoothed_ ? motion::smoothed(bridged, options_)
+                   : motion::within_reach(std::move(bridged), size_.width, size_.height);
+  ready_ = true;
+}
+
+void MotionSource::measure(video::Reader& reader,
+                           const std::stop_token& stop,
+                           const std::function<void(std::int64_t)>& seen) {
+  set_pass(
+      measure_motion(reader, estimator(reader.info().width, reader.info().height), stop, seen));
+}
+
+MotionSource::Measured MotionSource::next(const video::Frame& frame) {
+  if (none_) {
+    motion::FrameMotion still;
+    still.frame = frame.index;
+    still.time_s = frame.time_s;
+    return {still, {}};
+  }
+  if (!ready_) {
+    const motion::FrameMotion motion = guard_.next(measured(frame));
+    return {motion, motion::shake_of({motion}, 0)};
+  }
+  check(frame.index < static_cast<std::int64_t>(all_.size()), "motion is known for every frame");
+  const auto k = static_cast<std::size_t>(frame.index);
+  return {all_[k], needs_change_ ? motion::shake_of(all_, k) : motion::shake_of({all_[k]}, 0)};
+}
+
+motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
+  if (!estimator_) estimator_.emplace(estimator(frame.picture.width, frame.picture.height));
+  motion::FrameMotion motion =
+      estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
+  motion.frame = frame.index;
+  against_first_.push_back(motion);
+  return motion;
+}
+
+void MotionSource::store() const {
+  if (cache_.empty() || from_cache_) return;
+  try {
+    motion::store(cache_, key_, against_first_);
+  } catch (const std::exception&) {  // read-only home, full disk: the next run measures again
+  }
+}
+
+std::vector<motion::GyroSample> gyro_of(const fs::path& video) {
+  std::vector<motion::GyroSample> gyro;
+  for (const video::TelemetryPacket& packet : video::read_telemetry(video))
+    for (const motion::GyroSample& sample :
+         motion::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
+      gyro.push_back(sample);
+  return gyro;
+}
+
+std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
+                                              std::vector<motion::FrameMotion>& motion) {
+  if (gyro.empty() || motion.empty() || !motion.front().rotation) return std::nullopt;
+  const auto fit = motion::fit_gyro(gyro, motion);
+  if (fit) motion = motion::bridged_by_gyro(motion, gyro, *fit);
+  return fit;
+}
+
+std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+                                                motion::Estimator estimator,
+                                                std::stop_token stop,
+                                                const std::function<void(std::int64_t)>& seen) {
+  std::vector<motion::FrameMotion> result;
+  while (const auto frame = reader.next()) {
+    if (stop.stop_requested()) throw Interrupted();
+    result.push_back(
+        estimator.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot));
+    result.back().frame = frame->index;
+    if (seen) seen(static_cast<std::int64_t>(result.size()));
+  }
+  return result;
+}
+
+}  // namespace airtruth::sequence

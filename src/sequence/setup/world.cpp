@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "aircraft/wrapper/reader.h"
+#include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::sequence {
+namespace {
+
+constexpr double kMetresPerSecondInKnots = 1.943844;
+constexpr double kMetresInFeet = 3.280840;
+constexpr double kSearchMarginPx = 1.5;
+
+aircraft::LoadOptions load_options(const scene::Intruder& intruder,
+                                   const trajectory::Path& path,
+                                   const std::stop_token& stop = {}) {
+  aircraft::LoadOptions options;
+  options.stop = stop;
+  if (const auto state = path.at(path.start_s())) {
+    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
+    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
+  }
+  options.catalogue_scale = intruder.catalogue_scale;
+  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
+    aircraft::ModelAxes axes;
+    if (intruder.model_forward) axes.forward = *intruder.model_forward;
+    if (intruder.model_up) axes.up = *intruder.model_up;
+    if (intruder.model_scale) axes.scale = *intruder.model_scale;
+    options.axes = axes;
+  }
+  return options;
+}
+
+struct Type {
+  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const render::Model> model;
+};
+
+// What decides how an intruder's aircraft is loaded. A FlightGear wrapper answers to the airspeed
+// and the height at which the path begins (gear, flaps); a bare model file does not.
+std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  const aircraft::LoadOptions options = load_options(intruder, path);
+  const bool has_wrapper = !aircraft::is_model_file(intruder.aircraft) ||
+                           aircraft::ending_of(intruder.aircraft) == ".xml";
+  std::string key = intruder.aircraft;
+  if (has_wrapper)
+    key +=
+        '|' + std::to_string(options.airspeed_kt) + '|' + std::to_string(options.altitude_agl_ft);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
+}
+
+// The aircraft of a scene, each loaded once. Two that come out as the same mesh, such as one type
+// at two cruising speeds, share it with its BVH.
+class LoadedTypes {
+ public:
+  const Type& type_of(const scene::Intruder& intruder,
+                      const trajectory::Path& path,
+                      const Warn& warn,
+                      const std::stop_token& stop) {
+    const std::string key = type_key(intruder, path);
+    const auto known = types_.find(key);
+    if (known != types_.end()) return known->second;
+    aircraft::aircraft_file(intruder.aircraft);  // a missing file is an error at the scene's line
+    const auto loaded = aircraft_of(intruder, path, warn, stop);
+    for (const auto& [other_key, other] : types_)
+      if (other.aircraft->name == loaded->name && other.aircraft->mesh == loaded->mesh)
+        return types_[key] = other;
+    return types_[key] = {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+  }
+
+ private:
+  std::map<std::string, Type> types_;
+};
+
+bool meets_frame(const Box& box, const lens::ImageSize& size) {
+  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
+}
+
+Box grown(const Box& box, double margin) {
+  return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
+}
+
+// Returns the whole frame, for an aircraft so near that a part of it has no pixel.
+Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
+
+std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::ImageSize& size) {
+  if (!exact.box) return std::nullopt;
+  const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
+  if (!meets_frame(box, size)) return std::nullopt;
+  return box;
+}
+
+Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake, double dt_s) {
+  Rigid world_from_cam =
+      camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  if (shake.rotation)
+    world_from_cam.rotation =
+        (world_from_cam.rotation * shake.rotation_at(dt_s).conjugate()).normalized();
+  return world_from_cam;
+}
+
+// Angular rate along a path in world axes, from one-sided differences where the path begins or
+// ends. rotation(state, dt_s) gives the rotation.
+template <typename Rotation>
+Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
+  constexpr double kStep_s = 1e-3;
+  const double before_s = path.at(time_s - kStep_s) ? -kStep_s : 0;
+  const double after_s = path.at(time_s + kStep_s) ? kStep_s : 0;
+  if (!(after_s > before_s)) return Vector3::Zero();
+  const auto before = path.at(time_s + before_s);
+  const auto after = path.at(time_s + after_s);
+  return vector_from_rotation(rotation(*after, after_s) * rotation(*before, before_s).conjugate()) /
+         (after_s - before_s);
+}
+
+}  // namespace
+
+std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                      const trajectory::Path& path,
+                                                      const Warn& warn,
+                                                      const std::stop_token& stop) {
+  return std::make_shared<const aircraft::Aircraft>(
+      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
+}
+
+World load_world(const scene::Scene& scene,
+                 lens::ImageSize size,
+                 const Warn& warn,
+                 const std::stop_token& stop) {
+  World world{lens_of(scene.lens, size),
+              at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
+              {},
+              shutter_of(scene.camera_model)};
+  LoadedTypes types;
+  for (const scene::Intruder& intruder : scene.intruders) {
+    const trajectory::Path path = path_of(intruder);
+    const Type& type = at_place(
+        intruder.where, [&]() -> const Type& { return types.type_of(intruder, path, warn, stop); });
+    annotation::Silhouette silhouette{&type.aircraft->mesh,
+                                      aircraft::silhouette_points(type.aircraft->mesh)};
+    world.actors.push_back(
+        {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
+  }
+  return world;
+}
+
+void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info) {
+  const auto refuse = [&](const char* what, double path_s, double clip_s) {
+    throw Error(
+        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+                    "{:.3f} s; expected a path as long as the clip, or a frame_count",
+                    what,
+                    path_s,
+                    clip_s));
+  };
+  const double rate_hz = info.frame_rate.value();
+  const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
+  const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
+  // A container's length is that of its longest stream; its sound may be longer than its picture.
+  constexpr double kLengthError_s = 1;
+  if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
+  if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);
+}
+
+void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
+  check_camera_path(at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), info);
+  for (const scene::Intruder& intruder : scene.intruders) {
+    at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
+    path_of(intruder);
+  }
+}
+
+std::optional<PixelBox> search_bounds(const Moment& moment) {
+  std::optional<PixelBox> all;
+  for (const auto& box : moment.search)
+    if (box) all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
+  return all;
+}
+
+Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
+  const auto camera = world.camera.at(time_s);
+  if (!camera)
+    throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
+                " s, but the clip goes on at " + std::to_string(time_s) +
+                " s; expected a path as long as the clip");
+  Moment moment;
+  moment.frame = frame;
+  moment.time_s = time_s;
+  moment.camera = *camera;
+  const Rigid world_from_cam = world_from_shaken_cam(*camera, shake, 0);
+  moment.sight = {&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
+  if (!world.shutter.is_instant()) {
+    moment.sight.shutter = world.shutter;
+    moment.sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
+    moment.sight.camera = {
+        camera->velocity_in_world_mps,
+        turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
+          return world_from_shaken_cam(state, shake, dt_s).rotation;
+        })};
+  }
+  for (const Actor& actor : world.actors) {
+    const auto state = actor.path.at(time_s);
+    moment.states.push_back(state);
+    Twist twist;
+    if (state && !world.shutter.is_instant())
+      twist = {state->velocity_in_world_mps,
+               turning(actor.path, time_s, [](const trajectory::State& then, double) {
+                 return then.world_from_body;
+               })};
+    moment.twists.push_back(twist);
+    moment.boxes.push_back(
+        state ? annotation::exact_box(
+                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
+              : annotation::ExactBox{});
+    moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
+  }
+  return moment;
+}
+
+std::optional<NearestApproach> nearest_approach(const World& world,
+                                                std::size_t actor,
+                                                double end_s) {
+  std::optional<NearestApproach> best;
+  const lens::ImageSize size = world.lens.size();
+  for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
+    const auto state = world.actors[actor].path.at(time_s);
+    const auto camera = world.camera.at(time_s);
+    if (!state || !camera) continue;
+    const Rigid world_from_cam =
+        camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+    const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
+    // The nearest pixel of the image to the direction, through a coarse walk along the image's
+    // border.
+    double off = kPi;
+    for (int i = 0; i <= 64; ++i) {
+      const double s = i / 64.0;
+      for (const Pixel& edge : {Pixel(s * size.width, 0),
+                                Pixel(s * size.width, size.height),
+                                Pixel(0, s * size.height),
+                                Pixel(size.width, s * size.height)}) {
+        const auto ray = world.lens.ray_from_pixel(edge);
+        if (ray && p_in_cam.norm() > 0)
+          off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
+      }
+    }
+    if (!best || degrees(off) < best->off_view_deg)
+      best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
+  }
+  return best;
+}
+
+}  // namespace airtruth::sequence

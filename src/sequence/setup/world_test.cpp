@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/world.h"
+
+#include <gtest/gtest.h>
+
+namespace airtruth::sequence {
+namespace {
+
+scene::Intruder flying(const std::string& id, const std::string& aircraft, double speed_mps) {
+  scene::Intruder intruder;
+  intruder.id = id;
+  intruder.aircraft = aircraft;
+  intruder.waypoints_ned_m = {{100, 0, -1000}, {400, 0, -1000}};
+  intruder.speed_mps = speed_mps;
+  return intruder;
+}
+
+scene::Scene scene_of(std::vector<scene::Intruder> intruders) {
+  scene::Scene scene;
+  scene.lens.vertical_fov_deg = 40;
+  scene.intruders = std::move(intruders);
+  return scene;
+}
+
+TEST(LoadWorld, OneLookAtTwoSpeedsIsOneMeshAndOneBvh) {
+  const World world = load_world(
+      scene_of({flying("slow", "738/738-Ryanair", 110), flying("fast", "738/738-Ryanair", 160)}),
+      {320, 240},
+      {});
+  ASSERT_EQ(world.actors.size(), 2u);
+  EXPECT_EQ(world.actors[0].type, world.actors[1].type);
+  EXPECT_EQ(world.actors[0].model, world.actors[1].model);
+}
+
+TEST(LoadWorld, TwoLiveriesAreTwoTypes) {
+  const World world =
+      load_world(scene_of({flying("a", "738/738-Ryanair", 110), flying("b", "738/738-KLM", 110)}),
+                 {320, 240},
+                 {});
+  EXPECT_NE(world.actors[0].model, world.actors[1].model);
+}
+
+// Below 500 ft the gear is down (aircraft/wrapper/condition.h), which is another mesh.
+TEST(LoadWorld, GearThatIsDownIsAnotherType) {
+  scene::Intruder low = flying("low", "738/738-Ryanair", 70);
+  low.waypoints_ned_m = {{100, 0, -60}, {400, 0, -60}};
+  const World world =
+      load_world(scene_of({flying("high", "738/738-Ryanair", 110), low}), {320, 240}, {});
+  EXPECT_NE(world.actors[0].model, world.actors[1].model);
+}
+
+}  // namespace
+}  // namespace airtruth::sequence

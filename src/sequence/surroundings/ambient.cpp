@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/surroundings/ambient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "foundation/base/median.h"
+#include "foundation/image/colour.h"
+#include "picture/render/renderer.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::sequence {
+namespace {
+
+using image::Rgb;
+
+constexpr int kGrid = 48;  // blocks along the longer side
+// Weight of a new frame in the smoothed light; the time constant is about a third of a second at 30
+// frames/s.
+constexpr float kSmoothing = 0.1f;
+// Colour of the direct sun at medium elevations relative to the sky around it.
+constexpr Rgb kSunColour = {1.0f, 0.965f, 0.91f};
+
+// Sun as a share of a cloud's brightness: almost none of the light has a direction.
+constexpr float kVeiledSun = 0.12f;
+// Sun as a multiple of the brightest sample, for a sky that is nearly black.
+constexpr float kBrightestSun = 6.0f;
+// Reflectance of the ground for visible light: grass 0.06, moist earth 0.07, gravel 0.13, macadam
+// 0.18 (IES 2000, "Lighting handbook", reflectances of outside surfaces). The albedo of
+// pyranometers, 0.2 for fields and woods, includes the infrared, of which leaves reflect half.
+constexpr float kGroundAlbedo = 0.1f;
+
+struct Block {
+  Rgb linear{};
+  float brightness = 0;
+  float weight = 1;
+  bool is_below = false;  // below the horizon, as the camera's pose has it
+  // The luminance of each kind of sky at this block: Skies::clear_seen(), overcast_seen().
+  float clear_seen = 1;
+  float overcast_seen = 1;
+};
+
+float brightness(const Rgb& linear) {
+  return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
+}
+
+// Direction of a pixel of the frame in world axes; empty where the lens has no direction.
+std::optional<Vector3> direction_of(const annotation::Sight& sight,
+                                    const Homography& nominal_from_frame,
+                                    int x,
+                                    int y) {
+  const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
+  if (!(nominal.z() > 0)) return std::nullopt;
+  const auto ray =
+      sight.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
+  if (!ray) return std::nullopt;
+  return (sight.cam_from_world.rotation.conjugate() * *ray).normalized();
+}
+
+std::vector<Block> blocks_of(const image::Picture& picture,
+                             const image::ToneCurve& tone,
+                             const image::Mask* own_aircraft,
+                             const annotation::Sight& sight,
+                             const Skies& skies,
+                             const std::optional<PixelBox>& near) {
+  const image::ColourCode code(picture.colour);
+  const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
+  std::optional<PixelBox> around;
+  if (near) {
+    const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
+    around = PixelBox{
+        near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
+  }
+  const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
+  std::vector<Block> blocks;
+  for (int y = step / 2; y < picture.height; y += step) {
+    for (int x = step / 2; x < picture.width; x += step) {
+      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
+      Block block;
+      block.linear = image::linear_at(picture, code, x, y, tone);
+      block.brightness = brightness(block.linear);
+      block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
+      if (const auto direction = direction_of(sight, nominal_from_frame, x, y)) {
+        block.is_below = direction->z() > 0;
+        block.clear_seen = static_cast<float>(skies.clear_seen(*direction));
+        block.overcast_seen = static_cast<float>(skies.overcast_seen(*direction));
+      } else {
+        block.weight = 0;  // outside the lens's view
+      }
+      blocks.push_back(block);
+    }
+  }
+  return blocks;
+}
+
+void sort_by_brightness(std::vector<Block>& blocks) {
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
+    return a.brightness < b.brightness;
+  });
+}
+
+// The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
+// nor near white.
+Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now) {
+  constexpr float kDarkest = 0.02F;
+  constexpr float kBrightest = 0.8F;
+  constexpr std::size_t kFewest = 20;
+  Rgb change = {1, 1, 1};
+  if (before.size() != now.size()) return change;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<float> ratios;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (before[i][c] > kDarkest && before[i][c] < kBrightest && now[i][c] > kDarkest &&
+          now[i][c] < kBrightest)
+        ratios.push_back(now[i][c] / before[i][c]);
+    if (ratios.size() < kFewest) continue;
+    change[c] = median(std::move(ratios));
+  }
+  return change;
+}
+
+// Weighted mean of the blocks whose share of the total weight lies in [from, to).
+Rgb mean(const std::vector<Block>& blocks, float from, float to) {
+  float total = 0;
+  for (const Block& block : blocks) total += block.weight;
+  Rgb sum{};
+  float weight = 0;
+  float before = 0;
+  for (const Block& block : blocks) {
+    const float share = (before + block.weight / 2) / total;
+    before += block.weight;
+    if (share < from || share >= to) continue;
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += block.linear[c] * block.weight;
+    weight += block.weight;
+  }
+  for (float& c : sum) c = weight > 0 ? c / weight : 0.0f;
+  return sum;
+}
+
+float smoothstep(float low, float high, float value) {
+  const float t = std::clamp((value - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+// Blueness: 0 for grey (cloud), 1 for a clear sky. Clipped and dark blocks have no value.
+std::optional<float> blueness(const Rgb& rgb) {
+  constexpr float kDarkest = 0.02f;
+  constexpr float kBrightest = 0.95f;
+  constexpr float kGrey = 0.12f;
+  constexpr float kBlue = 0.35f;
+  if (!(rgb[2] > kDarkest)) return std::nullopt;
+  if (rgb[2] >= kBrightest) return rgb[0] < kBrightest ? std::nullopt : std::optional(0.0f);
+  return smoothstep(kGrey, kBlue, 1 - rgb[0] / rgb[2]);
+}
+
+struct Sums {
+  Rgb colour{};
+  float weight = 0;
+  // Luminance here of a sky whose level irradiance is 1.
+  float expected = 0;
+
+  void add(const Rgb& linear, float by, float expected_here = 0) {
+    for (std::size_t c = 0; c < 3; ++c) colour[c] += by * linear[c];
+    weight += by;
+    expected += by * expected_here;
+  }
+  // Of the level irradiance (over pi) of the sky that is seen.
+  Rgb level() const {
+    Rgb result{};
+    for (std::size_t c = 0; c < 3; ++c) result[c] = expected > 0 ? colour[c] / expected : 0.0f;
+    return result;
+  }
+  Rgb mean() const {
+    Rgb result{};
+    for (std::size_t c = 0; c < 3; ++c) result[c] = weight > 0 ? colour[c] / weight : 0.0f;
+    return result;
+  }
+};
+
+// The visible sky and ground.
+struct Seen {
+  Sums blue;
+  Sums cloud;
+  Sums ground;
+  // 1 where some of the sky is blue, and the sun therefore shines.
+  float clearness = 0;
+  float all = 0;  // weight of all blocks
+};
+
+Seen seen_in(const std::vector<Block>& blocks) {
+  // Brightness of ground relative to the sky; every cloud's base is brighter.
+  constexpr float kGroundOverSky = 0.6f;
+  constexpr std::size_t kFewest = 8;
+  Seen seen;
+  const float sky = brightness(mean(blocks, 0.5f, 1.01f));
+  std::vector<float> clear;
+  for (const Block& block : blocks) {
+    seen.all += block.weight;
+    if (block.is_below && block.brightness < kGroundOverSky * sky) {
+      seen.ground.add(block.linear, block.weight);
+      continue;
+    }
+    if (block.brightness < 0.25f * sky) continue;  // an aircraft, a tree, a rim: no sky
+    const auto blue = blueness(block.linear);
+    if (!blue) continue;
+    seen.blue.add(block.linear, block.weight * *blue, block.clear_seen);
+    seen.cloud.add(block.linear, block.weight * (1 - *blue), block.overcast_seen);
+    clear.push_back(*blue);
+  }
+  if (clear.size() < kFewest) return seen;
+  const auto high = clear.begin() + static_cast<std::ptrdiff_t>(clear.size() * 9 / 10);
+  std::nth_element(clear.begin(), high, clear.end());
+  seen.clearness = *high;
+  return seen;
+}
+
+// The radiance of a level ground under the light's sun and sky.
+Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
+  const auto height = static_cast<float>(std::sin(radians(std::max(0.0, sun_elevation_deg))));
+  Rgb ground{};
+  for (std::size_t c = 0; c < 3; ++c) ground[c] = albedo * (height * light.sun[c] + light.sky()[c]);
+  return ground;
+}
+
+Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
+  const Seen seen = seen_in(blocks);
+  Ambient ambient;
+  const float sky_weight = seen.blue.weight + seen.cloud.weight;
+  const float blue_share = sky_weight > 0 ? seen.blue.weight / sky_weight : 0.0f;
+  const Rgb blue = seen.blue.level();
+  const Rgb cloud = seen.cloud.level();
+  for (std::size_t c = 0; c < 3; ++c) {
+    ambient.blue[c] = blue_share * blue[c];
+    ambient.cloud[c] = (1 - blue_share) * cloud[c];
+  }
+  const auto sun_over_sky = static_cast<float>(sun_illuminance_klx(elevation_deg) /
+                                               clear_sky_illuminance_klx(elevation_deg));
+  const float direct = seen.clearness * sun_over_sky * brightness(blue) +
+                       (1 - seen.clearness) * kVeiledSun * brightness(seen.cloud.mean());
+  for (std::size_t c = 0; c < 3; ++c)
+    ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
+  // Smallest share of the picture that counts as ground; a smaller part may be anything.
+  constexpr float kLeastGround = 0.05f;
+  const bool is_ground_seen = seen.ground.weight > kLeastGround * seen.all;
+  ambient.ground =
+      is_ground_seen ? seen.ground.mean() : ground_of(kGroundAlbedo, elevation_deg, ambient);
+  std::vector<Block> around;
+  for (const Block& block : blocks)
+    if (block.weight > 1) around.push_back(block);
+  ambient.airlight = around.empty() ? mean(blocks, 0.5f, 1.01f) : mean(around, 0.3f, 1.01f);
+  return ambient;
+}
+
+void blend(std::array<float, 3>& into, const std::array<float, 3>& from) {
+  for (std::size_t c = 0; c < 3; ++c) into[c] += kSmoothing * (from[c] - into[c]);
+}
+
+std::array<float, 3> floats(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+}  // namespace
+
+AmbientEstimator::AmbientEstimator(const scene::Light& light,
+                                   const image::ToneCurve& tone,
+                                   const image::Mask* own_aircraft)
+    : light_(light),
+      tone_(tone),
+      own_aircraft_(own_aircraft),
+      skies_(skies(to_sun_in_world(light))) {}
+
+Ambient AmbientEstimator::next(const image::Picture& picture,
+                               const annotation::Sight& sight,
+                               const std::optional<PixelBox>& near,
+                               bool begins_shot) {
+  const bool all_stated =
+      light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
+  if (all_stated) return with_scene({});
+  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, skies_, near);
+  std::vector<Rgb> colours;
+  for (const Block& block : blocks) colours.push_back(block.linear);
+  if (begins_shot) smooth_.reset();
+  follow_exposure(colours);
+  sort_by_brightness(blocks);
+  const Ambient now = measure(blocks, light_.sun_elevation_deg);
+  if (!smooth_) smooth_ = now;
+  blend(smooth_->sun, now.sun);
+  blend(smooth_->blue, now.blue);
+  blend(smooth_->cloud, now.cloud);
+  blend(smooth_->ground, now.ground);
+  blend(smooth_->airlight, now.airlight);
+  return with_scene(*smooth_);
+}
+
+void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
+  // A smaller change comes from motion in the picture.
+  constexpr float kJump = 0.04F;
+  const Rgb change = exposure_change(blocks_before_, blocks);
+  blocks_before_ = blocks;
+  if (!smooth_) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (std::abs(std::log(change[c])) < kJump) continue;
+    for (auto* light :
+         {&smooth_->sun, &smooth_->blue, &smooth_->cloud, &smooth_->ground, &smooth_->airlight})
+      (*light)[c] *= change[c];
+  }
+}
+
+Ambient AmbientEstimator::with_scene(Ambient measured) const {
+  if (light_.exposure) {
+    for (std::size_t c = 0; c < 3; ++c)
+      measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
+  }
+  // A stated sky is uniform, as an overcast sky nearly is.
+  if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
+  if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
+  if (light_.ground_albedo)
+    measured.ground =
+        ground_of(static_cast<float>(*light_.ground_albedo), light_.sun_elevation_deg, measured);
+  measured.surroundings = skies_.clear.scaled(measured.blue);
+  measured.surroundings += skies_.overcast.scaled(measured.cloud);
+  measured.surroundings += skies_.ground.scaled(measured.ground);
+  return measured;
+}
+
+}  // namespace airtruth::sequence

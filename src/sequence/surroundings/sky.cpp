@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/surroundings/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::sequence {
+namespace {
+
+using render::Environment;
+using render::Rgb;
+
+constexpr double kLowestSunDeg = 1;
+
+double sine(double elevation_deg) {
+  return std::sin(radians(std::clamp(elevation_deg, kLowestSunDeg, 90.0)));
+}
+
+double elevation_deg(const Vector3& direction) {
+  return degrees(std::asin(std::clamp(-direction.z(), -1.0, 1.0)));
+}
+
+double angle_deg(const Vector3& a, const Vector3& b) {
+  return degrees(std::acos(std::clamp(a.dot(b), -1.0, 1.0)));
+}
+
+Environment grey(const std::function<double(const Vector3&)>& radiance) {
+  return Environment::of([&](const Vector3& d) {
+    const auto value = static_cast<float>(radiance(d));
+    return Rgb{value, value, value};
+  });
+}
+
+// Irradiance over pi on a level surface.
+double level_of(const std::function<double(const Vector3&)>& luminance) {
+  constexpr int kElevations = 90;
+  constexpr int kAzimuths = 180;
+  double sum = 0;
+  for (int i = 0; i < kElevations; ++i) {
+    const double up = (i + 0.5) / kElevations;  // sine: bands of equal solid angle
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2 * kPi * (k + 0.5) / kAzimuths;
+      const double level = std::sqrt(1 - up * up);
+      sum += 2 * luminance({level * std::cos(azimuth), level * std::sin(azimuth), -up}) * up;
+    }
+  }
+  return sum / (kElevations * kAzimuths);
+}
+
+constexpr double kLowestSeenDeg = 3;
+constexpr double kNearestSunSeenDeg = 20;
+
+}  // namespace
+
+double sun_illuminance_klx(double elevation_deg) {
+  return 127.5 * std::exp(-0.21 / sine(elevation_deg));
+}
+
+double clear_sky_illuminance_klx(double elevation_deg) {
+  return 0.8 + 15.5 * std::sqrt(sine(elevation_deg));
+}
+
+double overcast_illuminance_klx(double elevation_deg) { return 0.3 + 21 * sine(elevation_deg); }
+
+double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
+  // Preetham et al. 1999, table 2, at turbidity 2.5.
+  constexpr double a = -1.0163, b = -0.4610, c = 5.2684, d = -2.2756, e = 0.2028;
+  const auto f = [&](double cosine, double gamma) {
+    const double cosine_gamma = std::cos(gamma);
+    return (1 + a * std::exp(b / cosine)) *
+           (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
+  };
+  // The horizon itself has no cosine to divide by.
+  constexpr double kLeastCosine = 0.01;
+  const double cosine = std::max(kLeastCosine, std::sin(radians(elevation_deg)));
+  const double sun_from_zenith = radians(90 - std::max(sun_elevation_deg, kLowestSunDeg));
+  return f(cosine, radians(from_sun_deg)) / f(1, sun_from_zenith);
+}
+
+double overcast_over_zenith(double elevation_deg) {
+  return (1 + 2 * std::sin(radians(elevation_deg))) / 3;
+}
+
+Skies skies(const Vector3& to_sun_in_world) {
+  const double sun_deg = elevation_deg(to_sun_in_world);
+  const auto clear = [&](const Vector3& d) {
+    if (d.z() > 0) return 0.0;
+    return clear_sky_over_zenith(elevation_deg(d), angle_deg(d, to_sun_in_world), sun_deg);
+  };
+  const auto overcast = [](const Vector3& d) {
+    return d.z() > 0 ? 0.0 : overcast_over_zenith(elevation_deg(d));
+  };
+  Skies result;
+  result.to_sun = to_sun_in_world;
+  result.clear_level = level_of(clear);
+  result.overcast_level = level_of(overcast);
+  result.clear = grey([&](const Vector3& d) { return clear(d) / result.clear_level; });
+  result.overcast = grey([&](const Vector3& d) { return overcast(d) / result.overcast_level; });
+  result.ground = grey([](const Vector3& d) { return d.z() > 0 ? 1.0 : 0.0; });
+  return result;
+}
+
+double Skies::clear_seen(const Vector3& direction_in_world) const {
+  const double from_sun_deg = std::max(kNearestSunSeenDeg, angle_deg(direction_in_world, to_sun));
+  return clear_sky_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world)),
+                               from_sun_deg,
+                               elevation_deg(to_sun)) /
+         clear_level;
+}
+
+double Skies::overcast_seen(const Vector3& direction_in_world) const {
+  return overcast_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world))) /
+         overcast_level;
+}
+
+}  // namespace airtruth::sequence
