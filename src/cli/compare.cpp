@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "benchmark/comparison/comparison.h"
+#include "benchmark/judge/judge.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -42,12 +43,11 @@ void compare(const CompareArguments& arguments, Context& context) {
   options.progress = [&](std::int64_t done, std::int64_t total) {
     console.progress("comparing", done, total);
   };
-  const auto found =
-      comparison::compare(arguments.real,
-                          comparison::read_boxes(arguments.boxes, arguments.origin_px),
-                          scene::read_scene(arguments.scene),
-                          arguments.out,
-                          options);
+  const auto found = comparison::compare(arguments.real,
+                                         match::read_boxes(arguments.boxes, arguments.origin_px),
+                                         scene::read_scene(arguments.scene),
+                                         arguments.out,
+                                         options);
   console.end_progress();
   std::string text = fmt::format("{}: {} frames", found.folder.string(), found.frames);
   if (found.pose)
@@ -72,16 +72,16 @@ struct JudgeArguments {
   bool overwrite = false;
 };
 
-void judge(const JudgeArguments& arguments, Context& context) {
+void judge_all(const JudgeArguments& arguments, Context& context) {
   video::check_still_output(arguments.figure, arguments.overwrite);
   check_output_file(arguments.json, arguments.overwrite);
   const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
                                                    arguments.comparisons.end());
-  const comparison::Verdict verdict =
-      comparison::judge(folders, arguments.seed, arguments.chance_draws, context.stop);
+  const judge::Verdict verdict =
+      judge::verdict_on(folders, arguments.seed, arguments.chance_draws, context.stop);
   if (!arguments.figure.empty()) comparison::write_figure(folders, arguments.figure);
-  if (!arguments.json.empty()) write_file(arguments.json, comparison::json_of(verdict));
-  context.console().result(comparison::text_of(verdict));
+  if (!arguments.json.empty()) write_file(arguments.json, judge::json_of(verdict));
+  context.console().result(judge::text_of(verdict));
 }
 
 }  // namespace
@@ -155,7 +155,7 @@ void add_judge(CLI::App& app, Context& context) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->seed, "Of the interval's resampling")
       ->capture_default_str();
-  command->callback([arguments, &context] { judge(*arguments, context); });
+  command->callback([arguments, &context] { judge_all(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -11,16 +11,16 @@
 #include <opencv2/core.hpp>
 
 #include "aircraft/fleet/fleet.h"
-#include "benchmark/comparison/background_shift.h"
+#include "benchmark/appearance/background_shift.h"
+#include "benchmark/appearance/looks.h"
+#include "benchmark/appearance/segment.h"
 #include "benchmark/comparison/comparison.h"
 #include "benchmark/comparison/figure.h"
-#include "benchmark/comparison/looks.h"
 #include "benchmark/comparison/measures.h"
-#include "benchmark/comparison/place.h"
-#include "benchmark/comparison/pose.h"
-#include "benchmark/comparison/real.h"
-#include "benchmark/comparison/segment.h"
-#include "benchmark/comparison/sun.h"
+#include "benchmark/match/place.h"
+#include "benchmark/match/pose.h"
+#include "benchmark/match/real.h"
+#include "benchmark/match/sun.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
@@ -47,8 +47,8 @@ constexpr double kSunSpacingDeg = 15;      // of those that the best of them is
 // The scene with its first intruder beside the real aircraft, everything else standing still.
 scene::Scene scene_beside(const scene::Scene& given,
                           const fs::path& real,
-                          const RealBoxes& boxes,
-                          const Beside& path,
+                          const match::RealBoxes& boxes,
+                          const match::Beside& path,
                           const YawPitchRoll& attitude,
                           double camera_pitch_deg) {
   scene::Scene scene = given;
@@ -77,15 +77,15 @@ scene::Scene scene_beside(const scene::Scene& given,
 class Comparing {
  public:
   Comparing(const fs::path& real,
-            const RealBoxes& boxes,
+            const match::RealBoxes& boxes,
             const scene::Scene& scene,
             const fs::path& out,
             const Options& options)
       : real_(real), options_(options), staged_(out, options.overwrite) {
     require_utf8(fs::absolute(real));
     if (scene.intruders.empty()) throw Error("has no intruder to compare", {scene.file.string()});
-    const RealAircraft found =
-        find_real(real, boxes, options.most_frames, options.warn, options.stop);
+    const match::RealAircraft found =
+        match::find_real(real, boxes, options.most_frames, options.warn, options.stop);
     boxes_ = found.boxes;
     scene::Scene matched = scene;
     if (options.match)
@@ -106,9 +106,9 @@ class Comparing {
     result.pose = pose_;
     std::vector<double> between, within;
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      between.push_back(distance(all_[i].real.histogram, all_[i].made.histogram));
-      within.push_back(distance(all_[i].real.histogram,
-                                all_[(i + all_.size() / 2) % all_.size()].real.histogram));
+      between.push_back(appearance::distance(all_[i].real.histogram, all_[i].made.histogram));
+      within.push_back(appearance::distance(
+          all_[i].real.histogram, all_[(i + all_.size() / 2) % all_.size()].real.histogram));
     }
     result.colour_distance = median_or_0(between);
     result.colour_distance_within = median_or_0(within);
@@ -144,14 +144,14 @@ class Comparing {
     std::vector<cv::Mat> few;
     auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
     for (; it != masks.end() && few.size() < kPoseMasks; ++it) few.push_back(it->second);
-    const std::vector<TypeFit> fits =
-        fit_types(few,
-                  options_.types.empty() ? types_to_match() : options_.types,
-                  options_.warn,
-                  options_.stop);
+    const std::vector<match::TypeFit> fits =
+        match::fit_types(few,
+                         options_.types.empty() ? match::types_to_match() : options_.types,
+                         options_.warn,
+                         options_.stop);
     take(fits[0], scene);
     const std::vector<video::Frame> read = frames_of_the_middle();
-    const std::vector<SunFrame> frames = sun_frames(read);
+    const std::vector<match::SunFrame> frames = sun_frames(read);
     if (!frames.empty()) match_light(fits, frames, scene);
     if (pose_->overlap < kPoorOverlap)
       warn(options_.warn,
@@ -162,7 +162,7 @@ class Comparing {
                        pose_->overlap));
   }
 
-  void take(const TypeFit& fit, scene::Scene& scene) {
+  void take(const match::TypeFit& fit, scene::Scene& scene) {
     pose_ = Comparison::Pose{
         fit.aircraft, fit.pose.attitude, fit.pose.overlap, fit.pose.aspect_ratio, {}};
     scene.intruders[0].aircraft = fit.aircraft;
@@ -183,24 +183,25 @@ class Comparing {
 
   // The scene of an intruder beside the real one in the frames of `boxes`.
   scene::Scene placed_beside(const scene::Scene& given,
-                             const RealBoxes& boxes,
+                             const match::RealBoxes& boxes,
                              double scale) const {
-    Beside path = path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
-    const double pitch_deg = options_.camera_pitch_deg.value_or(camera_pitch_deg(attitude_));
+    match::Beside path =
+        match::path_beside(boxes, aircraft_.mesh, attitude_, *lens_, rate_hz_, scale);
+    const double pitch_deg = options_.camera_pitch_deg.value_or(match::camera_pitch_deg(attitude_));
     YawPitchRoll attitude = attitude_;
-    look_up(pitch_deg, path, attitude);
+    match::look_up(pitch_deg, path, attitude);
     return scene_beside(given, real_, boxes, path, attitude, pitch_deg);
   }
 
   // Boxes from the middle of the shot: the picture's edges and the first frames of a codec are not
   // like the rest.
-  RealBoxes middle_boxes() const {
+  match::RealBoxes middle_boxes() const {
     const auto from = std::next(boxes_.begin(), static_cast<std::ptrdiff_t>(boxes_.size() / 2));
     return {from, boxes_.lower_bound(from->first + kSizingFrames)};
   }
 
   std::vector<video::Frame> frames_of_the_middle() const {
-    const RealBoxes few = middle_boxes();
+    const match::RealBoxes few = middle_boxes();
     std::vector<video::Frame> read;
     if (few.size() < 2) return read;
     video::Reader reader(
@@ -209,9 +210,9 @@ class Comparing {
     return read;
   }
 
-  std::vector<SunFrame> sun_frames(const std::vector<video::Frame>& read) const {
-    std::vector<SunFrame> frames;
-    const RealBoxes few = middle_boxes();
+  std::vector<match::SunFrame> sun_frames(const std::vector<video::Frame>& read) const {
+    std::vector<match::SunFrame> frames;
+    const match::RealBoxes few = middle_boxes();
     for (const auto& [index, box] : few)
       if (const auto k = static_cast<std::size_t>(index - few.begin()->first);
           k < read.size() && frames.size() < kSunFrames)
@@ -219,12 +220,13 @@ class Comparing {
     return frames;
   }
 
-  void match_light(const std::vector<TypeFit>& fits,
-                   const std::vector<SunFrame>& frames,
+  void match_light(const std::vector<match::TypeFit>& fits,
+                   const std::vector<match::SunFrame>& frames,
                    scene::Scene& scene) {
-    const std::vector<SunFrame> one = {frames[0]};
-    const auto fit_now = [&](const std::vector<SunFrame>& in, double spacing_deg) {
-      return fit_sun(placed_beside(scene, middle_boxes(), 1), in, spacing_deg, options_.stop);
+    const std::vector<match::SunFrame> one = {frames[0]};
+    const auto fit_now = [&](const std::vector<match::SunFrame>& in, double spacing_deg) {
+      return match::fit_sun(
+          placed_beside(scene, middle_boxes(), 1), in, spacing_deg, options_.stop);
     };
     // A pose that overlaps less has to be the more alike.
     std::size_t best = 0;
@@ -237,7 +239,7 @@ class Comparing {
       best = i;
     }
     take(fits[best], scene);
-    TypeFit painted = fits[best];
+    match::TypeFit painted = fits[best];
     least = std::numeric_limits<double>::infinity();
     for (const std::string& name : paints_of(fits[best].aircraft)) {
       scene.intruders[0].aircraft = name;
@@ -265,7 +267,7 @@ class Comparing {
   }
 
   void render_beside(const scene::Scene& given,
-                     const RealBoxes& boxes,
+                     const match::RealBoxes& boxes,
                      double scale,
                      const fs::path& folder,
                      bool reports) {
@@ -290,7 +292,7 @@ class Comparing {
   // What the inserted aircraft's size must be multiplied by to look as large as the real one, both
   // by what stands out: blur and codec make a silhouette larger than geometry says.
   double fitting_scale(const scene::Scene& given) {
-    const RealBoxes few = middle_boxes();
+    const match::RealBoxes few = middle_boxes();
     if (few.size() < 2) return 1;
     const fs::path folder = staged_.path() / "sizing";
     render_beside(given, few, 1, folder, false);
@@ -311,7 +313,7 @@ class Comparing {
 
   // Every frame of a rendered folder in which both aircraft stand out whole.
   template <typename Use>
-  void each_pair(const fs::path& folder, const RealBoxes& boxes, const Use& use) {
+  void each_pair(const fs::path& folder, const match::RealBoxes& boxes, const Use& use) {
     const annotation::Truth truth = annotation::read_truth(folder / "truth.jsonl");
     video::Reader reader(folder / (std::string(kName) + ".mkv"));
     const std::int64_t first = boxes.begin()->first;
@@ -323,7 +325,7 @@ class Comparing {
       const annotation::Intruder& made =
           truth.frames[static_cast<std::size_t>(frame->index)].intruders[0];
       if (!made.visible_box_px || !made.exact_box_px || made.cut_by_frame > 0) continue;
-      const auto seen = seen_in(frame->picture, *made.exact_box_px);
+      const auto seen = appearance::seen_in(frame->picture, *made.exact_box_px);
       if (seen) use(PairSeen{box->first, &frame->picture, box->second, seen->box});
     }
   }
@@ -332,24 +334,24 @@ class Comparing {
     const std::int64_t first = boxes_.begin()->first;
     const std::int64_t total = boxes_.rbegin()->first - first + 1;
     const std::int64_t every = std::max<std::int64_t>(1, total / std::max(1, options_.pairs));
-    BackgroundShift background;
+    appearance::BackgroundShift background;
     std::int64_t before = -2;
     each_pair(staged_.path() / kName, boxes_, [&](const PairSeen& pair) {
       if (options_.progress) options_.progress(total + pair.frame - first, 2 * total);
       auto shift = background.add(*pair.picture, {pair.real, pair.made});
       if (pair.frame != before + 1) shift.reset();
       before = pair.frame;
-      const auto real_patch = patch_of(*pair.picture, pair.real);
-      const auto made_patch = patch_of(*pair.picture, pair.made);
+      const auto real_patch = appearance::patch_of(*pair.picture, pair.real);
+      const auto made_patch = appearance::patch_of(*pair.picture, pair.made);
       if (!real_patch || !made_patch) return;
       if (cv::countNonZero(real_patch->silhouette) == 0 ||
           cv::countNonZero(made_patch->silhouette) == 0)
         return;
       all_.push_back({pair.frame,
-                      looks_of(*real_patch),
-                      looks_of(*made_patch),
-                      features_of(*real_patch),
-                      features_of(*made_patch),
+                      appearance::looks_of(*real_patch),
+                      appearance::looks_of(*made_patch),
+                      appearance::features_of(*real_patch),
+                      appearance::features_of(*made_patch),
                       shift});
       if (figure_.size() < static_cast<std::size_t>(options_.pairs) &&
           (figure_.empty() || pair.frame >= figure_.back().frame + every))
@@ -358,7 +360,7 @@ class Comparing {
   }
 
   fs::path real_;
-  RealBoxes boxes_;  // tight
+  match::RealBoxes boxes_;  // tight
   Options options_;
   sequence::StagedFolder staged_;
   std::optional<lens::Lens> lens_;
@@ -373,11 +375,22 @@ class Comparing {
 }  // namespace
 
 Comparison compare(const fs::path& real,
-                   const RealBoxes& boxes,
+                   const match::RealBoxes& boxes,
                    const scene::Scene& scene,
                    const fs::path& out,
                    const Options& options) {
   return Comparing(real, boxes, scene, out, options).finish(out);
+}
+
+void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file) {
+  std::vector<NamedStrip> strips;
+  for (const fs::path& folder : comparisons) {
+    if (!fs::is_regular_file(folder / "pairs.png"))
+      throw Error("is no comparison: it has no pairs.png", {folder.string()});
+    strips.push_back({fs::absolute(folder).lexically_normal().filename().string(),
+                      video::read_still(folder / "pairs.png")});
+  }
+  video::write_still(file, figure_of_all(strips));
 }
 
 }  // namespace airtruth::comparison

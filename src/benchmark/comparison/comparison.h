@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/comparison/sun.h"
+#include "benchmark/match/boxes.h"
+#include "benchmark/match/sun.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
@@ -24,22 +25,16 @@ namespace airtruth::comparison {
 
 namespace fs = std::filesystem;
 
-// A real aircraft's boxes by frame. The file is CSV with a header and the columns frame, x, y,
-// width, height (or w, h), with frames from 0. `origin_px` is subtracted from x and y (1 for
-// MATLAB's coordinates).
-using RealBoxes = std::map<std::int64_t, Box>;
-RealBoxes read_boxes(const fs::path& file, double origin_px);
-
 struct Options {
   bool overwrite = false;
   int pairs = 6;  // number of pairs in the figure
-  // Search for the attitude, and the type among these (empty: types_to_match(), pose.h), whose
-  // silhouette is the real one's, and for the sun under which light and dark are where the real one
-  // has them (sun.h); else all three are the scene's.
+  // Search for the attitude, and the type among these (empty: types_to_match(), match/pose.h),
+  // whose silhouette is the real one's, and for the sun under which light and dark are where the
+  // real one has them (match/sun.h); else all three are the scene's.
   bool match = true;
   std::vector<std::string> types;
   // Upward pitch of the camera; light comes from above in the world. Empty: camera_pitch_deg()
-  // (place.h).
+  // (match/place.h).
   std::optional<double> camera_pitch_deg;
   // Upper bound for the frames; 0 means all frames that have a box.
   std::int64_t most_frames = 0;
@@ -67,7 +62,7 @@ struct Comparison {
     double overlap = 0;  // of both silhouettes, 0..1; and the real one's aspect over ours
     double aspect_ratio = 1;
     // Empty where too little is visible to determine the sun.
-    std::optional<SunFit> sun;
+    std::optional<match::SunFit> sun;
   };
   std::optional<Pose> pose;    // set where it was searched
   double colour_distance = 0;  // median Hellinger distance between real and inserted
@@ -83,65 +78,10 @@ struct Comparison {
 // within them. Nothing runs across a cut of the clip: of its shots the one with most boxes is
 // taken. Error where no aircraft stands out within the boxes.
 Comparison compare(const fs::path& real,
-                   const RealBoxes& boxes,
+                   const match::RealBoxes& boxes,
                    const scene::Scene& scene,
                    const fs::path& out,
                    const Options& options);
-
-// A value with its 95 % interval by bootstrap over the clips.
-struct Interval {
-  double value = 0, low = 0, high = 0;
-};
-
-// A measure over all clips: the medians of the clips' values and of the differences (inserted minus
-// real). Clips without the measure are left out.
-struct Gap {
-  std::string name;
-  std::size_t clips = 0;
-  double real = 0, made = 0;
-  Interval difference;
-};
-
-// The judge's result. The judge is boosted trees (OpenCV's ml) on gradient orientations, noise,
-// edges and spectrum of patches. Areas under the curve are folded, max(area, 1 - area), because a
-// judge that is always wrong distinguishes the two as well as one that is always right. An area of
-// 0.5 means that the judge cannot distinguish them. Where a clip has few pairs, chance alone raises
-// a folded area above 0.5.
-struct Verdict {
-  // Applied to each clip in turn and trained on the others.
-  Interval across;
-  // Trained and applied within a clip, in stretches of time.
-  Interval within;
-  struct Clip {
-    std::string name;
-    std::size_t pairs = 0;
-    double across = 0.5;  // not folded
-    double within = 0.5;  // folded
-  };
-  std::vector<Clip> clips;
-  // What `across` is where no difference is common to the clips: each clip keeps its own, but which
-  // of its two aircraft is called real is drawn for each clip. Clips that differ, whatever in, give
-  // folded areas far above 0.5, since a judge finds the side of a clip that happens to look like
-  // the others. A judge that finds the inserted aircraft finds more than that.
-  struct ByChance {
-    int draws = 0;
-    double mean = 0, least = 0, most = 0;
-    int as_high = 0;  // draws that reach the area found
-  };
-  std::optional<ByChance> by_chance;
-  std::vector<std::pair<std::string, double>> telling;  // features, by how much each alone tells
-  std::vector<Gap> gaps;
-};
-// `chance_draws` is the number of draws for by_chance; each takes as long as `across`. 0 means
-// none.
-Verdict judge(const std::vector<fs::path>& comparisons,
-              std::uint64_t seed,
-              int chance_draws = 0,
-              const std::stop_token& stop = {});
-
-// The verdict as Markdown tables and as JSON.
-std::string text_of(const Verdict& verdict);
-std::string json_of(const Verdict& verdict);
 
 // A picture (.png, .jpg) of the pairs of all comparisons.
 void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file);

@@ -98,25 +98,25 @@ nlohmann::json number(double value) {
 }  // namespace
 
 std::vector<Pair> pairs_of(const std::vector<Compared>& all) {
-  const auto of = [&](const char* name, double Looks::*value) {
-    return pair_of(name, all, [value](const Looks& l) { return l.*value; });
+  const auto of = [&](const char* name, double appearance::Looks::*value) {
+    return pair_of(name, all, [value](const appearance::Looks& l) { return l.*value; });
   };
-  const auto edge_of = [&](const char* name, double Looks::*value) {
-    return pair_of_edges(name, all, [value](const Looks& l) { return l.*value; });
+  const auto edge_of = [&](const char* name, double appearance::Looks::*value) {
+    return pair_of_edges(name, all, [value](const appearance::Looks& l) { return l.*value; });
   };
-  return {of("peak contrast above, code values", &Looks::peak_above),
-          of("peak contrast below, code values", &Looks::peak_below),
-          of("mean contrast above, code values", &Looks::mean_above),
-          of("mean contrast below, code values", &Looks::mean_below),
-          of("contrast to the surroundings, code values", &Looks::contrast),
-          edge_of("edge, 10 to 90 %, px", &Looks::edge_width_px),
-          edge_of("halo, share of the step", &Looks::halo),
-          of("noise inside, code values", &Looks::noise),
-          of("noise around, code values", &Looks::background_noise),
-          of("saturation", &Looks::saturation),
-          of("spectrum, share from 1/8 to 1/4 cycle/px", &Looks::middle_share),
-          of("spectrum, share above 1/4 cycle/px", &Looks::fine_share),
-          of("steps on the 8 px grid over others", &Looks::blockiness),
+  return {of("peak contrast above, code values", &appearance::Looks::peak_above),
+          of("peak contrast below, code values", &appearance::Looks::peak_below),
+          of("mean contrast above, code values", &appearance::Looks::mean_above),
+          of("mean contrast below, code values", &appearance::Looks::mean_below),
+          of("contrast to the surroundings, code values", &appearance::Looks::contrast),
+          edge_of("edge, 10 to 90 %, px", &appearance::Looks::edge_width_px),
+          edge_of("halo, share of the step", &appearance::Looks::halo),
+          of("noise inside, code values", &appearance::Looks::noise),
+          of("noise around, code values", &appearance::Looks::background_noise),
+          of("saturation", &appearance::Looks::saturation),
+          of("spectrum, share from 1/8 to 1/4 cycle/px", &appearance::Looks::middle_share),
+          of("spectrum, share above 1/4 cycle/px", &appearance::Looks::fine_share),
+          of("steps on the 8 px grid over others", &appearance::Looks::blockiness),
           motion_of(all),
           unsteadiness_of(all),
           flicker_of(all)};

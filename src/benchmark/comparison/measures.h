@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "benchmark/appearance/looks.h"
 #include "benchmark/comparison/comparison.h"
-#include "benchmark/comparison/looks.h"
 #include "foundation/geometry/transform.h"
 
 // Computes the quantities of a comparison from the appearance of both aircraft in every frame.
@@ -15,7 +15,7 @@ namespace airtruth::comparison {
 
 struct Compared {
   std::int64_t frame = 0;
-  Looks real, made;
+  appearance::Looks real, made;
   std::vector<float> real_features, made_features;
   // Shift of the background in the picture since the previous frame; empty where it is unknown.
   std::optional<Pixel> background_shift_px;

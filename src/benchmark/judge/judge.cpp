@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "benchmark/judge/judge.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,16 +10,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "benchmark/comparison/areas.h"
-#include "benchmark/comparison/comparison.h"
-#include "benchmark/comparison/figure.h"
+#include "benchmark/judge/areas.h"
 #include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
-#include "picture/video/still.h"
 
-namespace airtruth::comparison {
+namespace airtruth::judge {
 namespace {
 
 constexpr int kFolds = 4;  // stretches of time of a clip, for what a judge makes of it by itself
@@ -191,10 +190,10 @@ nlohmann::ordered_json json_of_interval(const Interval& interval) {
 
 }  // namespace
 
-Verdict judge(const std::vector<fs::path>& comparisons,
-              std::uint64_t seed,
-              int chance_draws,
-              const std::stop_token& stop) {
+Verdict verdict_on(const std::vector<fs::path>& comparisons,
+                   std::uint64_t seed,
+                   int chance_draws,
+                   const std::stop_token& stop) {
   if (comparisons.size() < 3)
     throw Error(
         "a judge is trained on other clips than it is asked about; expected three or more "
@@ -294,14 +293,4 @@ std::string json_of(const Verdict& v) {
   return json.dump(1) + "\n";
 }
 
-void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file) {
-  std::vector<NamedStrip> strips;
-  for (const fs::path& folder : comparisons) {
-    if (!fs::is_regular_file(folder / "pairs.png"))
-      throw Error("is no comparison: it has no pairs.png", {folder.string()});
-    strips.push_back({name_of(folder), video::read_still(folder / "pairs.png")});
-  }
-  video::write_still(file, figure_of_all(strips));
-}
-
-}  // namespace airtruth::comparison
+}  // namespace airtruth::judge

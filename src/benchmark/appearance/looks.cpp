@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/looks.h"
+#include "benchmark/appearance/looks.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include "benchmark/comparison/outline.h"
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/outline.h"
+#include "benchmark/appearance/segment.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/whole_pixels.h"
 #include "foundation/image/colour.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 namespace {
 
 constexpr double kPatchReach =
@@ -202,4 +202,4 @@ std::vector<float> features_of(const Patch& patch) {
   return features;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

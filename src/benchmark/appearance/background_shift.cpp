@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/background_shift.h"
+#include "benchmark/appearance/background_shift.h"
 
 #include <opencv2/imgproc.hpp>
 
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 namespace {
 
 constexpr int kHalving = 2;  // the shift is found at half the size
@@ -49,4 +49,4 @@ std::optional<Pixel> BackgroundShift::add(const image::Picture& picture,
   return Pixel(kHalving * shift.x, kHalving * shift.y);
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

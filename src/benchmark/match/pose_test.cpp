@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/pose.h"
+#include "benchmark/match/pose.h"
 
 #include <cmath>
 
@@ -7,13 +7,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "aircraft/fleet/fleet.h"
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 #include "foundation/image/colour.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "truth/annotation/exact_box.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 // The aircraft in a plain sky, straight ahead of a camera that looks north, as large as `size_px`.
@@ -44,7 +44,7 @@ cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude
   cv::Mat green(
       kHeight, kWidth, CV_8UC1, picture.planes[0].samples.get(), picture.planes[0].stride);
   cv::GaussianBlur(green, green, {}, 0.8);
-  const auto seen = seen_in(picture, *box);
+  const auto seen = appearance::seen_in(picture, *box);
   return seen ? seen->mask : cv::Mat();
 }
 
@@ -84,4 +84,4 @@ TEST(Pose, TheTypeIsFoundAmongOthers) {
 }
 
 }  // namespace
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -12,7 +12,7 @@
 #include "foundation/geometry/transform.h"
 
 // Finds the attitude, and the type, whose silhouette matches a real aircraft's.
-namespace airtruth::comparison {
+namespace airtruth::match {
 
 struct PoseFit {
   // The attitude as seen by a level camera that looks north, with the aircraft straight ahead.
@@ -55,4 +55,4 @@ std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
                                const Warn& warn,
                                const std::stop_token& stop = {});
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/sun.h"
+#include "benchmark/match/sun.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "sequence/frame/paint.h"
@@ -15,7 +15,7 @@
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 constexpr double kUnstatedSpreadPx = 0.8;
@@ -69,7 +69,7 @@ cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Siz
   cv::rectangle(rim, cv::Rect(0, 0, rim.cols, rim.rows), cv::Scalar(255));
   std::vector<cv::Mat> channels;
   cv::split(colour, channels);
-  for (cv::Mat& channel : channels) channel -= surroundings_of(channel, rim);
+  for (cv::Mat& channel : channels) channel -= appearance::surroundings_of(channel, rim);
   cv::merge(channels, colour);
   if (!size.empty() && colour.size() != size)
     cv::resize(colour, colour, size, 0, 0, cv::INTER_LINEAR);
@@ -140,7 +140,7 @@ class Lit {
       image::Picture painted = view.picture->clone();
       sequence::make_painter(scene_, world_, nullptr, {})
           ->paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
-      const auto made = seen_in(painted, *view.moment.boxes[0].box);
+      const auto made = appearance::seen_in(painted, *view.moment.boxes[0].box);
       if (!made) continue;
       const cv::Mat contrast = contrast_in(painted, made->box, view.real.size());
       if (!contrast.empty()) agreement.add(view.real, contrast);
@@ -200,4 +200,4 @@ std::optional<SunFit> fit_sun(const scene::Scene& scene,
   return best;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 
 // Measures how the camera reproduces the outline of a silhouette, from profiles across the outline.
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 
 struct Outline {
   double edge_width_px = 0;  // 10 to 90 % of the step, median along the outline; 0: no clear edge
@@ -16,4 +16,4 @@ struct Outline {
 // `level`: the surroundings (surroundings_of()). All of one size; `grey` and `level` float.
 Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat& level);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/looks.h"
+#include "benchmark/appearance/looks.h"
 
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
-#include "benchmark/comparison/outline.h"
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/outline.h"
+#include "benchmark/appearance/segment.h"
 #include "foundation/base/seed.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 namespace {
 
 image::Picture grey_picture(int width,
@@ -141,4 +141,4 @@ TEST(Outline, HaloIsTheOvershootOfAnUnsharpMask) {
 }
 
 }  // namespace
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/sun.h"
+#include "benchmark/match/sun.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 #include "sequence/frame/paint.h"
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 constexpr int kWide = 320, kHigh = 240;
@@ -63,7 +63,7 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
   scene::Scene unlit = scene_under(0, 90);
   // Beside it, where the sky is free.
   for (Vector3& point : unlit.intruders[0].waypoints_ned_m) point.y() += 60;
-  const auto seen = seen_in(picture, *moment.boxes[0].box);
+  const auto seen = appearance::seen_in(picture, *moment.boxes[0].box);
   ASSERT_TRUE(seen);
   const auto fit = fit_sun(unlit, {{0.5, &picture, seen->box}}, kSpacingDeg);
   ASSERT_TRUE(fit);
@@ -77,4 +77,4 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
 }
 
 }  // namespace
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

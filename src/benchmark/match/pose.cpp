@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/pose.h"
+#include "benchmark/match/pose.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "picture/render/renderer.h"
 #include "truth/annotation/exact_box.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 constexpr int kViewPx = 128;         // of a rendered view
@@ -332,4 +332,4 @@ std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
   return result;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/outline.h"
+#include "benchmark/appearance/outline.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 namespace {
 
 constexpr double kReachPx = 4;            // of a profile to either side of the outline
@@ -122,4 +122,4 @@ Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat
   return result;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "benchmark/match/boxes.h"
+
 #include <cmath>
 #include <cstdint>
 #include <sstream>
 
 #include <fmt/format.h>
 
-#include "benchmark/comparison/comparison.h"
 #include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 constexpr double kFarthestPx = 1e6;           // as far as a box may lie from the picture's corner
@@ -62,4 +63,4 @@ RealBoxes read_boxes(const fs::path& file, double origin_px) {
   return boxes;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "aircraft/model/mesh.h"
-#include "benchmark/comparison/comparison.h"
+#include "benchmark/match/boxes.h"
 #include "camera/lens/lens.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 
 // Waypoints and times on which an aircraft of that mesh stays beside the real one, `scale` times as
 // large, in the view of a camera at the origin that looks north. Time 0 is the frame of the first
@@ -32,4 +32,4 @@ double camera_pitch_deg(const YawPitchRoll& attitude);
 // Rotates the world so that the picture stays the same and the camera looks up by that angle.
 void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

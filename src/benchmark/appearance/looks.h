@@ -13,7 +13,7 @@
 
 // Measures the appearance of a small object against its surroundings. The same arithmetic applies
 // to a real and to an inserted aircraft, from pixels alone: it uses neither alpha nor truth.
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 
 // A square crop about a box.
 struct Patch {
@@ -54,4 +54,4 @@ double distance(const std::array<double, 24>& a, const std::array<double, 24>& b
 // statistics. They hold neither position nor size.
 std::vector<float> features_of(const Patch& patch);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

@@ -11,7 +11,7 @@
 
 // Finds the sun's direction for which the light and dark parts of an inserted aircraft lie where a
 // real aircraft has them.
-namespace airtruth::comparison {
+namespace airtruth::match {
 
 // A frame of the clip, and the real aircraft's tight box in it.
 struct SunFrame {
@@ -44,4 +44,4 @@ std::optional<SunFit> fit_sun(const scene::Scene& scene,
                               double spacing_deg,
                               const std::stop_token& stop = {});
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

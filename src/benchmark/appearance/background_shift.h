@@ -10,7 +10,7 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 
 // Measures the shift of the background from frame to frame by phase correlation (Kuglin and Hines
 // 1975) of its fine detail, without the parts that `aircraft` covers.
@@ -24,4 +24,4 @@ class BackgroundShift {
   cv::Mat before_;
 };
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

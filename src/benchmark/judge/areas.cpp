@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/areas.h"
+#include "benchmark/judge/areas.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 #include "foundation/base/median.h"
 #include "foundation/base/seed.h"
 
-namespace airtruth::comparison {
+namespace airtruth::judge {
 namespace {
 
 constexpr int kDraws = 2000;             // of the bootstrap
@@ -112,4 +112,4 @@ Interval median_over_clips(const std::vector<double>& values, std::uint64_t seed
   return interval_of(values, seed, median_between);
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::judge

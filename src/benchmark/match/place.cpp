@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/place.h"
+#include "benchmark/match/place.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "foundation/base/error.h"
 #include "truth/annotation/exact_box.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 // Share of the range that it moves from frame to frame at least: far below a pixel.
@@ -149,4 +149,4 @@ void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude) {
   attitude = yaw_pitch_roll(turn * world_from_body(attitude));
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

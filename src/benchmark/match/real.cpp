@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/real.h"
+#include "benchmark/match/real.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 #include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>
 
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "picture/video/reader.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 constexpr std::size_t kFewestBoxes = 5;
@@ -84,7 +84,7 @@ RealAircraft find_real(const fs::path& video,
     if (frame->begins_shot) found.cuts.push_back(frame->index);
     const auto box = loose.find(frame->index);
     if (box == loose.end()) continue;
-    if (const auto seen = seen_in(frame->picture, box->second)) {
+    if (const auto seen = appearance::seen_in(frame->picture, box->second)) {
       found.boxes.emplace(frame->index, seen->box);
       found.masks.emplace(frame->index, small_mask(seen->mask));
     }
@@ -112,4 +112,4 @@ RealAircraft find_real(const fs::path& video,
   return found;
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/comparison/comparison.h"
-
 // Areas under the curve of a classifier, the judge, and statistics of a mean over clips.
-namespace airtruth::comparison {
+namespace airtruth::judge {
+
+// A value with its 95 % interval by bootstrap over the clips.
+struct Interval {
+  double value = 0, low = 0, high = 0;
+};
 
 // Patches of one clip in the order of their frames: the features that the judge reads, and whether
 // the patch shows the real aircraft.
@@ -41,4 +44,4 @@ double area_within(const Patches& clip, int folds);
 Interval mean_over_clips(const std::vector<double>& values, std::uint64_t seed);
 Interval median_over_clips(const std::vector<double>& values, std::uint64_t seed);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::judge

@@ -9,10 +9,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "benchmark/comparison/comparison.h"
+#include "benchmark/match/boxes.h"
 #include "foundation/base/log.h"
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 
 // The real aircraft of a clip, as visible in one shot.
 struct RealAircraft {
@@ -35,4 +35,4 @@ RealAircraft find_real(const fs::path& video,
 // A map by frame without what strays, as above.
 RealBoxes without_jumps(const RealBoxes& boxes);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match

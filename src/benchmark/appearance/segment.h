@@ -9,7 +9,7 @@
 #include "foundation/image/picture.h"
 
 // Finds what stands out from the sky around it, from pixels alone, without alpha or truth.
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 
 // Luma of a part of a picture as float code values. The area lies within the picture.
 cv::Mat luma_of(const image::Picture& picture, const PixelBox& area);
@@ -38,4 +38,4 @@ struct Seen {
 // directions; or where the margin leaves the picture.
 std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose);
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/segment.h"
+#include "benchmark/appearance/segment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/whole_pixels.h"
 
-namespace airtruth::comparison {
+namespace airtruth::appearance {
 namespace {
 
 constexpr double kLeastDifference = 8;  // code values that the aircraft differs by
@@ -125,4 +125,4 @@ std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose) {
               mask(bounds).clone()};
 }
 
-}  // namespace airtruth::comparison
+}  // namespace airtruth::appearance

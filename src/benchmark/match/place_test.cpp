@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/comparison/place.h"
+#include "benchmark/match/place.h"
 
 #include <gtest/gtest.h>
 
-namespace airtruth::comparison {
+namespace airtruth::match {
 namespace {
 
 // A level aircraft as a camera that looks up by 40 degrees has it: turned down by as much.
@@ -36,4 +36,4 @@ TEST(Place, LookingUpKeepsThePicture) {
 }
 
 }  // namespace
-}  // namespace airtruth::comparison
+}  // namespace airtruth::match
