@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The commands compare and judge: python3 compare_test.py AIRTRUTH
+
+An aircraft that render inserted stands for the real one, with the boxes of its own truth. Its type, attitude and light are known, and an
+aircraft that compare inserts with the same type, attitude and light must measure alike.
+"""
+
+import json
+import os
+import random
+import shutil
+import struct
+
+import program
+from program import made, path, read, run, write
+
+YAW_DEG, PITCH_DEG, ROLL_DEG = 90, 0, 0
+SCENE = f"""name = "real"
+[background]
+video = "sky.mkv"
+[lens]
+vertical_fov_deg = 60
+[camera]
+position_ned_m = [0, 0, -150]
+[motion]
+model = "none"
+[light]
+sun_azimuth_deg = 200
+sun_elevation_deg = 40
+exposure = 0.3
+[[intruder]]
+id = "one"
+aircraft = "c172/news"
+waypoints_ned_m = [[100, -20, -180], [100, 20, -180]]
+speed_mps = 40
+yaw_deg = {YAW_DEG}
+pitch_deg = {PITCH_DEG}
+roll_deg = {ROLL_DEG}
+[output]
+video = "mkv"
+"""
+FRAMES = 16
+FEATURES = 25  # that the judge reads of a patch
+COMPARE = ("compare", "--real", "real/real.mkv", "--boxes", "boxes.csv", "--scene", "scene.toml")
+
+
+def make_inputs():
+    made("synth", "-o", "sky.mkv", "--width", "480", "--height", "360", "--frames", str(FRAMES), "--clouds", "0", "--noise", "0.5",
+         "--shake", "0", "--quality", "5", "--no-own-aircraft", "--rotate-only", "--altitude", "800")
+    write("scene.toml", SCENE)
+    made("render", "scene.toml", "--out", ".")
+    boxes = "frame,x,y,width,height\n"
+    for line in read("real", "truth.jsonl").splitlines():
+        frame = json.loads(line)
+        if frame.get("intruders"):
+            boxes += f"{frame['frame']}," + ",".join(map(str, frame["intruders"][0]["covered_box_px"])) + "\n"
+    write("boxes.csv", boxes)
+    made(*COMPARE, "-o", "alike", "--no-match")
+
+
+def measures(folder):
+    """Of a comparison: both values of each measure by the name's first words."""
+    return {one["name"].split(",")[0]: (one["real"], one["inserted"]) for one in json.loads(read(folder, "comparison.json"))["measures"]}
+
+
+def files(folder):
+    """Every file below the folder with its content."""
+    found = {}
+    for root, _, names in os.walk(path(folder)):
+        for name in names:
+            with open(os.path.join(root, name), "rb") as file:
+                found[os.path.relpath(os.path.join(root, name), path(folder))] = file.read()
+    return found
+
+
+class Compare(program.Case):
+    def test_an_aircraft_like_the_real_one_measures_alike(self):
+        found = measures("alike")
+        # Shares within which two renderings agree that lie half a pixel and some degrees of view apart.
+        shares = {"peak contrast above": 0.4, "peak contrast below": 0.15, "mean contrast above": 0.4, "mean contrast below": 0.15,
+                  "edge": 0.15, "saturation": 0.15, "spectrum": 0.15, "motion against the background": 0.15}
+        for name, share in shares.items():
+            real, inserted = found[name]
+            self.assert_near(inserted, real, share, name)
+        # The aircraft crosses 40 m at 100 m and 40 m/s in 30 frames a second: 1.33 m a frame.
+        focal_px = 180 / 0.57735
+        self.assert_near(found["motion against the background"][0], 1.333 / 100 * focal_px, 0.05, "motion of the real aircraft")
+        # Darker than the sky beside it: the exposure says so.
+        self.assertLess(found["contrast to the surroundings"][0], -10)
+
+    def test_the_exposure_of_the_scene_shows_in_the_contrast_alone_of_the_inserted_one(self):
+        write("dark.toml", SCENE.replace("exposure = 0.3", "exposure = 0.1"))
+        made("compare", "--real", "real/real.mkv", "--boxes", "boxes.csv", "--scene", "dark.toml", "-o", "dark", "--no-match")
+        real, inserted = measures("dark")["mean contrast below"]
+        self.assert_near(real, measures("alike")["mean contrast below"][0], 0.02, "the real aircraft")
+        self.assertLess(inserted, 1.1 * real)  # both are below 0
+
+    def test_type_and_attitude_are_found(self):
+        made(*COMPARE, "-o", "matched", "--types", "738/738-Ryanair,c172/news")
+        pose = json.loads(read("matched", "comparison.json"))["pose"]
+        self.assertEqual(pose["aircraft"], "c172/news")
+        self.assertGreater(pose["overlap"], 0.7)
+        for name, truth in (("yaw_deg", YAW_DEG), ("pitch_deg", PITCH_DEG), ("roll_deg", ROLL_DEG)):
+            self.assertLess(abs(pose[name] - truth), 12, f"{name} of {pose}")
+
+    def test_the_folder_holds_what_the_documents_say(self):
+        names = set(files("alike"))
+        for name in ("comparison.json", "comparison.md", "figure.png", "pairs.png", "patches.csv", "sequence/truth.jsonl"):
+            self.assertIn(name, names)
+        found = json.loads(read("alike", "comparison.json"))
+        rows = read("alike", "patches.csv").splitlines()
+        self.assertEqual(len(rows), 1 + 2 * found["frames"])
+        self.assertEqual({len(row.split(",")) for row in rows[1:]}, {2 + FEATURES})
+        self.assertGreaterEqual(found["frames"], FRAMES - 2)
+        for one in found["measures"]:
+            self.assertIn(f"| {one['name']} |", read("alike", "comparison.md"))
+
+    def test_an_existing_folder_is_kept_unless_overwrite(self):
+        shutil.copytree(path("alike"), path("kept"))
+        before = files("kept")
+        self.assert_refused(run(*COMPARE, "-o", "kept", "--no-match"), "exists already", "--overwrite")
+        self.assertEqual(files("kept"), before)
+        made(*COMPARE, "-o", "kept", "--no-match", "--overwrite", "--pairs", "2")
+        self.assertNotEqual(files("kept")["pairs.png"], before["pairs.png"])
+        self.assertEqual(files("kept")["comparison.json"], before["comparison.json"])
+
+    def test_bad_input_is_refused_in_one_line_and_leaves_nothing(self):
+        write("bad.csv", "frame,x,y,width,height\n0,10,10,5,5\n1,10,nan,5,5\n")
+        write("sky.csv", "frame,x,y,width,height\n" + "".join(f"{i},300,60,20,12\n" for i in range(FRAMES)))
+        write("empty.toml", SCENE[: SCENE.index("[[intruder]]")])
+        write("text.mkv", "This is a letter and not a video.\n")
+        cases = [
+            ({"--boxes": "bad.csv"}, ("bad.csv:3", "nan")),
+            ({"--boxes": "none.csv"}, ("none.csv",)),
+            ({"--boxes": "sky.csv"}, ("real.mkv", "stands out")),  # a part of the sky without an aircraft
+            ({"--scene": "empty.toml"}, ("empty.toml", "intruder")),
+            ({"--scene": "none.toml"}, ("none.toml",)),
+            ({"--real": "text.mkv"}, ("text.mkv",)),
+            ({"--types": "c172/newz"}, ("no aircraft can be loaded",)),
+        ]
+        for change, words in cases:
+            with self.subTest(change):
+                options = {"--real": "real/real.mkv", "--boxes": "boxes.csv", "--scene": "scene.toml", **change}
+                result = run("compare", *(word for option in options.items() for word in option), "-o", "refused")
+                result.stderr = "".join(line for line in result.stderr.splitlines(True) if ": warning: " not in line)
+                self.assert_refused(result, *words)
+                self.assertFalse(os.path.exists(path("refused")))
+                self.assertEqual([name for name in os.listdir(path()) if name.startswith(".")], [])
+
+    def test_ctrl_c_leaves_nothing(self):
+        stopped = program.interrupted([*COMPARE, "-o", "stopped"], program.has_written(".stopped.part"))
+        self.assert_stopped(stopped)
+        self.assertEqual([name for name in os.listdir(path()) if "stopped" in name], [])
+
+
+def patches(name, shift, pairs=48):
+    """Writes a comparison whose features are random and alike on both sides, but for the first, which `shift` parts."""
+    dice = random.Random(name)
+    rows = ["real,frame,features..."]
+    for frame in range(pairs):
+        both = [dice.gauss(0, 1) for _ in range(FEATURES)]
+        for real in (1, 0):
+            values = [both[0] + (shift if real else 0), *both[1:]]
+            rows.append(f"{real},{frame}," + ",".join(f"{v:.5f}" for v in values))
+    write(f"{name}/patches.csv", "\n".join(rows) + "\n")
+    return name
+
+
+def judged(*arguments):
+    made("judge", *arguments, "--json", "verdict.json", "--overwrite")
+    return json.loads(read("verdict.json"))
+
+
+class Judge(program.Case):
+    def test_sides_that_are_the_same_give_one_half(self):
+        # A classifier gives both of a pair one score: exactly half of the pairs of scores are in order, ties counted half.
+        found = judged(*(patches(f"same-{i}", 0) for i in range(4)))
+        self.assertEqual([clip["across"] for clip in found["clips"]], [0.5] * 4)
+        self.assertEqual(found["across"], {"value": 0.5, "low": 0.5, "high": 0.5})
+        self.assertEqual(found["within"]["value"], 0.5)
+        self.assertEqual([clip["pairs"] for clip in found["clips"]], [48] * 4)
+
+    def test_a_feature_that_parts_them_gives_one(self):
+        found = judged(*(patches(f"apart-{i}", 50) for i in range(3)))
+        self.assertEqual([clip["across"] for clip in found["clips"]], [1] * 3)
+        self.assertEqual(found["within"]["value"], 1)
+        self.assertEqual(found["telling"][0]["area"], 1)
+
+    def test_a_whole_comparison_is_judged_with_its_measures_and_figure(self):
+        said = made("judge", "alike", "alike", "alike", "--figure", "all.png", "--json", "all.json").stdout
+        found = json.loads(read("all.json"))
+        gaps = {gap["name"].split(",")[0]: gap for gap in found["gaps"]}
+        for name, (real, inserted) in measures("alike").items():
+            if name in ("spectrum",):  # two measures begin so
+                continue
+            self.assertAlmostEqual(gaps[name]["real"], real, msg=name)
+            self.assertAlmostEqual(gaps[name]["difference"]["value"], inserted - real, msg=name)
+            self.assertEqual(gaps[name]["clips"], 3)
+        self.assertIn(f"| alike | {json.loads(read('alike', 'comparison.json'))['frames']} |", said)
+        with open(path("all.png"), "rb") as file:
+            head = file.read(24)
+        width, height = struct.unpack(">II", head[16:24])
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(min(width, height), 100)
+
+    def test_bad_input_is_refused_in_one_line_and_writes_nothing(self):
+        one, two, three = (patches(f"good-{i}", 1) for i in range(3))
+        write("short/patches.csv", "real,frame,features...\n1,0,3,4\n0,0,3,4\n1,1,3,4\n0,1,3,4\n")
+        write("there.json", "mine")
+        cases = [
+            ((one, two), "three or more"),
+            ((one, two, "none"), "none: is no comparison"),
+            ((one, two, "short"), "another kind"),
+            ((one, two, three, "--figure", "new.png"), "has no pairs.png"),
+            ((one, two, three, "--figure", "new.txt"), ".png or .jpg"),
+            ((one, two, three, "--json", "there.json"), "exists already"),
+        ]
+        for arguments, words in cases:
+            with self.subTest(arguments):
+                self.assert_refused(run("judge", *(arguments if "--json" in arguments else (*arguments, "--json", "new.json"))), words)
+                self.assertFalse(os.path.exists(path("new.json")) or os.path.exists(path("new.png")))
+        self.assertEqual(read("there.json"), "mine")
+
+    def test_ctrl_c_ends_the_draws(self):
+        many = [patches(f"many-{i}", 1, pairs=200) for i in range(6)]
+        stopped = program.interrupted(["judge", *many, "--by-chance", "1000", "--json", "stopped.json"], program.takes_signals)
+        self.assert_stopped(stopped)
+        self.assertFalse(os.path.exists(path("stopped.json")))
+
+
+if __name__ == "__main__":
+    program.main(make_inputs)
