@@ -19,14 +19,12 @@ if(AIRTRUTH_PCH)
 endif()
 
 # add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
-#            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...] [ALONE c.cpp ...])
+#            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...])
 # makes the static library airtruth_NAME and, from TESTS, the program NAME_test (one ctest entry; SLOW_TESTS
-# make NAME_slow_test, labelled slow; not with sanitizers, under which they take hours). ALONE are sources that are not
-# compiled as one file with the module's others where these are: they have names in common, or take long by themselves.
+# make NAME_slow_test, labelled slow; not with sanitizers, under which they take hours).
 function(add_module name)
   cmake_parse_arguments(arg "" ""
-    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;ALONE" ${ARGN})
-  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS" ${ARGN})
   if(arg_SOURCES)
     add_library(airtruth_${name} STATIC ${arg_SOURCES})
     set(scope PUBLIC)

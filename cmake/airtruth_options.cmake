@@ -17,9 +17,6 @@ target_link_libraries(airtruth_options INTERFACE fmt::fmt)
 if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
 endif()
-if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(airtruth_options INTERFACE -Wno-subobject-linkage)  # it takes a file that is read in for a header
-endif()
 if(AIRTRUTH_WERROR)
   target_compile_options(airtruth_options INTERFACE -Werror)
 endif()
