@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -200,23 +201,60 @@ TEST(Am3, StaysWithinThePictureAtItsBorder) {
   tracker->init({-4, -3, 36, 24});
   for (int i = 0; i < 5; ++i) {
     const Answer answer = tracker->update();
-    EXPECT_TRUE(std::isfinite(answer.box_px.x));
+    const Box& found = answer.box_px;
     EXPECT_FALSE(answer.lost);
+    EXPECT_TRUE(found.x >= 0 && found.y >= 0 && found.right() <= kWidth &&
+                found.bottom() <= kHeight)
+        << found.x << ' ' << found.y;
+    // The object's middle is (17, 12); the box of 36 x 24 px fits the picture with a middle of
+    // (18, 12).
+    EXPECT_NEAR(found.x + found.width / 2, 17, 3);
+    EXPECT_NEAR(found.y + found.height / 2, 12, 3);
   }
 }
 
-TEST(Trackers, OfOpenCvFollow) {
-  for (const std::string& name : tracker_names()) {
-    // MOSSE and MedianFlow are for smoother motion than this, TLD wanders: they must answer.
-    const double error = mean_error(name, 1);
-    EXPECT_TRUE(std::isfinite(error)) << name;
-    if (name == "opencv-csrt" || name == "opencv-kcf") {
-      EXPECT_LT(error, 10) << name;
-    }
-    if (name == "opencv-mil") {
-      EXPECT_LT(error, 25) << name;
-    }
+// Mean distance of the centres over 60 frames of a disc of 64 px that moves as `where()` does.
+double mean_error_on_disc(const std::string& name) {
+  constexpr double kRadius = 32;
+  const auto middle = [](int frame) {
+    const Box box = where(frame, 0, 0);
+    return Pixel(box.x + 40, box.y + 30);
+  };
+  const auto tracker = make_tracker(name, {});
+  image::Picture picture = disc(middle(0).x(), middle(0).y(), kRadius, 1);
+  tracker->load(picture);
+  tracker->init({middle(0).x() - kRadius, middle(0).y() - kRadius, 2 * kRadius, 2 * kRadius});
+  double sum = 0;
+  for (int frame = 1; frame <= 60; ++frame) {
+    const Pixel at = middle(frame);
+    picture = disc(at.x(), at.y(), kRadius, static_cast<std::uint64_t>(frame) + 1);
+    tracker->load(picture);
+    const Box found = tracker->update().box_px;
+    sum += (Pixel(found.x + found.width / 2, found.y + found.height / 2) - at).norm();
   }
+  return sum / 60;
+}
+
+// Limits are about twice what OpenCV 4.6 gives.
+TEST(Trackers, OfOpenCvFollow) {
+  const std::map<std::string, double> limits_px = {{"opencv-boosting", 2},
+                                                   {"opencv-csrt", 2},
+                                                   {"opencv-kcf", 10},
+                                                   {"opencv-medianflow", 2},
+                                                   {"opencv-mil", 25},
+                                                   {"opencv-tld", 4}};
+  int followed = 0;
+  for (const std::string& name : tracker_names()) {
+    if (!name.starts_with("opencv-")) continue;
+    ++followed;
+    // OpenCV's MOSSE reports every frame of an object of this size as lost, and so it does without
+    // airtruth; it follows a disc of 64 px.
+    if (name == "opencv-mosse")
+      EXPECT_LT(mean_error_on_disc(name), 5);
+    else
+      EXPECT_LT(mean_error(name, 1), limits_px.at(name)) << name;
+  }
+  EXPECT_EQ(followed, 7);
 }
 
 // Also where nothing of what they look for fits in.

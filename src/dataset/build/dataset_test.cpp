@@ -8,6 +8,7 @@
 
 #include "dataset/build/build.h"
 #include "dataset/build/verify.h"
+#include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/small_catalogue.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -202,7 +203,19 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   little.only = "sky-across-c172";
   build(catalogue, root_ / "set", little);
   const Catalogue other = parse_catalogue(std::string(kCatalogue) + "quality = 20\n", "c.toml");
-  EXPECT_THROW(build(other, root_ / "set", little), Error);
+  const auto error_of_build = [&](const Catalogue& one) -> std::string {
+    try {
+      build(one, root_ / "set", little);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
+  EXPECT_EQ(error_of_build(catalogue), "no error");
+  // While another process is at work in it: flock() counts two openings of one file as two.
+  const FolderLock elsewhere(Folder(root_ / "set"), false);
+  EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
 }
 
 }  // namespace

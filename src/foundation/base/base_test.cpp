@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -109,7 +110,13 @@ TEST_F(Files, WriteReplacesWholeAndLeavesNoPart) {
 }
 
 TEST_F(Files, WriteIntoMissingFolderIsAnErrorThatNamesTheFile) {
-  EXPECT_THROW(write_file(folder_ / "no" / "a.txt", "x"), Error);
+  const fs::path file = folder_ / "no" / "a.txt";
+  try {
+    write_file(file, "x");
+    FAIL() << "a file was written into a folder that does not exist";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(file.string()));
+  }
 }
 
 TEST_F(Files, ReadRefusesWhatIsMissingAFolderOrTooLarge) {

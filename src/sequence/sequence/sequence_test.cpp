@@ -280,6 +280,16 @@ TEST_F(Sequence, AnErrorOnTheWayLeavesNothing) {
   const scene::Scene scene = scene_of("bad", crossing("a", "no/such-aircraft", 60));
   EXPECT_THROW(render(scene, out_, {}), Error);
   EXPECT_EQ(left_in_out(), std::set<std::string>{});
+  // After some frames are written.
+  Options options;
+  std::int64_t done = 0;
+  options.progress = [&](const Progress& progress) {
+    done = progress.frames_done;
+    if (done >= 3) throw Error("enough");
+  };
+  EXPECT_THROW(render(scene_of("broken", crossing("a", "c172/news", 60)), out_, options), Error);
+  EXPECT_GE(done, 3);
+  EXPECT_EQ(left_in_out(), std::set<std::string>{});
 }
 
 TEST_F(Sequence, ThePapersMethodAgreesWithTheMatte) {
