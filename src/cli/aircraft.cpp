@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 #include "picture/video/still.h"
-#include "sequence/demo/portrait.h"
+#include "sequence/demo/aircraft_sheet.h"
 #include "show/report/tiles.h"
 
 namespace airtruth::cli {
@@ -87,7 +87,7 @@ void draw_sheet(const std::string& filter,
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
     tiles.push_back(
-        {type_of(name), sequence::small_portrait(aircraft::load_aircraft(name, load, {}))});
+        {type_of(name), sequence::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
   }
   video::write_still(
       out, report::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
@@ -138,7 +138,7 @@ void show(const ShowArguments& arguments, Context& context) {
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
   for (const std::string& livery : liveries) console.result("    " + livery);
   if (arguments.out.empty()) return;
-  video::write_still(arguments.out, sequence::portrait(loaded));
+  video::write_still(arguments.out, sequence::aircraft_sheet(loaded));
   console.result("  " + arguments.out);
 }
 

@@ -90,7 +90,7 @@ Beside path_beside(const RealBoxes& boxes,
   const Pixel side = side_of(spots, lens.size());
   if (side.isZero())
     throw Error("there is no room in the picture beside the real aircraft at its own size");
-  const annotation::Silhouette silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
   const Quaternion turned = world_from_body(attitude);
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};

@@ -84,7 +84,7 @@ class Views {
 
  private:
   render::Model model_;
-  annotation::Silhouette silhouette_;
+  annotation::SilhouettePoints silhouette_;
   aircraft::Extents extents_;
 };
 

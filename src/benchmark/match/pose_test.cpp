@@ -27,7 +27,7 @@ cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const Rigid world_from_aircraft{world_from_body(attitude), Vector3(range_m, 0, 0)};
   const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const annotation::Silhouette points{&mesh, aircraft::silhouette_points(mesh)};
+  const annotation::SilhouettePoints points{&mesh, aircraft::silhouette_points(mesh)};
   const auto box = annotation::exact_box(sight, points, world_from_aircraft, 0).box;
   const render::Model model(mesh);
   render::Light light;

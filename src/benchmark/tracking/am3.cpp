@@ -6,8 +6,8 @@
 #include <map>
 
 #include "benchmark/tracking/classifier.h"
+#include "benchmark/tracking/luma_window.h"
 #include "benchmark/tracking/scale.h"
-#include "benchmark/tracking/view.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 
@@ -134,7 +134,7 @@ class Am3 : public Tracker {
   }
 
   // What windows within `reach` template pixels of the object's touch.
-  View view_around(int reach) const {
+  LumaWindow view_around(int reach) const {
     const int block = 1 << (levels_ - 1);
     const int wanted = reach + 2 * block + kLeastTemplatePx * block;
     const int margin = (wanted + block - 1) / block * block;
@@ -156,7 +156,7 @@ class Am3 : public Tracker {
   }
 
   // Whether a window of the view lies in the picture.
-  bool fits(const View& view, int level, const Place& place) const {
+  bool fits(const LumaWindow& view, int level, const Place& place) const {
     if (place.x < 0 || place.y < 0 ||
         place.x + side_at(width_, level) > view.pyramid.width(level) ||
         place.y + side_at(height_, level) > view.pyramid.height(level))
@@ -169,14 +169,14 @@ class Am3 : public Tracker {
            y + height_ * view.scale <= luma_->height + unit;
   }
 
-  Place place_of(const View& view, int level, double x, double y) const {
+  Place place_of(const LumaWindow& view, int level, double x, double y) const {
     const double unit = view.scale * (1 << level);
     return {static_cast<int>(std::lround((x - view.left) / unit)),
             static_cast<int>(std::lround((y - view.top) / unit))};
   }
 
   // Every window of the coarsest level within the search radius.
-  std::vector<Candidate> first_candidates(const View& view) const {
+  std::vector<Candidate> first_candidates(const LumaWindow& view) const {
     const int level = levels_ - 1;
     const Place centre = place_of(view, level, x_, y_);
     const int radius = std::max(1, (reach() + (1 << level) - 1) >> level);
@@ -191,7 +191,7 @@ class Am3 : public Tracker {
   }
 
   // Each voter gives every window exp((score - best) / spread), in (0, 1].
-  void vote(const View& view, int level, std::vector<Candidate>& candidates) {
+  void vote(const LumaWindow& view, int level, std::vector<Candidate>& candidates) {
     std::vector<Place> places;
     places.reserve(candidates.size());
     for (Candidate& candidate : candidates) {
@@ -219,7 +219,7 @@ class Am3 : public Tracker {
   }
 
   // The best candidates, each as the windows of the next finer level that it covers.
-  std::vector<Candidate> refined(const View& view,
+  std::vector<Candidate> refined(const LumaWindow& view,
                                  int level,
                                  std::vector<Candidate> candidates) const {
     const std::size_t keep = std::min(
@@ -242,7 +242,7 @@ class Am3 : public Tracker {
   }
 
   Answer find() {
-    const View view = view_around(reach());
+    const LumaWindow view = view_around(reach());
     std::vector<Candidate> candidates = first_candidates(view);
     for (int level = levels_ - 1; level >= 0 && !candidates.empty(); --level) {
       vote(view, level, candidates);
@@ -264,7 +264,7 @@ class Am3 : public Tracker {
 
   // Windows with the highest votes, at some distance from one another. Which of them are negatives
   // is known only after the object is found, so three times as many are kept as will be learned.
-  void remember_alike(const View& view, int level, std::vector<Candidate> candidates) {
+  void remember_alike(const LumaWindow& view, int level, std::vector<Candidate> candidates) {
     const std::size_t looked = std::min(candidates.size(), kHardLooked);
     sort_best(candidates, looked);
     std::vector<Pixel>& alike = hard_[static_cast<std::size_t>(level)];
@@ -303,7 +303,7 @@ class Am3 : public Tracker {
 
   void learn(bool is_first) {
     const double outermost = (is_first ? 2.0 : 1.5) * options_.search_radius_px / scale_;
-    const View view = view_around(static_cast<int>(std::ceil(outermost)));
+    const LumaWindow view = view_around(static_cast<int>(std::ceil(outermost)));
     const double radius =
         std::min(options_.positive_radius_px,
                  options_.positive_share * std::min(object_width_, object_height_));
@@ -322,7 +322,7 @@ class Am3 : public Tracker {
     }
   }
 
-  void add_positives(const View& view,
+  void add_positives(const LumaWindow& view,
                      int level,
                      const Place& centre,
                      double radius,
@@ -341,7 +341,7 @@ class Am3 : public Tracker {
 
   // Random windows from an annulus around the object.
   std::vector<Place> around(
-      const View& view, int level, const Place& centre, double inner, double outer) {
+      const LumaWindow& view, int level, const Place& centre, double inner, double outer) {
     std::vector<Place> places;
     for (int tries = 0; tries < 40 * options_.negatives && std::ssize(places) < options_.negatives;
          ++tries) {
@@ -355,7 +355,7 @@ class Am3 : public Tracker {
     return places;
   }
 
-  void add_hard(const View& view,
+  void add_hard(const LumaWindow& view,
                 int level,
                 const Place& centre,
                 std::vector<Place>& negatives) const {

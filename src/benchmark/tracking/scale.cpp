@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "benchmark/tracking/view.h"
+#include "benchmark/tracking/luma_window.h"
 #include "foundation/base/median.h"
 
 namespace airtruth::tracking {

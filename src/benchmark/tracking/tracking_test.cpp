@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/tracking/am3.h"
+#include "benchmark/tracking/luma_window.h"
 #include "benchmark/tracking/pyramid.h"
 #include "benchmark/tracking/tracker.h"
-#include "benchmark/tracking/view.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 
@@ -121,7 +121,7 @@ TEST(Am3s, FollowsTheSizeOfAnObjectUpAndDown) {
   EXPECT_GT(shared, 0.7);
 }
 
-TEST(View, ResamplesBetweenCentresOfPixels) {
+TEST(LumaWindow, ResamplesBetweenCentresOfPixels) {
   image::Picture picture = image::make_picture(200, 100, {});
   for (int y = 0; y < 100; ++y)
     for (int x = 0; x < 200; ++x)

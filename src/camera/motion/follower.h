@@ -24,19 +24,19 @@ constexpr double kCutShare = 0.12;
 constexpr double kFollowedShare = 0.5;
 
 // The decision about a frame that could not be measured.
-struct Loss {
+struct CornerLoss {
   bool is_cut = false;
   bool starts_anew = false;
 };
 // `before` is the number of corners tracked from the previous frame, `survivors` the number of them
 // that were found again, and `fresh` the number of corners of the frame itself. `begins_shot` is as
 // in Estimator::next().
-inline Loss loss_of(std::size_t fresh,
-                    std::size_t before,
-                    std::size_t survivors,
-                    int bridged_in_row,
-                    int min_inliers,
-                    bool begins_shot) {
+inline CornerLoss corner_loss(std::size_t fresh,
+                              std::size_t before,
+                              std::size_t survivors,
+                              int bridged_in_row,
+                              int min_inliers,
+                              bool begins_shot) {
   const auto fewest = static_cast<std::size_t>(min_inliers);
   const bool textured = fresh >= 2 * fewest && before >= 2 * fewest;
   const bool cut = begins_shot || (textured && static_cast<double>(survivors) <

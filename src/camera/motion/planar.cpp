@@ -126,7 +126,7 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   }
   ++bridged_in_row_;
   const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_, options_);
-  const Loss loss = loss_of(
+  const CornerLoss loss = corner_loss(
       fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers, begins_shot);
   if (loss.starts_anew) {
     // Start anew from here; what is known of the place is carried on.

@@ -314,7 +314,7 @@ class Spherical : public Follower {
                    bool begins_shot) {
     ++bridged_in_row_;
     const auto fresh = spread_corners(grey, allowed_, options_);
-    const Loss loss = loss_of(
+    const CornerLoss loss = corner_loss(
         fresh.size(), before, survivors, bridged_in_row_, options_.min_inliers, begins_shot);
     if (loss.starts_anew) {
       keys_.clear();

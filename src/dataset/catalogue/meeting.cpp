@@ -127,7 +127,7 @@ class Sizer {
                                   double first_guess_m) const {
     constexpr double kWithinShare = 1e-5;
     constexpr int kMostRounds = 60;
-    const annotation::Silhouette silhouette{&mesh, aircraft::silhouette_points(mesh)};
+    const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
     double range_m = first_guess_m;
     for (int round = 0; round < kMostRounds; ++round) {
       const Vector3 at = raised(camera_.position_in_world + range_m * direction);

@@ -26,7 +26,7 @@ constexpr double kNearestM = 0.05;
 // Side of the tile that render_alpha draws at once, in pixels.
 constexpr int kTilePx = 1024;
 
-struct View {
+struct PinholeView {
   Pixel focal_px;
   Pixel principal_point_px;
   Rigid cam_from_world;
@@ -34,7 +34,7 @@ struct View {
 
 // Where the camera sees a sphere, with a margin. The whole frame where the sphere is too close for
 // a bound.
-std::optional<Box> box_of_sphere(const View& view,
+std::optional<Box> box_of_sphere(const PinholeView& view,
                                  const Vector3& centre_in_world,
                                  double radius_m,
                                  const Box& frame) {
@@ -105,11 +105,11 @@ struct Backdrop::Impl {
   }
 
   // Puts the instances into the scene graph. Returns the boxes of the frame that they can touch.
-  std::vector<Box> stage(const View& view,
-                         const Light& light,
+  std::vector<Box> stage(const PinholeView& view,
+                         const HemisphereLight& light,
                          const std::vector<Instance>& instances);
   void draw(FrameBuffer& target,
-            const View& view,
+            const PinholeView& view,
             const Box& in_frame,
             const osg::Vec4& clear_colour);
   OsgMesh& instance_of(const aircraft::Mesh& mesh, std::size_t nth);
@@ -147,8 +147,8 @@ OsgMesh& Backdrop::Impl::instance_of(const aircraft::Mesh& mesh, std::size_t nth
   return *on_device.instances[nth];
 }
 
-std::vector<Box> Backdrop::Impl::stage(const View& view,
-                                       const Light& light,
+std::vector<Box> Backdrop::Impl::stage(const PinholeView& view,
+                                       const HemisphereLight& light,
                                        const std::vector<Instance>& instances) {
   root->removeChildren(0, root->getNumChildren());
   shading.set_light(light, view.cam_from_world);
@@ -176,7 +176,7 @@ std::vector<Box> Backdrop::Impl::stage(const View& view,
 }
 
 void Backdrop::Impl::draw(FrameBuffer& target,
-                          const View& view,
+                          const PinholeView& view,
                           const Box& in_frame,
                           const osg::Vec4& clear_colour) {
   osg::Camera& camera = *viewer->getCamera();
@@ -200,10 +200,10 @@ Backdrop::~Backdrop() = default;
 image::Rgb8 Backdrop::render(const Pixel& focal_px,
                              const Pixel& principal_point_px,
                              const Rigid& cam_from_world,
-                             const Light& light,
+                             const HemisphereLight& light,
                              const std::vector<Instance>& instances) {
   Impl& impl = *impl_;
-  const View view{focal_px, principal_point_px, cam_from_world};
+  const PinholeView view{focal_px, principal_point_px, cam_from_world};
   const EglContext::Current current(impl.egl);
   impl.shading.set_encoding(Encoding::kSrgb);
   impl.stage(view, light, instances);
@@ -226,12 +226,12 @@ image::Rgb8 Backdrop::render(const Pixel& focal_px,
 std::vector<std::array<float, 4>> Backdrop::render_alpha(const Pixel& focal_px,
                                                          const Pixel& principal_point_px,
                                                          const Rigid& cam_from_world,
-                                                         const Light& light,
+                                                         const HemisphereLight& light,
                                                          const std::vector<Instance>& instances,
                                                          int supersampling) {
   check(supersampling >= 1 && supersampling <= kTilePx, "supersampling is 1 to 1024");
   Impl& impl = *impl_;
-  const View view{focal_px, principal_point_px, cam_from_world};
+  const PinholeView view{focal_px, principal_point_px, cam_from_world};
   const EglContext::Current current(impl.egl);
   impl.shading.set_encoding(Encoding::kLinear);
   const std::vector<Box> boxes = impl.stage(view, light, instances);

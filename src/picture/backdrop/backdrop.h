@@ -23,7 +23,7 @@ struct Instance {
 };
 
 // As render::Light.
-struct Light {
+struct HemisphereLight {
   Vector3 to_sun_in_world{0, 0, -1};
   std::array<float, 3> sun = {1, 1, 1};
   std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};
@@ -53,7 +53,7 @@ class Backdrop {
   image::Rgb8 render(const Pixel& focal_px,
                      const Pixel& principal_point_px,
                      const Rigid& cam_from_world,
-                     const Light& light,
+                     const HemisphereLight& light,
                      const std::vector<Instance>& instances);
 
   // The same picture, drawn `supersampling` times larger in each direction over transparent black
@@ -62,7 +62,7 @@ class Backdrop {
   std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
                                                  const Pixel& principal_point_px,
                                                  const Rigid& cam_from_world,
-                                                 const Light& light,
+                                                 const HemisphereLight& light,
                                                  const std::vector<Instance>& instances,
                                                  int supersampling);
 

@@ -15,8 +15,8 @@ constexpr int kWidth = 96;
 constexpr int kHeight = 64;
 const Pixel kFocal{100, 100};
 const Pixel kMiddle{48, 32};
-// Light of equal radiance from all directions.
-const Light kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
+// HemisphereLight of equal radiance from all directions.
+const HemisphereLight kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
 
 Options software() {
   Options options;
@@ -68,7 +68,7 @@ const std::array<int, 3> kGreen = {0, 255, 0};
 
 class BackdropTest : public testing::Test {
  protected:
-  image::Rgb8 render(const aircraft::Mesh& mesh, const Light& light = kEven) {
+  image::Rgb8 render(const aircraft::Mesh& mesh, const HemisphereLight& light = kEven) {
     return backdrop_.render(kFocal, kMiddle, kCamFromWorld, light, {{&mesh, {}, 0}});
   }
   std::vector<std::array<float, 4>> render_alpha(const aircraft::Mesh& mesh, int supersampling) {
@@ -160,10 +160,10 @@ TEST_F(BackdropTest, LightIsLambertPlusTheSkyEncodedAsSrgb) {
   add_rectangle(mesh, {-2, 2, -2, 2}, 10, plain(0.5f, 0.5f, 0.5f));
   // The plate faces the camera along the world's -z, which points up, so it sees only the sky. The
   // sun stands 60 degrees off its normal.
-  const Light light{{std::sin(kPi / 3), 0, -std::cos(kPi / 3)},
-                    {0.8f, 0.4f, 0},
-                    {0.1f, 0.1f, 0.3f},
-                    {0.1f, 0.1f, 0.1f}};
+  const HemisphereLight light{{std::sin(kPi / 3), 0, -std::cos(kPi / 3)},
+                              {0.8f, 0.4f, 0},
+                              {0.1f, 0.1f, 0.3f},
+                              {0.1f, 0.1f, 0.1f}};
   const auto seen =
       colour(backdrop_.render(kFocal, kMiddle, kCamFromWorld, light, {{&mesh, {}, 0}}), 48, 32);
   const auto code = [](double linear) { return 255 * (1.055 * std::pow(linear, 1 / 2.4) - 0.055); };

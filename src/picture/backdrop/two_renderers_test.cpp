@@ -22,14 +22,14 @@ constexpr double kTime = 0.37;
 const Pixel kFocal{kFocalPx, kFocalPx};
 const Pixel kMiddle{80.3, 63.6};
 
-struct Light {
+struct HemisphereLight {
   Vector3 to_sun_in_world = render::to_sun(130, 40);
   std::array<float, 3> sun = {0.9f, 0.85f, 0.8f};
   std::array<float, 3> sky = {0.25f, 0.3f, 0.4f};
   std::array<float, 3> ground = {0.1f, 0.09f, 0.06f};
 };
-const Light kSunny;
-const Light kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
+const HemisphereLight kSunny;
+const HemisphereLight kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
 
 struct Precision {
   // Of the ray tracer.
@@ -59,7 +59,7 @@ backdrop::Options software() {
 
 image::Layer traced(const aircraft::Mesh& mesh,
                     const Rigid& world_from_body,
-                    const Light& light,
+                    const HemisphereLight& light,
                     int quality) {
   const lens::Lens lens(lens::Pinhole{kFocal, kMiddle}, {kWidth, kHeight});
   render::View view;
@@ -77,7 +77,7 @@ image::Layer traced(const aircraft::Mesh& mesh,
 
 Comparison compare(const aircraft::Mesh& mesh,
                    const Rigid& world_from_body,
-                   const Light& light,
+                   const HemisphereLight& light,
                    const Precision& precision = {}) {
   const image::Layer layer = traced(mesh, world_from_body, light, precision.quality);
   backdrop::Backdrop gl(kWidth, kHeight, software());

@@ -228,7 +228,7 @@ Scene scene_of(const Setting& setting,
   Twist body = setting.body;
   body.velocity_mps *= std::max(1.0, range_m / 300);
   scene.instance = {&model, {airtruth::world_from_body({70, 8, 20}), place}, 0, body};
-  const annotation::Silhouette silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
   const annotation::Sight sight{&setting.lens,
                                 scene.view.world_from_cam.inverse(),
                                 Homography::Identity(),

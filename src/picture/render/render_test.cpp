@@ -259,8 +259,8 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
   const double range_m = 2000 * std::max(extents.length_m(), extents.span_m()) / size_px;
   const Rigid world_from_body{airtruth::world_from_body(attitude), Vector3(range_m, 0.3, -0.2)};
   const annotation::Sight sight{&lens, view.world_from_cam.inverse(), Homography::Identity()};
-  const annotation::Silhouette silhouette{&stand.aircraft.mesh,
-                                          aircraft::silhouette_points(stand.aircraft.mesh)};
+  const annotation::SilhouettePoints silhouette{&stand.aircraft.mesh,
+                                                aircraft::silhouette_points(stand.aircraft.mesh)};
   Box box = *annotation::exact_box(sight, silhouette, world_from_body, 0).box;
   box = {box.x - 1.5, box.y - 1.5, box.width + 3, box.height + 3};
   const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};

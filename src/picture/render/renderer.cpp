@@ -133,9 +133,9 @@ std::optional<PixelBox> patch_of(const std::vector<std::optional<Box>>& search, 
   return patch;
 }
 
-double largest_px(const std::vector<Actor>& actors) {
+double largest_px(const std::vector<TracedIntruder>& actors) {
   int largest = 0;
-  for (const Actor& actor : actors)
+  for (const TracedIntruder& actor : actors)
     if (actor.pixels) largest = std::max({largest, actor.pixels->width, actor.pixels->height});
   return largest;
 }
@@ -145,7 +145,7 @@ double largest_px(const std::vector<Actor>& actors) {
 class Refiner {
  public:
   Refiner(const View& view,
-          const std::vector<Actor>& actors,
+          const std::vector<TracedIntruder>& actors,
           const Tracer& tracer,
           const RayGrid& grid,
           const SampleCounts& counts,
@@ -154,7 +154,7 @@ class Refiner {
     // Where every pixel takes as many samples as an edge (the reference quality), rays do all the
     // work.
     if (counts.edge == counts.base) return;
-    for (const Actor& actor : actors)
+    for (const TracedIntruder& actor : actors)
       silhouettes_.push_back(
           actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch, grid)
                        : std::nullopt);
@@ -259,14 +259,14 @@ class Refiner {
 
   static constexpr int kRoughCover = 64;
 
-  const std::vector<Actor>& actors_;
+  const std::vector<TracedIntruder>& actors_;
   const Tracer& tracer_;
   SampleCounts counts_;
   Canvas& canvas_;
   std::vector<std::optional<Silhouette>> silhouettes_;
 };
 
-image::Layer layer_of(const Canvas& canvas, const std::vector<Actor>& actors) {
+image::Layer layer_of(const Canvas& canvas, const std::vector<TracedIntruder>& actors) {
   image::Layer layer;
   layer.patch = canvas.patch;
   layer.pixels.resize(canvas.sums.size());
@@ -305,7 +305,7 @@ image::Layer render(const View& view,
         "a view has a lens and an instance has its box");
   const auto patch = patch_of(search, view);
   const RayGrid grid(view, patch.value_or(PixelBox{0, 0, 1, 1}));
-  std::vector<Actor> actors;
+  std::vector<TracedIntruder> actors;
   for (std::size_t i = 0; i < instances.size(); ++i)
     actors.push_back(place(instances[i], view, light, search[i], grid.span()));
   SampleCounts counts = counts_for(options.quality, largest_px(actors));

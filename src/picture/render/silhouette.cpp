@@ -67,7 +67,7 @@ struct Silhouette::Eye {
   double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
 
-Silhouette::Silhouette(const Actor& actor,
+Silhouette::Silhouette(const TracedIntruder& actor,
                        const View& view,
                        const PixelBox& patch,
                        const RayGrid& grid)
@@ -88,7 +88,7 @@ Silhouette::Silhouette(const Actor& actor,
   sort_by_pixel(reaches);
 }
 
-void Silhouette::add_part(const Actor& actor,
+void Silhouette::add_part(const TracedIntruder& actor,
                           std::size_t part,
                           const std::vector<Eye>& eyes,
                           std::vector<Reach>& reaches) {

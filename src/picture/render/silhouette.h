@@ -42,7 +42,10 @@ class Silhouette {
 
   // Sorts the actor's triangles by the pixels of the patch that they can touch. The object keeps
   // references to `actor` and `grid`.
-  Silhouette(const Actor& actor, const View& view, const PixelBox& patch, const RayGrid& grid);
+  Silhouette(const TracedIntruder& actor,
+             const View& view,
+             const PixelBox& patch,
+             const RayGrid& grid);
 
   // The content of a pixel: kNone, no part of the aircraft; kOpaque, only opaque triangles, few
   // enough for cover() to be faster than rays; kRays, anything else.
@@ -83,7 +86,7 @@ class Silhouette {
                             const Pixel& high,
                             double margin);
   Reach reach_of(const std::array<const Seen*, 3>& corners, const Eye& eye) const;
-  void add_part(const Actor& actor,
+  void add_part(const TracedIntruder& actor,
                 std::size_t part,
                 const std::vector<Eye>& eyes,
                 std::vector<Reach>& reaches);
@@ -112,7 +115,7 @@ class Silhouette {
 
   PixelBox patch_;
   const RayGrid& grid_;
-  const Actor& actor_;
+  const TracedIntruder& actor_;
   std::vector<Triangle> triangles_;
   // The index in by_pixel_ of each pixel's first triangle; one more entry at the end.
   std::vector<std::uint32_t> first_;

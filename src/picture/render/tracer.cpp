@@ -21,7 +21,7 @@ Vector3 interpolated(const std::array<Vector3, 4>& corners, const std::array<dou
       .normalized();
 }
 
-BodyRay body_ray(const Actor& actor, const Shot& shot) {
+BodyRay body_ray(const TracedIntruder& actor, const Shot& shot) {
   const Vector3 eye = actor.moves ? between(actor.eye_in_body_at, shot.u) : actor.eye_in_body;
   const Vector3 d =
       actor.moves
@@ -75,12 +75,12 @@ bool alike(const std::array<float, 3>& low, const std::array<float, 3>& high) {
 
 }  // namespace
 
-Actor place(const Instance& instance,
-            const View& view,
-            const Light& light,
-            const std::optional<Box>& search,
-            const Span& span) {
-  Actor actor;
+TracedIntruder place(const Instance& instance,
+                     const View& view,
+                     const Light& light,
+                     const std::optional<Box>& search,
+                     const Span& span) {
+  TracedIntruder actor;
   const Model::Impl& model = instance.model->impl();
   actor.placed.model = &model;
   actor.moves = !span.is_instant();
@@ -165,7 +165,7 @@ double Tracer::collect(int actor_index,
                        const Shot& shot,
                        double pixel_rad,
                        std::vector<Fragment>& fragments) const {
-  const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
+  const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
   const BodyRay ray = body_ray(actor, shot);
   double through = 1;
   float from = 0;
@@ -185,7 +185,7 @@ double Tracer::collect(int actor_index,
 
 bool Tracer::shade_covered(
     int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
-  const Actor& actor = actors_[static_cast<std::size_t>(actor_index)];
+  const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
   const PixelShots shots(grid_, x, y);
   const double pixel_rad = shots.pixel_rad();
   double distance_sum = 0;
@@ -263,7 +263,7 @@ void Tracer::blend(const Shot& shot,
 std::array<float, 3> Tracer::colour(const Shot& shot,
                                     double pixel_rad,
                                     const Fragment& fragment) const {
-  const Actor& actor = actors_[static_cast<std::size_t>(fragment.actor)];
+  const TracedIntruder& actor = actors_[static_cast<std::size_t>(fragment.actor)];
   return shade(actor.placed,
                body_ray(actor, shot),
                fragment.hit,

@@ -12,7 +12,7 @@
 namespace airtruth::render {
 
 // One intruder of a frame, in its own coordinates.
-struct Actor {
+struct TracedIntruder {
   Placed placed;
   Matrix3 body_from_world;
   Vector3 eye_in_body;
@@ -29,11 +29,11 @@ struct Actor {
 };
 
 // `span`: the span of the patch that contains all actors.
-Actor place(const Instance& instance,
-            const View& view,
-            const Light& light,
-            const std::optional<Box>& search,
-            const Span& span);
+TracedIntruder place(const Instance& instance,
+                     const View& view,
+                     const Light& light,
+                     const std::optional<Box>& search,
+                     const Span& span);
 
 // The pixels of the frame that a search box covers; empty where there are none.
 std::optional<PixelBox> pixels_to_search(const std::optional<Box>& search, const View& view);
@@ -99,7 +99,7 @@ struct Fragment {
 class Tracer {
  public:
   Tracer(const Light& light,
-         const std::vector<Actor>& actors,
+         const std::vector<TracedIntruder>& actors,
          const RayGrid& grid,
          const SampleCounts& counts)
       : light_(light), actors_(actors), grid_(grid), counts_(counts) {}
@@ -136,7 +136,7 @@ class Tracer {
   float footprint(double distance_m, double pixel_rad) const;
 
   const Light& light_;
-  const std::vector<Actor>& actors_;
+  const std::vector<TracedIntruder>& actors_;
   const RayGrid& grid_;
   SampleCounts counts_;
 };

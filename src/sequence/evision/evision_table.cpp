@@ -78,7 +78,7 @@ trajectory::Path path_through(const std::vector<Position>& positions, bool bank)
 // An aircraft, ready to be projected and to be rendered.
 struct Model {
   aircraft::Aircraft aircraft;
-  annotation::Silhouette silhouette;
+  annotation::SilhouettePoints silhouette;
   render::Model rays;
 
   Model(const std::string& name, double scale, const Warn& warn)

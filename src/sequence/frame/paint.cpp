@@ -95,7 +95,7 @@ class ChromaKey : public Painter {
           {&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
     }
     if (instances.empty()) return;
-    const backdrop::Light light{
+    const backdrop::HemisphereLight light{
         to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
     const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
                                                         pinhole.principal_point_px,

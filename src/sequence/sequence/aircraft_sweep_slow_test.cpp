@@ -30,7 +30,7 @@ struct Boxes {
 
 Boxes boxes_of(const aircraft::Aircraft& aircraft,
                const render::Model& model,
-               const annotation::Silhouette& silhouette,
+               const annotation::SilhouettePoints& silhouette,
                double size_px) {
   const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
   const double largest_m = std::max({extents.length_m(), extents.span_m(), extents.height_m()});
@@ -81,8 +81,8 @@ TEST(EveryAircraft, HasItsTwoBoxesTogetherNearAndFar) {
     kinds.insert(kind);
     const aircraft::Aircraft aircraft = aircraft::load_aircraft(entry.name);
     const render::Model model(aircraft.mesh);
-    const annotation::Silhouette silhouette{&aircraft.mesh,
-                                            aircraft::silhouette_points(aircraft.mesh)};
+    const annotation::SilhouettePoints silhouette{&aircraft.mesh,
+                                                  aircraft::silhouette_points(aircraft.mesh)};
     for (const double size_px : {8.0, 60.0, 300.0}) {
       const Boxes boxes = boxes_of(aircraft, model, silhouette, size_px);
       ASSERT_TRUE(boxes.touched) << size_px << " px";

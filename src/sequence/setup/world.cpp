@@ -147,8 +147,8 @@ World load_world(const scene::Scene& scene,
     const trajectory::Path path = path_of(intruder);
     const Type& type = at_place(
         intruder.where, [&]() -> const Type& { return types.type_of(intruder, path, warn, stop); });
-    annotation::Silhouette silhouette{&type.aircraft->mesh,
-                                      aircraft::silhouette_points(type.aircraft->mesh)};
+    annotation::SilhouettePoints silhouette{&type.aircraft->mesh,
+                                            aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
         {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
   }

@@ -28,7 +28,7 @@ struct Actor {
   trajectory::Path path;
   std::shared_ptr<const aircraft::Aircraft> type;
   std::shared_ptr<const render::Model> model;
-  annotation::Silhouette silhouette;
+  annotation::SilhouettePoints silhouette;
 };
 
 struct World {

@@ -25,7 +25,7 @@ std::optional<Pixel> pixel_from_cam(const Sight& sight, const Vector3& p_in_cam)
 
 // Adds the silhouette at one moment.
 void add_instant(const Sight& sight,
-                 const Silhouette& silhouette,
+                 const SilhouettePoints& silhouette,
                  const Rigid& world_from_body,
                  double time_s,
                  BoxBounds& bounds,
@@ -116,7 +116,7 @@ constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMostSpinSteps = 120;
 
 void add_swept(const Sight& sight,
-               const Silhouette& silhouette,
+               const SilhouettePoints& silhouette,
                const Rigid& world_from_body,
                double time_s,
                const Twist& body,
@@ -154,7 +154,7 @@ std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_wo
 }
 
 ExactBox exact_box(const Sight& sight,
-                   const Silhouette& silhouette,
+                   const SilhouettePoints& silhouette,
                    const Rigid& world_from_body,
                    double time_s,
                    const Twist& body) {

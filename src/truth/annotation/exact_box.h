@@ -34,7 +34,7 @@ struct Sight {
 std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world);
 
 // The silhouette points of a mesh, computed once for each aircraft.
-struct Silhouette {
+struct SilhouettePoints {
   const aircraft::Mesh* mesh = nullptr;
   // The result of aircraft::silhouette_points(*mesh).
   std::vector<std::vector<Eigen::Vector3f>> points;
@@ -52,7 +52,7 @@ struct ExactBox {
 // motion within the frame. The box comes from geometry alone and never from rendered pixels, so
 // that it is independent of the box that comes from the picture.
 ExactBox exact_box(const Sight& sight,
-                   const Silhouette& silhouette,
+                   const SilhouettePoints& silhouette,
                    const Rigid& world_from_body,
                    double time_s,
                    const Twist& body = {});

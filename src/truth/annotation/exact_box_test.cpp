@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3f> cube() {
 
 struct Solid {
   aircraft::Mesh mesh;
-  Silhouette silhouette;
+  SilhouettePoints silhouette;
   explicit Solid(std::vector<Eigen::Vector3f> points, const aircraft::Part& part = {}) {
     mesh.parts.push_back(part);
     silhouette.points.push_back(std::move(points));

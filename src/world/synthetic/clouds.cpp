@@ -181,19 +181,19 @@ float Clouds::erosion(float north_m, float east_m, float height_m) const {
 
 // Sunlight that is scattered once, an approximation of multiple scattering (Wrenninge et al. 2013),
 // and the light of sky and ground.
-Light Clouds::scattered(const Sample& sample, float height, float phase) const {
+LinearRgb Clouds::scattered(const Sample& sample, float height, float phase) const {
   // exp(-depth / 4).
   const float quarter = sample.sunlit;
   const float direct = quarter * quarter * quarter * quarter;
   const float echo = std::sqrt(quarter);
   const float sun = phase * (0.42F * direct + 0.30F * quarter) + 0.22F * echo;
-  const Light ambient = lerp(0.55F, 1.0F, height) * light(0.235F, 0.28F, 0.345F);
+  const LinearRgb ambient = lerp(0.55F, 1.0F, height) * linear_rgb(0.235F, 0.28F, 0.345F);
   return sky_.sunlight() * sun + ambient;
 }
 
-Light Clouds::seen_through(const Vector3& direction, const Light& behind) const {
+LinearRgb Clouds::seen_through(const Vector3& direction, const LinearRgb& behind) const {
   const float up = static_cast<float>(-direction.z());
-  Light colour = behind;
+  LinearRgb colour = behind;
   if (cover_ <= 0 || up < 0.012F) return colour;
   add_cirrus(direction, colour);
   const float north = static_cast<float>(direction.x());
@@ -205,7 +205,7 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
       unit(hash(static_cast<int>(north * 65536), static_cast<int>(east * 65536), seed_));
   t += jitter * std::max(28.0F, 0.010F * t);
   float through = 1;
-  Light sum = Light::Zero();
+  LinearRgb sum = LinearRgb::Zero();
   float reach = 0;
   while (t < end && through > 0.01F) {
     const float step = std::max(28.0F, 0.010F * t);
@@ -235,7 +235,7 @@ Light Clouds::seen_through(const Vector3& direction, const Light& behind) const 
 }
 
 // Streaks of ice, stretched along one wind direction.
-void Clouds::add_cirrus(const Vector3& direction, Light& colour) const {
+void Clouds::add_cirrus(const Vector3& direction, LinearRgb& colour) const {
   const float up = static_cast<float>(-direction.z());
   const float x = static_cast<float>(direction.x()) * kCirrus_m / up;
   const float y = static_cast<float>(direction.y()) * kCirrus_m / up;
@@ -246,7 +246,7 @@ void Clouds::add_cirrus(const Vector3& direction, Light& colour) const {
   const float streaks = fractal(along / 6000, across / 1300, 5, 256, seed_ + 23);
   const float amount = smoothstep(0.42F, 0.72F, patches) * smoothstep(0.30F, 0.95F, streaks);
   const float kept = 0.34F * amount * smoothstep(0.03F, 0.2F, up);
-  colour += kept * (sky_.sunlight() * 0.82F + light(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
+  colour += kept * (sky_.sunlight() * 0.82F + linear_rgb(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
 }
 
 std::vector<float> Clouds::ground_shadow(int cells) const {

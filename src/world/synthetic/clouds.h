@@ -18,7 +18,7 @@ class Clouds {
 
   // The light of the sky in that direction with the clouds in front of it, from a point near the
   // ground.
-  Light seen_through(const Vector3& direction_in_world, const Light& behind) const;
+  LinearRgb seen_through(const Vector3& direction_in_world, const LinearRgb& behind) const;
 
   // Share of the sunlight that reaches the ground at each of cells x cells places; 1 is clear.
   std::vector<float> ground_shadow(int cells) const;
@@ -38,8 +38,8 @@ class Clouds {
   void light_up();
   Sample sample(float north_m, float east_m, float height) const;
   float erosion(float north_m, float east_m, float height_m) const;
-  Light scattered(const Sample& sample, float height, float phase) const;
-  void add_cirrus(const Vector3& direction, Light& colour) const;
+  LinearRgb scattered(const Sample& sample, float height, float phase) const;
+  void add_cirrus(const Vector3& direction, LinearRgb& colour) const;
 
   const Sky& sky_;
   std::uint32_t seed_;

@@ -40,7 +40,7 @@ std::vector<Clutter::Disc> Clutter::at(double time_s) const {
   return discs;
 }
 
-void Clutter::draw(const std::vector<Disc>& discs, int y, int width, Light* row) {
+void Clutter::draw(const std::vector<Disc>& discs, int y, int width, LinearRgb* row) {
   for (const Disc& disc : discs) {
     const float dy = static_cast<float>(y) + 0.5F - disc.y;
     if (std::abs(dy) >= disc.radius) continue;
@@ -53,7 +53,7 @@ void Clutter::draw(const std::vector<Disc>& discs, int y, int width, Light* row)
       if (edge <= 0) continue;
       const float scale = 4.5F / disc.radius;
       const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
-      Light tone = light(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
+      LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
       // The lens's fall-off belongs to the pixel and not to the disc.
       tone[3] = row[x][3];
       row[x] += (tone - row[x]) * smoothstep(0.0F, 0.25F, edge);

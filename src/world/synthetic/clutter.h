@@ -22,7 +22,7 @@ class Clutter {
   };
   std::vector<Disc> at(double time_s) const;
   // Draws the discs over a row of light.
-  static void draw(const std::vector<Disc>& discs, int y, int width, Light* row);
+  static void draw(const std::vector<Disc>& discs, int y, int width, LinearRgb* row);
 
  private:
   int width_;

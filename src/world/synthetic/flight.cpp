@@ -14,8 +14,8 @@
 #include "world/synthetic/ground.h"
 #include "world/synthetic/own_aircraft.h"
 #include "world/synthetic/panorama.h"
+#include "world/synthetic/ray_table.h"
 #include "world/synthetic/sensor.h"
-#include "world/synthetic/view.h"
 
 namespace airtruth::synthetic {
 namespace {
@@ -95,12 +95,12 @@ struct Flight::Impl {
         ground(make_world()) {}
 
   Ground make_world();
-  Light light_at(const Light& direction, const trajectory::State& state) const;
+  LinearRgb light_at(const RayNode& direction, const trajectory::State& state) const;
   void draw_row(int y,
-                const std::vector<Light>& nodes,
+                const std::vector<RayNode>& nodes,
                 const trajectory::State& state,
                 const std::vector<Clutter::Disc>& discs,
-                Light* row) const;
+                LinearRgb* row) const;
   void check_index(int index) const {
     check(index >= 0 && index < options.frame_count, "a frame outside the flight was asked for");
   }
@@ -110,7 +110,7 @@ struct Flight::Impl {
   FlightPath path;
   Sky sky;
   OwnAircraft own;
-  View view;
+  RayTable view;
   Panorama panorama;
   Sensor sensor;
   Clutter clutter;
@@ -123,7 +123,7 @@ struct Flight::Impl {
 // the ground.
 Ground Flight::Impl::make_world() {
   for (int k = 0; k < options.frame_count; ++k)
-    for (const Light& d : view.directions_in_world(path.shaken(k).world_from_body, 4))
+    for (const RayNode& d : view.directions_in_world(path.shaken(k).world_from_body, 4))
       panorama.want(d[0], d[1], -d[2]);
   const Clouds clouds(sky, options.cloud_cover, stream(options, "clouds"));
   panorama.draw(
@@ -139,29 +139,29 @@ Ground Flight::Impl::make_world() {
           stream(options, "ground")};
 }
 
-Light Flight::Impl::light_at(const Light& d, const trajectory::State& state) const {
+LinearRgb Flight::Impl::light_at(const RayNode& d, const trajectory::State& state) const {
   const float up = -d[2];
   const float blend = static_cast<float>(lens.focal_px()) * up + 0.5F;
   if (blend >= 1) return panorama.at(d[0], d[1], up);
   const Vector3 eye = start_in_land_m + state.position_in_world;
-  const Light below = ground.seen(static_cast<float>(eye.x()),
-                                  static_cast<float>(eye.y()),
-                                  static_cast<float>(-eye.z()),
-                                  d[0],
-                                  d[1],
-                                  std::max(-up, 1e-5F));
+  const LinearRgb below = ground.seen(static_cast<float>(eye.x()),
+                                      static_cast<float>(eye.y()),
+                                      static_cast<float>(-eye.z()),
+                                      d[0],
+                                      d[1],
+                                      std::max(-up, 1e-5F));
   if (blend <= 0) return below;
   return below + (panorama.at(d[0], d[1], up) - below) * blend;
 }
 
 void Flight::Impl::draw_row(int y,
-                            const std::vector<Light>& nodes,
+                            const std::vector<RayNode>& nodes,
                             const trajectory::State& state,
                             const std::vector<Clutter::Disc>& discs,
-                            Light* row) const {
+                            LinearRgb* row) const {
   const auto r = static_cast<std::size_t>(y);
   const std::size_t base = r * static_cast<std::size_t>(options.width);
-  view.for_each_in_row(y, nodes, [&](int x, const Light& d) {
+  view.for_each_in_row(y, nodes, [&](int x, const RayNode& d) {
     const bool hidden = x >= own.first[r] && x < own.last[r] &&
                         own.layer[base + static_cast<std::size_t>(x)][3] >= 1;
     if (!hidden) row[x] = light_at(d, state);
@@ -169,7 +169,7 @@ void Flight::Impl::draw_row(int y,
   });
   if (!discs.empty()) Clutter::draw(discs, y, options.width, row);
   for (int x = own.first[r]; x < own.last[r]; ++x) {
-    const Light& over = own.layer[base + static_cast<std::size_t>(x)];
+    const LinearRgb& over = own.layer[base + static_cast<std::size_t>(x)];
     const float shading = row[x][3];
     row[x] = row[x] * (1 - over[3]) + over;
     row[x][3] = shading;
@@ -187,14 +187,14 @@ image::Picture Flight::frame(int index) const {
   const int height = impl_->options.height;
   image::Picture picture = image::make_picture(width, height, image::Colour{});
   const trajectory::State state = impl_->path.shaken(index);
-  const std::vector<Light> nodes = impl_->view.directions_in_world(state.world_from_body, 1);
+  const std::vector<RayNode> nodes = impl_->view.directions_in_world(state.world_from_body, 1);
   const auto discs = impl_->clutter.at(index / impl_->options.frame_rate_hz);
   Sensor::Exposure exposure = impl_->sensor.start();
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   tbb::parallel_for(0, tasks, [&](int task) {
-    std::vector<Light> rows(2 * static_cast<std::size_t>(width), Light::Zero());
-    Light* upper = rows.data();
-    Light* lower = upper + width;
+    std::vector<LinearRgb> rows(2 * static_cast<std::size_t>(width), LinearRgb::Zero());
+    LinearRgb* upper = rows.data();
+    LinearRgb* lower = upper + width;
     for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
       impl_->draw_row(y, nodes, state, discs, upper);
       if (y + 1 < height) impl_->draw_row(y + 1, nodes, state, discs, lower);

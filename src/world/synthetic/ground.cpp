@@ -46,7 +46,7 @@ float fast_log2(float x) {
   return static_cast<float>(bits) * 0x1p-23F - 126.94F;
 }
 
-Light unpack(std::uint64_t word) {
+LinearRgb unpack(std::uint64_t word) {
   return {static_cast<float>(word & 0xFFFF),
           static_cast<float>((word >> 32) & 0xFFFF),
           static_cast<float>((word >> 16) & 0xFFFF),
@@ -55,7 +55,7 @@ Light unpack(std::uint64_t word) {
 
 }  // namespace
 
-Light Ground::haze(float north, float east) const {
+LinearRgb Ground::haze(float north, float east) const {
   const float cosine = std::clamp(
       north * static_cast<float>(sun_.x()) + east * static_cast<float>(sun_.y()), -1.0F, 1.0F);
   const float at = (cosine * 0.5F + 0.5F) * (kHazeSectors - 1.001F);
@@ -85,7 +85,7 @@ float Ground::smooth_height_m(float x, float y, int level) const {
 }
 
 // Trilinear interpolation at texel positions of level 0, measured from texel centres.
-Light Ground::colour(float x, float y, float level) const {
+LinearRgb Ground::colour(float x, float y, float level) const {
   const float top = static_cast<float>(levels_.size() - 2);
   level = std::clamp(level, 0.0F, top);
   const int whole = std::min(static_cast<int>(level), static_cast<int>(top) - 1);
@@ -95,7 +95,7 @@ Light Ground::colour(float x, float y, float level) const {
     const Level& mip = levels_[static_cast<std::size_t>(i)];
     return unpack(bilinear(mip.texels.data(), mip.size, x * scale - 0.5F, y * scale - 0.5F));
   };
-  const Light fine = at(whole);
+  const LinearRgb fine = at(whole);
   return (fine + (at(whole + 1) - fine) * part) * (1.0F / (256 * 255));
 }
 
@@ -180,15 +180,15 @@ std::optional<Ground::Meeting> Ground::meet(float eye_north_m,
   return std::nullopt;
 }
 
-Light Ground::seen(float eye_north_m,
-                   float eye_east_m,
-                   float eye_height_m,
-                   float north,
-                   float east,
-                   float down) const {
+LinearRgb Ground::seen(float eye_north_m,
+                       float eye_east_m,
+                       float eye_height_m,
+                       float north,
+                       float east,
+                       float down) const {
   const float far_m = eye_height_m / std::max(down, 1e-5F);
   const float reach_m = std::min(far_m, kFarthest_m);
-  const Light veil = haze(north, east);
+  const LinearRgb veil = haze(north, east);
   float t = reach_m;
   float shade = 1;
   const float inverse = 1 / texel_m_;
@@ -204,12 +204,12 @@ Light Ground::seen(float eye_north_m,
   const float along = std::min(-fast_log2(std::max(down, 1e-4F)), 5.0F);
   const float x = north_m * inverse;
   const float y = east_m * inverse;
-  const Light root = colour(x, y, across + 0.5F * along - 0.6F);
-  Light albedo = root * root;
+  const LinearRgb root = colour(x, y, across + 0.5F * along - 0.6F);
+  LinearRgb albedo = root * root;
   if (t < 1200) albedo *= 1 + (1 - t / 1200) * (detail(north_m, east_m) - 0.5F) * 0.7F;
   const float lit = sunlit(north_m, east_m);
   const float fog = 1 - std::exp(-reach_m * extinction_per_m_);
-  const Light up = albedo * (sunlight_ * lit + skylight_) * shade;
+  const LinearRgb up = albedo * (sunlight_ * lit + skylight_) * shade;
   return up + (veil - up) * fog;
 }
 

@@ -31,15 +31,15 @@ class Ground {
 
   // The light from the ground towards an eye at that place. `north`, `east` and `down` form a unit
   // vector with `down` > 0.
-  Light seen(float eye_north_m,
-             float eye_east_m,
-             float eye_height_m,
-             float north,
-             float east,
-             float down) const;
+  LinearRgb seen(float eye_north_m,
+                 float eye_east_m,
+                 float eye_height_m,
+                 float north,
+                 float east,
+                 float down) const;
 
   // The colour to which the ground fades at the horizon, by direction.
-  Light haze(float north, float east) const;
+  LinearRgb haze(float north, float east) const;
 
  private:
   static constexpr int kShadowCells = 512;
@@ -52,7 +52,7 @@ class Ground {
   };
   struct Texel {
     // Square roots of the light.
-    Light colour = Light::Zero();
+    LinearRgb colour = LinearRgb::Zero();
     float height_m = 0;
   };
   void paint(const Land& land);
@@ -74,20 +74,20 @@ class Ground {
                               float down,
                               float far_m,
                               float across) const;
-  void tree(float north_m, float east_m, float radius_m, float height_m, const Light& colour);
+  void tree(float north_m, float east_m, float radius_m, float height_m, const LinearRgb& colour);
   void house(float north_m,
              float east_m,
              float angle,
              float length_m,
              float width_m,
              float height_m,
-             const Light& roof);
+             const LinearRgb& roof);
   void darken(float north_m, float east_m, float radius_m, float factor);
   std::uint32_t& texel(int x, int y);
   // Of the texel.
   float height_m(float x, float y, int level) const;
   float smooth_height_m(float x, float y, int level) const;
-  Light colour(float x, float y, float level) const;
+  LinearRgb colour(float x, float y, float level) const;
   float sunlit(float north_m, float east_m) const;
   float detail(float north_m, float east_m) const;
 
@@ -95,15 +95,15 @@ class Ground {
   float pixel_rad_;
   float extinction_per_m_;
   Vector3 sun_;
-  Light sunlight_;
-  Light skylight_;
+  LinearRgb sunlight_;
+  LinearRgb skylight_;
   std::vector<Level> levels_;
   // Greatest heights in and beside square cells; the cells of each level are twice as wide as those
   // of the level before. They let rays over open fields skip the search.
   std::vector<std::vector<std::uint8_t>> peaks_;
   std::vector<float> shadow_;
   std::vector<float> detail_;
-  std::vector<Light> haze_;
+  std::vector<LinearRgb> haze_;
 };
 
 }  // namespace airtruth::synthetic

@@ -15,7 +15,7 @@ namespace {
 // Pitch of the grid of possible tree positions.
 constexpr float kPlanting_m = 6.4F;
 
-std::uint32_t pack(const Light& albedo, float height_m) {
+std::uint32_t pack(const LinearRgb& albedo, float height_m) {
   const auto byte = [](float x) { return static_cast<std::uint32_t>(clamp01(x) * 255 + 0.5F); };
   return byte(std::sqrt(albedo[0])) | byte(std::sqrt(albedo[1])) << 8 |
          byte(std::sqrt(albedo[2])) << 16 | byte(height_m / Ground::kHighest_m) << 24;
@@ -38,7 +38,7 @@ Ground::Ground(double texel_m,
   texel_m_ = kLand_m / static_cast<float>(size);
   const float up = static_cast<float>(std::max(-sun_.z(), 0.1));
   sunlight_ *= 0.25F + 0.9F * up;
-  skylight_ = light(0.20F, 0.25F, 0.33F);
+  skylight_ = linear_rgb(0.20F, 0.25F, 0.33F);
   shadow_ = clouds.ground_shadow(kShadowCells);
   haze_.resize(kHazeSectors);
   const Vector3 level_sun = Vector3(sun_.x(), sun_.y(), 0).normalized();
@@ -88,7 +88,7 @@ void Ground::paint(const Land& land) {
 void Ground::plant(const Land& land, std::uint32_t seed) {
   struct Tree {
     float north_m, east_m, radius_m, height_m;
-    Light colour;
+    LinearRgb colour;
   };
   const int cells = static_cast<int>(kLand_m / kPlanting_m);
   std::vector<std::vector<Tree>> rows(static_cast<std::size_t>(cells));
@@ -105,7 +105,8 @@ void Ground::plant(const Land& land, std::uint32_t seed) {
       if (place.hedge && place.track_m < 11) chance = std::max(chance, 0.62F);
       if (unit(mix(id + 1)) >= chance) continue;
       const float size = unit(mix(id + 2));
-      const Light green = lerp(0.75F, 1.35F, unit(mix(id + 3))) * light(0.062F, 0.082F, 0.030F);
+      const LinearRgb green =
+          lerp(0.75F, 1.35F, unit(mix(id + 3))) * linear_rgb(0.062F, 0.082F, 0.030F);
       rows[static_cast<std::size_t>(j)].push_back(
           {north, east, 2.0F + 2.6F * size, 4.0F + 6.5F * size, green});
     }
@@ -141,7 +142,7 @@ void Ground::darken(float north_m, float east_m, float radius_m, float factor) {
 }
 
 void Ground::tree(
-    float north_m, float east_m, float radius_m, float height_m, const Light& colour) {
+    float north_m, float east_m, float radius_m, float height_m, const LinearRgb& colour) {
   const float x = north_m / texel_m_;
   const float y = east_m / texel_m_;
   const float r = std::max(radius_m / texel_m_, 0.5F);
@@ -165,7 +166,7 @@ void Ground::house(float north_m,
                    float length_m,
                    float width_m,
                    float height_m,
-                   const Light& roof) {
+                   const LinearRgb& roof) {
   const float c = std::cos(angle);
   const float s = std::sin(angle);
   const float reach = length_m + width_m;
@@ -192,9 +193,9 @@ void Ground::build(std::uint32_t seed) {
   constexpr int kHouses = 90;
   const auto roof = [](std::uint32_t id) {
     const float tone = 0.8F + 0.45F * unit(mix(id + 9));
-    if (id % 7 == 0) return Light(tone * light(0.72F, 0.70F, 0.66F));
-    if (id % 7 == 1) return Light(tone * light(0.42F, 0.41F, 0.40F));
-    return Light(tone * light(0.44F, 0.235F, 0.145F));
+    if (id % 7 == 0) return LinearRgb(tone * linear_rgb(0.72F, 0.70F, 0.66F));
+    if (id % 7 == 1) return LinearRgb(tone * linear_rgb(0.42F, 0.41F, 0.40F));
+    return LinearRgb(tone * linear_rgb(0.44F, 0.235F, 0.145F));
   };
   for (int k = 0; k < kVillages; ++k) {
     const std::uint32_t village = hash(k, 1, seed);

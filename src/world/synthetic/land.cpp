@@ -17,15 +17,15 @@ constexpr int kSoil = 1024;
 constexpr float kSoil_m = 1.25F;
 
 // Colours of a dry plateau in late summer.
-const std::array<Light, 9> kCrops = {light(0.46F, 0.36F, 0.20F),
-                                     light(0.52F, 0.43F, 0.26F),
-                                     light(0.40F, 0.31F, 0.18F),
-                                     light(0.27F, 0.18F, 0.11F),
-                                     light(0.33F, 0.23F, 0.14F),
-                                     light(0.12F, 0.16F, 0.055F),
-                                     light(0.20F, 0.21F, 0.09F),
-                                     light(0.36F, 0.30F, 0.19F),
-                                     light(0.30F, 0.27F, 0.16F)};
+const std::array<LinearRgb, 9> kCrops = {linear_rgb(0.46F, 0.36F, 0.20F),
+                                         linear_rgb(0.52F, 0.43F, 0.26F),
+                                         linear_rgb(0.40F, 0.31F, 0.18F),
+                                         linear_rgb(0.27F, 0.18F, 0.11F),
+                                         linear_rgb(0.33F, 0.23F, 0.14F),
+                                         linear_rgb(0.12F, 0.16F, 0.055F),
+                                         linear_rgb(0.20F, 0.21F, 0.09F),
+                                         linear_rgb(0.36F, 0.30F, 0.19F),
+                                         linear_rgb(0.30F, 0.27F, 0.16F)};
 
 }  // namespace
 
@@ -64,12 +64,12 @@ Land::Land(std::uint32_t seed)
   });
 }
 
-Light Land::slow(float north_m, float east_m) const {
+LinearRgb Land::slow(float north_m, float east_m) const {
   const float x = north_m * (kSlow / kLand_m);
   const float y = east_m * (kSlow / kLand_m);
   const int ix = floor_int(x);
   const int iy = floor_int(y);
-  const auto at = [&](int i, int j) -> const Light& {
+  const auto at = [&](int i, int j) -> const LinearRgb& {
     return slow_[static_cast<std::size_t>(((iy + j) & (kSlow - 1)) * kSlow +
                                           ((ix + i) & (kSlow - 1)))];
   };
@@ -80,7 +80,7 @@ Light Land::slow(float north_m, float east_m) const {
 }
 
 // Blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent borders.
-Land::Block Land::block(float north_m, float east_m, const Light& slow) const {
+Land::Block Land::block(float north_m, float east_m, const LinearRgb& slow) const {
   constexpr float kBlock_m = kLand_m / kBlocks;
   const float x = north_m / kBlock_m + slow[0];
   const float y = east_m / kBlock_m + slow[1];
@@ -118,7 +118,7 @@ Land::Block Land::block(float north_m, float east_m, const Light& slow) const {
 
 // Strips along the block's own direction, divided into parcels, each with its crop and its lines of
 // sowing.
-Light Land::crop(const Block& block, float north_m, float east_m) const {
+LinearRgb Land::crop(const Block& block, float north_m, float east_m) const {
   const Centre& centre = *block.centre;
   const float width = centre.width_m;
   const float u = centre.cosine * block.north_m + centre.sine * block.east_m;
@@ -127,7 +127,7 @@ Light Land::crop(const Block& block, float north_m, float east_m) const {
   const std::uint32_t strip = hash(i, 7, centre.id);
   const int j = floor_int(v / centre.length_m + unit(strip));
   const std::uint32_t id = hash(i, j, centre.id);
-  Light colour = kCrops[id % kCrops.size()] * (0.85F + 0.3F * unit(mix(id + 1)));
+  LinearRgb colour = kCrops[id % kCrops.size()] * (0.85F + 0.3F * unit(mix(id + 1)));
   const int sx = floor_int(north_m / kSoil_m) & (kSoil - 1);
   const int sy = floor_int(east_m / kSoil_m) & (kSoil - 1);
   const auto [coarse, fine] = soil_[static_cast<std::size_t>(sy * kSoil + sx)];
@@ -137,13 +137,13 @@ Light Land::crop(const Block& block, float north_m, float east_m) const {
   colour *= 1 + rows * std::cos(6.2832F * u / spacing);
   const float side = u - static_cast<float>(i) * width;
   const float margin_m = std::min(side, width - side) - 1.2F * fine;
-  const Light grass = light(0.27F, 0.245F, 0.12F) * (0.7F + 0.6F * fine);
+  const LinearRgb grass = linear_rgb(0.27F, 0.245F, 0.12F) * (0.7F + 0.6F * fine);
   return colour + (grass - colour) * smoothstep(1.8F, 0.6F, margin_m);
 }
 
 Place Land::at(float north_m, float east_m) const {
   Place place;
-  const Light far = slow(north_m, east_m);
+  const LinearRgb far = slow(north_m, east_m);
   const Block here = block(north_m, east_m, far);
   place.albedo = crop(here, north_m, east_m);
   place.field = true;
@@ -151,22 +151,23 @@ Place Land::at(float north_m, float east_m) const {
   place.hedge = (here.border >> 4) % 5 == 0;
   const bool road = here.border % 5 == 1;
   const float half_m = road ? 4.0F : 2.2F;
-  const Light surface = road ? light(0.24F, 0.235F, 0.23F) : light(0.56F, 0.47F, 0.34F);
-  const Light verge = light(0.30F, 0.26F, 0.14F);
+  const LinearRgb surface =
+      road ? linear_rgb(0.24F, 0.235F, 0.23F) : linear_rgb(0.56F, 0.47F, 0.34F);
+  const LinearRgb verge = linear_rgb(0.30F, 0.26F, 0.14F);
   place.albedo += (verge - place.albedo) * smoothstep(half_m + 3.5F, half_m + 1, here.edge_m);
   place.albedo += (surface - place.albedo) * smoothstep(half_m + 0.9F, half_m - 0.9F, here.edge_m);
 
   place.wood = smoothstep(0.585F, 0.625F, far[2]);
   if (place.wood > 0 && here.edge_m > half_m) {
-    const Light floor = light(0.16F, 0.14F, 0.075F);
+    const LinearRgb floor = linear_rgb(0.16F, 0.14F, 0.075F);
     place.albedo += (floor - place.albedo) * place.wood;
     place.field = place.field && place.wood < 0.3F;
   }
   place.river_m = std::abs(far[3] - 0.47F) * 5200;
   if (place.river_m < 60) {
-    const Light bank = light(0.13F, 0.15F, 0.06F);
+    const LinearRgb bank = linear_rgb(0.13F, 0.15F, 0.06F);
     place.albedo += (bank - place.albedo) * smoothstep(60.0F, 22.0F, place.river_m);
-    const Light water = light(0.12F, 0.15F, 0.155F);
+    const LinearRgb water = linear_rgb(0.12F, 0.15F, 0.155F);
     place.albedo += (water - place.albedo) * smoothstep(13.0F, 10.0F, place.river_m);
     place.field = place.field && place.river_m > 45;
   }

@@ -15,7 +15,7 @@ constexpr float kLand_m = 5120;
 
 struct Place {
   // Of the bare ground, without trees, shadows and houses.
-  Light albedo = Light::Zero();
+  LinearRgb albedo = LinearRgb::Zero();
   // Share of the ground under trees, 0..1.
   float wood = 0;
   // Distance from the nearest track or road.
@@ -56,12 +56,12 @@ class Land {
     std::uint32_t border = 0;
   };
   // Slowly varying fields, from a coarse map: the bend of the borders (two), woods, height.
-  Light slow(float north_m, float east_m) const;
-  Block block(float north_m, float east_m, const Light& slow) const;
-  Light crop(const Block& block, float north_m, float east_m) const;
+  LinearRgb slow(float north_m, float east_m) const;
+  Block block(float north_m, float east_m, const LinearRgb& slow) const;
+  LinearRgb crop(const Block& block, float north_m, float east_m) const;
 
   std::array<Centre, std::size_t{kBlocks} * kBlocks> centres_;
-  std::vector<Light> slow_;
+  std::vector<LinearRgb> slow_;
   // Coarse and fine mottling.
   std::vector<std::array<float, 2>> soil_;
 };

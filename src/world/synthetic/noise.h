@@ -11,9 +11,9 @@ namespace airtruth::synthetic {
 
 // Linear red, green and blue (sRGB primaries, 1 is a sunlit white wall), and a fourth number whose
 // meaning each caller defines.
-using Light = Eigen::Array4f;
+using LinearRgb = Eigen::Array4f;
 
-inline Light light(float red, float green, float blue) { return {red, green, blue, 0.0F}; }
+inline LinearRgb linear_rgb(float red, float green, float blue) { return {red, green, blue, 0.0F}; }
 
 inline std::uint32_t mix(std::uint32_t h) {
   h ^= h >> 16;

@@ -98,19 +98,19 @@ Point normal(const Point& p) {
 
 // The paint: white wings with orange tips and dark hinge lines, a grey body, a black nose and black
 // wheels.
-Light paint(const Point& p, Part part) {
+LinearRgb paint(const Point& p, Part part) {
   const float grime = 0.90F + 0.14F * fractal(p[0] * 9 + 40, p[1] * 9 + 40, 4, 256, 99);
-  if (part == Part::kWheel) return light(0.03F, 0.03F, 0.032F);
-  if (part == Part::kNose) return light(0.07F, 0.07F, 0.075F);
-  if (part == Part::kBoom) return grime * light(0.50F, 0.51F, 0.52F);
+  if (part == Part::kWheel) return linear_rgb(0.03F, 0.03F, 0.032F);
+  if (part == Part::kNose) return linear_rgb(0.07F, 0.07F, 0.075F);
+  if (part == Part::kBoom) return grime * linear_rgb(0.50F, 0.51F, 0.52F);
   if (part == Part::kBody) {
     const float seam = std::min(std::abs(p[0] - 2.95F), std::abs(p[0] - 1.95F));
     const float dark = lerp(0.55F, 1.0F, smoothstep(0.004F, 0.010F, seam));
-    return grime * dark * light(0.64F, 0.645F, 0.65F);
+    return grime * dark * linear_rgb(0.64F, 0.645F, 0.65F);
   }
   const WingPlace w = wing_place(p);
-  Light colour = light(0.74F, 0.74F, 0.72F);
-  if (w.span > 0.86F) colour = light(0.72F, 0.20F, 0.05F);
+  LinearRgb colour = linear_rgb(0.74F, 0.74F, 0.72F);
+  if (w.span > 0.86F) colour = linear_rgb(0.72F, 0.20F, 0.05F);
   float seam = 1;
   if (w.span > 0.22F && w.span < 0.93F) seam = std::abs(w.behind - 0.74F) * w.chord_m;
   for (const float at : {0.22F, 0.56F, 0.93F})
@@ -133,25 +133,26 @@ float shadow(const Point& from, const Point& sun) {
 
 struct Scene {
   Point sun;
-  Light sunlight;
+  LinearRgb sunlight;
 };
 
-Light shaded(const Point& p, Part part, const Point& ray, const Scene& scene) {
+LinearRgb shaded(const Point& p, Part part, const Point& ray, const Scene& scene) {
   const Point n = normal(p);
   const float facing = std::max((n * scene.sun).sum(), 0.0F);
   const float lit = facing > 0 ? facing * shadow(p + n * 0.015F, scene.sun) : 0.0F;
   const float up = 0.5F - 0.5F * n[2];
-  const Light ambient = light(0.26F, 0.34F, 0.46F) * up + light(0.20F, 0.17F, 0.12F) * (1 - up);
+  const LinearRgb ambient =
+      linear_rgb(0.26F, 0.34F, 0.46F) * up + linear_rgb(0.20F, 0.17F, 0.12F) * (1 - up);
   const Point half = (scene.sun - ray).matrix().normalized().array();
   const float gleam =
       0.30F * std::pow(std::max((n * half).sum(), 0.0F), 60.0F) * (lit > 0 ? 1.0F : 0.0F);
   const float rim = std::pow(1 - clamp01(-(n * ray).sum()), 4.0F);
   return paint(p, part) * (scene.sunlight * lit + ambient) + scene.sunlight * gleam +
-         light(0.30F, 0.36F, 0.42F) * (0.25F * rim);
+         linear_rgb(0.30F, 0.36F, 0.42F) * (0.25F * rim);
 }
 
 // Premultiplied colour and coverage of one ray from the camera.
-Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
+LinearRgb trace(const Point& ray, float pixel_rad, const Scene& scene) {
   float t = 0.45F;
   float closest = 1e9F;
   float closest_t = t;
@@ -168,8 +169,8 @@ Light trace(const Point& ray, float pixel_rad, const Scene& scene) {
     t += std::max(here.distance_m, 0.0004F);
   }
   const float covered = clamp01(1.1F * (1 - closest));
-  if (covered <= 0) return Light::Zero();
-  Light colour = shaded(ray * closest_t, part, ray, scene) * covered;
+  if (covered <= 0) return LinearRgb::Zero();
+  LinearRgb colour = shaded(ray * closest_t, part, ray, scene) * covered;
   colour[3] = covered;
   return colour;
 }
@@ -198,7 +199,7 @@ OwnAircraft draw_own_aircraft(const lens::Lens& lens,
   const int height = lens.size().height;
   const auto w = static_cast<std::size_t>(width);
   const auto h = static_cast<std::size_t>(height);
-  OwnAircraft own{std::vector<Light>(w * h, Light::Zero()),
+  OwnAircraft own{std::vector<LinearRgb>(w * h, LinearRgb::Zero()),
                   std::vector<int>(h, width),
                   std::vector<int>(h, 0),
                   {width, height, std::vector<unsigned char>(w * h, 255)}};
@@ -221,9 +222,9 @@ OwnAircraft draw_own_aircraft(const lens::Lens& lens,
           const std::size_t i = static_cast<std::size_t>(y) * w + static_cast<std::size_t>(x);
           if (middle && !near) continue;
           const auto ray = ray_in_body(x + 0.5, y + 0.5);
-          own.layer[i] = !ray   ? Light(0, 0, 0, 1)
+          own.layer[i] = !ray   ? LinearRgb(0, 0, 0, 1)
                          : near ? trace(*ray, pixel_rad, scene)
-                                : Light::Zero();
+                                : LinearRgb::Zero();
         }
     }
   });

@@ -14,7 +14,7 @@ namespace airtruth::synthetic {
 // in the image.
 struct OwnAircraft {
   // Premultiplied colour and coverage by pixel; empty without an aircraft.
-  std::vector<Light> layer;
+  std::vector<LinearRgb> layer;
   // First and last column, by row, that the aircraft covers.
   std::vector<int> first;
   std::vector<int> last;

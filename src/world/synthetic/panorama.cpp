@@ -18,13 +18,13 @@ class HillRanges {
         near_veil_(veil(21.6, hills.extinction_per_km)),
         seed_(seed) {}
 
-  void cover(const Vector3& direction, float texel_rad, const Sky& sky, Light& colour) const {
+  void cover(const Vector3& direction, float texel_rad, const Sky& sky, LinearRgb& colour) const {
     const float up = static_cast<float>(-direction.z());
     if (highest_ <= 0 || up > highest_ * 1.05F) return;
     const float azimuth =
         static_cast<float>((std::atan2(direction.y(), direction.x()) / (2 * kPi) + 0.5) * 16);
-    const Light haze = sky.haze(direction);
-    const Light slope = light(0.17F, 0.165F, 0.12F);
+    const LinearRgb haze = sky.haze(direction);
+    const LinearRgb slope = linear_rgb(0.17F, 0.165F, 0.12F);
     range(azimuth, up, highest_, far_veil_, 1, texel_rad, haze, slope, colour);
     range(azimuth * 2, up, 0.55F * highest_, near_veil_, 2, texel_rad, haze, slope, colour);
   }
@@ -41,16 +41,16 @@ class HillRanges {
              float veil,
              std::uint32_t layer,
              float texel_rad,
-             const Light& haze,
-             const Light& slope,
-             Light& colour) const {
+             const LinearRgb& haze,
+             const LinearRgb& slope,
+             LinearRgb& colour) const {
     const int period = layer == 1 ? 16 : 32;
     const float shape = fractal(azimuth, 0.5F, 7, period, seed_ + 31 * layer);
     const float top = highest * clamp01(2.2F * (shape - 0.30F));
     const float covered = smoothstep(-0.7F * texel_rad, 0.7F * texel_rad, top - up);
     const float folds =
         0.8F + 0.5F * fractal(azimuth * 8, up / highest * 3, 3, period * 8, seed_ + 7);
-    const Light hill = haze * veil + slope * folds * (1 - veil);
+    const LinearRgb hill = haze * veil + slope * folds * (1 - veil);
     colour += (hill - colour) * covered;
   }
 
@@ -67,7 +67,8 @@ Panorama::Panorama(double texel_rad) : radius_(static_cast<float>(1 / texel_rad)
   blocks_ = static_cast<int>(2 * edge) / kBlock + 1;
   size_ = blocks_ * kBlock;
   centre_ = 0.5F * static_cast<float>(size_);
-  texels_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), Light::Zero());
+  texels_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_),
+                 LinearRgb::Zero());
   wanted_.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_), 0);
 }
 
@@ -95,7 +96,7 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, st
         const double square = u * u + v * v;
         const double up = (1 - square) / (1 + square);
         const Vector3 direction(u * (1 + up), v * (1 + up), -up);
-        Light colour = clouds.seen_through(direction, sky.at(direction));
+        LinearRgb colour = clouds.seen_through(direction, sky.at(direction));
         ranges.cover(direction, texel_rad, sky, colour);
         texels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) +
                 static_cast<std::size_t>(x)] = colour;

@@ -29,18 +29,18 @@ class Panorama {
   };
   void draw(const Sky& sky, const Clouds& clouds, const Hills& hills, std::uint32_t seed);
 
-  Light at(float north, float east, float up) const {
+  LinearRgb at(float north, float east, float up) const {
     const float scale = radius_ / (1 + up);
     const float x = centre_ + north * scale;
     const float y = centre_ + east * scale;
     const int ix = static_cast<int>(x);
     const int iy = static_cast<int>(y);
-    const Light* p = &texels_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(size_) +
-                              static_cast<std::size_t>(ix)];
+    const LinearRgb* p = &texels_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(size_) +
+                                  static_cast<std::size_t>(ix)];
     const float fx = x - static_cast<float>(ix);
     const float fy = y - static_cast<float>(iy);
-    const Light upper = p[0] + (p[1] - p[0]) * fx;
-    const Light lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
+    const LinearRgb upper = p[0] + (p[1] - p[0]) * fx;
+    const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
     return upper + (lower - upper) * fy;
   }
   // The component `up` of the lowest direction.
@@ -52,7 +52,7 @@ class Panorama {
   int blocks_ = 0;
   float radius_ = 0;
   float centre_ = 0;
-  std::vector<Light> texels_;
+  std::vector<LinearRgb> texels_;
   std::vector<std::uint8_t> wanted_;
 };
 

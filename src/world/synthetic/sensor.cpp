@@ -45,7 +45,7 @@ Sensor::Sensor(const FlightOptions& options, std::uint32_t seed)
       grain_(std::size_t{kGrain} * kGrain) {
   Random random(seed_);
   const auto normal = [&] { return static_cast<float>(random.normal()); };
-  for (Light& g : grain_) g = {normal(), normal(), normal(), 0.0F};
+  for (LinearRgb& g : grain_) g = {normal(), normal(), normal(), 0.0F};
 }
 
 Sensor::Exposure Sensor::start() const {
@@ -53,14 +53,14 @@ Sensor::Exposure Sensor::start() const {
                                      static_cast<std::size_t>(height_))};
 }
 
-Light Sensor::coded(const Light& light) const {
-  const Light at = (light.max(0.0F).min(kBrightest) * (1 / kBrightest)).sqrt() * kCurve;
+LinearRgb Sensor::coded(const LinearRgb& light) const {
+  const LinearRgb at = (light.max(0.0F).min(kBrightest) * (1 / kBrightest)).sqrt() * kCurve;
   const auto look = [&](int i) { return curve_[static_cast<std::size_t>(at[i] + 0.5F)]; };
   return {look(0), look(1), look(2), 0.0F};
 }
 
 // Every 16 rows use another part of the noise tile, so that no pattern repeats.
-const Light& Sensor::grain(int frame, int x, int y) const {
+const LinearRgb& Sensor::grain(int frame, int x, int y) const {
   const std::uint32_t offset = hash(frame, y >> 4, seed_);
   const auto column = (static_cast<std::uint32_t>(x) + offset) & (kGrain - 1);
   const auto row = (static_cast<std::uint32_t>(y) + (offset >> 16)) & (kGrain - 1);
@@ -69,14 +69,14 @@ const Light& Sensor::grain(int frame, int x, int y) const {
 
 void Sensor::expose(int frame,
                     int y,
-                    const Light* upper,
-                    const Light* lower,
+                    const LinearRgb* upper,
+                    const LinearRgb* lower,
                     Exposure& exposure,
                     image::Picture& picture) const {
   const bool pair = y + 1 < height_;
   std::uint8_t* blue = picture.planes[1].row(y / 2);
   std::uint8_t* red = picture.planes[2].row(y / 2);
-  const auto luma = [&](const Light& c, int x, int row, float grain) {
+  const auto luma = [&](const LinearRgb& c, int x, int row, float grain) {
     const float value = 16 + (65.481F * c[0] + 128.553F * c[1] + 24.966F * c[2]) / 255;
     const float spread = noise_ * (1.9F - 0.0045F * value);
     const float noisy = std::clamp(value + spread * grain, 0.0F, 255.0F);
@@ -85,19 +85,19 @@ void Sensor::expose(int frame,
   };
   for (int x = 0; x < width_; x += 2) {
     const int right = std::min(x + 1, width_ - 1);
-    const Light c00 = coded(upper[x]);
-    const Light c01 = coded(upper[right]);
-    const Light c10 = coded(lower[x]);
-    const Light c11 = coded(lower[right]);
-    const Light& g0 = grain(frame, x, y);
-    const Light& g1 = grain(frame, right, y);
+    const LinearRgb c00 = coded(upper[x]);
+    const LinearRgb c01 = coded(upper[right]);
+    const LinearRgb c10 = coded(lower[x]);
+    const LinearRgb c11 = coded(lower[right]);
+    const LinearRgb& g0 = grain(frame, x, y);
+    const LinearRgb& g1 = grain(frame, right, y);
     luma(c00, x, y, g0[0]);
     luma(c01, right, y, g1[0]);
     if (pair) {
       luma(c10, x, y + 1, g0[2]);
       luma(c11, right, y + 1, g1[2]);
     }
-    const Light mean = 0.25F * (c00 + c01 + c10 + c11);
+    const LinearRgb mean = 0.25F * (c00 + c01 + c10 + c11);
     const float spread = 0.8F * noise_;
     blue[x / 2] = code(128 + (-37.797F * mean[0] - 74.203F * mean[1] + 112.0F * mean[2]) / 255 +
                        spread * g0[1]);

@@ -26,8 +26,8 @@ class Sensor {
   // same row. Rows can come in any order and on any thread.
   void expose(int frame,
               int y,
-              const Light* upper,
-              const Light* lower,
+              const LinearRgb* upper,
+              const LinearRgb* lower,
               Exposure& exposure,
               image::Picture& picture) const;
 
@@ -35,8 +35,8 @@ class Sensor {
   void sharpen(const Exposure& exposure, int y, image::Picture& picture) const;
 
  private:
-  Light coded(const Light& light) const;
-  const Light& grain(int frame, int x, int y) const;
+  LinearRgb coded(const LinearRgb& light) const;
+  const LinearRgb& grain(int frame, int x, int y) const;
 
   int width_;
   int height_;
@@ -44,7 +44,7 @@ class Sensor {
   bool ideal_;
   std::uint32_t seed_;
   std::vector<float> curve_;
-  std::vector<Light> grain_;
+  std::vector<LinearRgb> grain_;
 };
 
 }  // namespace airtruth::synthetic

@@ -11,16 +11,16 @@ namespace airtruth::synthetic {
 class Sky {
  public:
   explicit Sky(const Vector3& sun_in_world);
-  Light at(const Vector3& direction_in_world) const;
+  LinearRgb at(const Vector3& direction_in_world) const;
   // The colour to which distant objects fade: that of the sky just above the horizon in that
   // direction.
-  Light haze(const Vector3& direction_in_world) const;
+  LinearRgb haze(const Vector3& direction_in_world) const;
   const Vector3& sun_in_world() const { return sun_; }
-  Light sunlight() const { return sunlight_; }
+  LinearRgb sunlight() const { return sunlight_; }
 
  private:
   Vector3 sun_;
-  Light sunlight_;
+  LinearRgb sunlight_;
 };
 
 // The unit vector towards the sun, north-east-down.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/synthetic/view.h"
+#include "world/synthetic/ray_table.h"
 
 #include <cmath>
 
@@ -22,7 +22,7 @@ Vector3 ray_or_nearest(const lens::Lens& lens, const Pixel& pixel) {
 
 }  // namespace
 
-View::View(const lens::Lens& lens, bool falls_off)
+RayTable::RayTable(const lens::Lens& lens, bool falls_off)
     : width_(lens.size().width),
       columns_((lens.size().width + kPitch - 1) / kPitch + 1),
       rows_((lens.size().height + kPitch - 1) / kPitch + 1) {
@@ -34,7 +34,7 @@ View::View(const lens::Lens& lens, bool falls_off)
       const Pixel pixel(column * kPitch, row * kPitch);
       const Vector3 ray = body_from_cam * ray_or_nearest(lens, pixel);
       const double off_centre = (pixel - middle).squaredNorm() / middle.squaredNorm();
-      Light node;
+      RayNode node;
       node.head<3>() = ray.cast<float>().array();
       node[3] = falls_off
                     ? static_cast<float>(1 - 0.26 * off_centre - 0.08 * off_centre * off_centre)
@@ -43,14 +43,15 @@ View::View(const lens::Lens& lens, bool falls_off)
     }
 }
 
-std::vector<Light> View::directions_in_world(const Quaternion& world_from_body, int stride) const {
+std::vector<RayNode> RayTable::directions_in_world(const Quaternion& world_from_body,
+                                                   int stride) const {
   const Eigen::Matrix3f turn = world_from_body.toRotationMatrix().cast<float>();
-  std::vector<Light> nodes;
+  std::vector<RayNode> nodes;
   nodes.reserve(rays_in_body_.size() / static_cast<std::size_t>(stride * stride) + 1);
   for (int row = 0; row < rows_; row += stride)
     for (int column = 0; column < columns_; column += stride) {
-      const Light& ray = rays_in_body_[static_cast<std::size_t>(row * columns_ + column)];
-      Light node = ray;
+      const RayNode& ray = rays_in_body_[static_cast<std::size_t>(row * columns_ + column)];
+      RayNode node = ray;
       node.head<3>() = (turn * ray.head<3>().matrix()).array();
       nodes.push_back(node);
     }

@@ -8,7 +8,7 @@ namespace airtruth::tracking {
 
 // Part of a picture's luma at several resolutions. Each of its pixels is `scale` pixels of the
 // picture wide.
-struct View {
+struct LumaWindow {
   Pyramid pyramid;
   double left = 0;  // position of the pyramid's corner in the picture, px
   double top = 0;

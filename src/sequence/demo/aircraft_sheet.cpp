@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/demo/portrait.h"
+#include "sequence/demo/aircraft_sheet.h"
 
 #include <array>
 #include <cmath>
@@ -58,8 +58,8 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
   const Rigid world_from_cam =
       Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
   const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const annotation::Silhouette silhouette{&aircraft.mesh,
-                                          aircraft::silhouette_points(aircraft.mesh)};
+  const annotation::SilhouettePoints silhouette{&aircraft.mesh,
+                                                aircraft::silhouette_points(aircraft.mesh)};
   const auto box = annotation::exact_box(sight, silhouette, {}, 0).box;
   render::Light light;
   light.to_sun_in_world = render::to_sun(degrees(azimuth) + 35, 45);
@@ -75,7 +75,7 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
 
 }  // namespace
 
-image::Rgb8 portrait(const aircraft::Aircraft& aircraft) {
+image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
   const std::array<Pose, 9> poses = {{{"nose", 0, 0, 380},
                                       {"front left, above", -40, 18, 380},
                                       {"left side", -90, 0, 380},
@@ -91,7 +91,7 @@ image::Rgb8 portrait(const aircraft::Aircraft& aircraft) {
   return report::tiled(aircraft.name, std::move(tiles), 3);
 }
 
-image::Rgb8 small_portrait(const aircraft::Aircraft& aircraft) {
+image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {
   constexpr int kSmallTilePx = 150;
   return tile(aircraft, render::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
 }

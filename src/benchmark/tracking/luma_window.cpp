@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/tracking/view.h"
+#include "benchmark/tracking/luma_window.h"
 
 #include <algorithm>
 #include <cmath>
