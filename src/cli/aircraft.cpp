@@ -142,36 +142,31 @@ void show(const ShowArguments& arguments, Context& context) {
   console.result("  " + arguments.out);
 }
 
-}  // namespace
-
-void add_aircraft(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("aircraft", "The aircraft that can be flown");
-  command->require_subcommand(1);
-  auto* list_command =
-      command->add_subcommand("list", "Print the name of every aircraft, a line each");
+void add_list(CLI::App& group, Context& context) {
+  auto* command = group.add_subcommand("list", "Print the name of every aircraft, a line each");
   auto filter = std::make_shared<std::string>();
-  list_command->add_option("FILTER",
-                           *filter,
-                           "Show only names that contain this, or that it fits with * and ?; "
-                           "letter case does not matter");
+  command->add_option("FILTER",
+                      *filter,
+                      "Show only names that contain this, or that it fits with * and ?; "
+                      "letter case does not matter");
   auto sizes = std::make_shared<bool>(false);
   CLI::Option* sizes_flag =
-      list_command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
+      command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
   auto is_left_out = std::make_shared<bool>(false);
-  CLI::Option* left_out_flag = list_command->add_flag(
-      "--left-out",
-      *is_left_out,
-      "In their place: the names of the package that are not offered, and why");
+  CLI::Option* left_out_flag =
+      command->add_flag("--left-out",
+                        *is_left_out,
+                        "In their place: the names of the package that are not offered, and why");
   left_out_flag->excludes(sizes_flag);
   auto sheet = std::make_shared<std::string>();
-  list_command
+  command
       ->add_option(
           "--sheet", *sheet, "In their place: draw one aircraft of each type here (.png or .jpg)")
       ->excludes(sizes_flag)
       ->excludes(left_out_flag);
   auto overwrite = std::make_shared<bool>(false);
-  list_command->add_flag("--overwrite", *overwrite, "Replace the picture if it exists");
-  list_command->callback([filter, sizes, is_left_out, sheet, overwrite, &context] {
+  command->add_flag("--overwrite", *overwrite, "Replace the picture if it exists");
+  command->callback([filter, sizes, is_left_out, sheet, overwrite, &context] {
     if (!sheet->empty())
       draw_sheet(*filter, *sheet, *overwrite, context);
     else if (*is_left_out)
@@ -179,24 +174,36 @@ void add_aircraft(CLI::App& app, Context& context) {
     else
       list(*filter, *sizes, context);
   });
-  auto* show_command = command->add_subcommand(
+}
+
+void add_show(CLI::App& group, Context& context) {
+  auto* command = group.add_subcommand(
       "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
   auto arguments = std::make_shared<ShowArguments>();
-  show_command
+  command
       ->add_option(
           "NAME",
           arguments->name,
           "A name of `aircraft list`, or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb "
           ".fbx)")
       ->required();
-  show_command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
-  show_command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");
-  show_command->add_option(
+  command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");
+  command->add_option(
       "--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
-  show_command->add_option("--up", arguments->up, "Model file: its axis that is up");
-  show_command->add_option("--scale", arguments->scale, "Model file: metres per unit")
+  command->add_option("--up", arguments->up, "Model file: its axis that is up");
+  command->add_option("--scale", arguments->scale, "Model file: metres per unit")
       ->check(CLI::PositiveNumber);
-  show_command->callback([arguments, &context] { show(*arguments, context); });
+  command->callback([arguments, &context] { show(*arguments, context); });
+}
+
+}  // namespace
+
+void add_aircraft(CLI::App& app, Context& context) {
+  auto* group = app.add_subcommand("aircraft", "The aircraft that can be flown");
+  group->require_subcommand(1);
+  add_list(*group, context);
+  add_show(*group, context);
 }
 
 }  // namespace airtruth::cli

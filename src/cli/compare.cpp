@@ -84,6 +84,31 @@ void judge_all(const JudgeArguments& arguments, Context& context) {
   context.console().result(judge::text_of(verdict));
 }
 
+// How many frames and pairs, and what is searched for.
+void add_match_options(CLI::App& command, CompareArguments& arguments) {
+  command.add_option("--pairs", arguments.pairs, "Pairs in the figure")
+      ->check(CLI::Range(1, 40))
+      ->capture_default_str();
+  command.add_option("--frames", arguments.frames, "At most so many frames from the first box on")
+      ->check(CLI::PositiveNumber);
+  command.add_flag(
+      "--match,!--no-match",
+      arguments.match,
+      "Search the type, attitude, livery and sun with which the inserted aircraft looks like the "
+      "real one (the default), or take the scene's");
+  command
+      .add_option("--types",
+                  arguments.types,
+                  "Aircraft to search among (`airtruth aircraft list`), with commas between")
+      ->delimiter(',');
+  command
+      .add_option("--camera-pitch",
+                  arguments.camera_pitch_deg,
+                  "Degrees that the camera looks up, which says where light comes from (without: "
+                  "as much as has the aircraft most nearly level, 0 to 60)")
+      ->check(CLI::Range(-90.0, 90.0));
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app, Context& context) {
@@ -108,27 +133,7 @@ void add_compare(CLI::App& app, Context& context) {
       ->add_option(
           "--origin", arguments->origin_px, "What the boxes' first pixel is called (MATLAB: 1)")
       ->capture_default_str();
-  command->add_option("--pairs", arguments->pairs, "Pairs in the figure")
-      ->check(CLI::Range(1, 40))
-      ->capture_default_str();
-  command->add_option("--frames", arguments->frames, "At most so many frames from the first box on")
-      ->check(CLI::PositiveNumber);
-  command->add_flag(
-      "--match,!--no-match",
-      arguments->match,
-      "Search the type, attitude, livery and sun with which the inserted aircraft looks like the "
-      "real one (the default), or take the scene's");
-  command
-      ->add_option("--types",
-                   arguments->types,
-                   "Aircraft to search among (`airtruth aircraft list`), with commas between")
-      ->delimiter(',');
-  command
-      ->add_option("--camera-pitch",
-                   arguments->camera_pitch_deg,
-                   "Degrees that the camera looks up, which says where light comes from (without: "
-                   "as much as has the aircraft most nearly level, 0 to 60)")
-      ->check(CLI::Range(-90.0, 90.0));
+  add_match_options(*command, *arguments);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
   command->callback([arguments, &context] { compare(*arguments, context); });
 }

@@ -219,28 +219,27 @@ void add_build_options(CLI::App& command, DatasetArguments& arguments) {
                      "NAME=VIDEO: a video in place of a background of the catalogue");
 }
 
-}  // namespace
-
-void add_dataset(CLI::App& app, Context& context) {
-  auto* group = app.add_subcommand("dataset", "Make, look after and check whole data sets");
-  group->require_subcommand(1);
+void add_build(CLI::App& group, Context& context) {
   auto arguments = std::make_shared<DatasetArguments>();
-  auto* build_command =
-      group->add_subcommand("build", "Make every sequence of a catalogue that is not there yet");
-  add_build_options(*build_command, *arguments);
-  build_command->add_option(
+  auto* command =
+      group.add_subcommand("build", "Make every sequence of a catalogue that is not there yet");
+  add_build_options(*command, *arguments);
+  command->add_option(
       "--only", arguments->build.only, "Only sequences whose name fits this pattern (* and ?)");
-  build_command->callback([arguments, &context] { build(*arguments, context); });
-  auto* work_command =
-      group->add_subcommand("work", "One worker's share of a build, for job arrays");
-  add_build_options(*work_command, *arguments);
-  work_command->add_option("--index", arguments->build.share, "This worker's number, from 0")
+  command->callback([arguments, &context] { build(*arguments, context); });
+}
+
+void add_work(CLI::App& group, Context& context) {
+  auto arguments = std::make_shared<DatasetArguments>();
+  auto* command = group.add_subcommand("work", "One worker's share of a build, for job arrays");
+  add_build_options(*command, *arguments);
+  command->add_option("--index", arguments->build.share, "This worker's number, from 0")
       ->required()
       ->check(CLI::NonNegativeNumber);
-  work_command->add_option("--of", arguments->build.shares, "How many workers there are")
+  command->add_option("--of", arguments->build.shares, "How many workers there are")
       ->required()
       ->check(CLI::PositiveNumber);
-  work_command->callback([arguments, &context] {
+  command->callback([arguments, &context] {
     if (arguments->build.share >= arguments->build.shares)
       throw Error(fmt::format("--index is {} of {}; expected 0 to {}",
                               arguments->build.share,
@@ -248,43 +247,57 @@ void add_dataset(CLI::App& app, Context& context) {
                               arguments->build.shares - 1));
     build(*arguments, context);
   });
-  auto* plan_command =
-      group->add_subcommand("plan", "Say what a catalogue would make, how long and how large");
-  plan_command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
-  plan_command->callback([arguments, &context] { plan(*arguments, context); });
-  auto* status_command = group->add_subcommand("status", "Say how far a data set is");
-  status_command->add_option("DIR", arguments->folder, "The data set's folder")->required();
-  status_command->callback([arguments, &context] { status(*arguments, context); });
-  auto* verify_command =
-      group->add_subcommand("verify", "Check every file, label and frame count of a data set");
-  verify_command->add_option("DIR", arguments->folder, "The data set's folder")->required();
-  verify_command->add_flag("--finish",
-                           arguments->finish,
-                           "First write the manifest, where several workers made the sequences");
-  verify_command->add_flag(
+}
+
+void add_plan(CLI::App& group, Context& context) {
+  auto arguments = std::make_shared<DatasetArguments>();
+  auto* command =
+      group.add_subcommand("plan", "Say what a catalogue would make, how long and how large");
+  command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
+  command->callback([arguments, &context] { plan(*arguments, context); });
+}
+
+void add_status(CLI::App& group, Context& context) {
+  auto arguments = std::make_shared<DatasetArguments>();
+  auto* command = group.add_subcommand("status", "Say how far a data set is");
+  command->add_option("DIR", arguments->folder, "The data set's folder")->required();
+  command->callback([arguments, &context] { status(*arguments, context); });
+}
+
+void add_verify(CLI::App& group, Context& context) {
+  auto arguments = std::make_shared<DatasetArguments>();
+  auto* command =
+      group.add_subcommand("verify", "Check every file, label and frame count of a data set");
+  command->add_option("DIR", arguments->folder, "The data set's folder")->required();
+  command->add_flag("--finish",
+                    arguments->finish,
+                    "First write the manifest, where several workers made the sequences");
+  command->add_flag(
       "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
-  verify_command
+  command
       ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
       ->check(CLI::PositiveNumber);
-  verify_command->callback([arguments, &context] { verify(*arguments, context); });
-  add_dataset_exchange(*group, context);
-  auto* submit_command = group->add_subcommand("submit", "Have a cluster make a data set");
-  submit_command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")
-      ->required();
-  submit_command
+  command->callback([arguments, &context] { verify(*arguments, context); });
+}
+
+void add_submit(CLI::App& group, Context& context) {
+  auto arguments = std::make_shared<DatasetArguments>();
+  auto* command = group.add_subcommand("submit", "Have a cluster make a data set");
+  command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
+  command
       ->add_option("--out,-o",
                    arguments->folder,
                    "The data set's folder, on a file system that all nodes see")
       ->required();
-  submit_command->add_flag(
+  command->add_flag(
       "--slurm", arguments->on_slurm, "As a Slurm job array, with a job after it that verifies");
-  submit_command
+  command
       ->add_option("--array-size",
                    arguments->slurm.array_size,
                    "Tasks (default: one per sequence, at most 1,000)")
       ->check(CLI::Range(1, 100000));
-  submit_command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
-  submit_command
+  command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
+  command
       ->add_option("--sbatch",
                    arguments->slurm.sbatch,
                    "An option for sbatch, as \"--time=2:00:00\", \"--mem=4G\" or "
@@ -292,12 +305,25 @@ void add_dataset(CLI::App& app, Context& context) {
                    "catalogue")
       ->allow_extra_args(false)
       ->take_all();
-  submit_command->add_option("--background",
-                             arguments->backgrounds,
-                             "NAME=VIDEO: a video in place of a background of the catalogue");
-  submit_command->add_flag(
-      "--dry-run", arguments->slurm.dry_run, "Write the scripts and submit nothing");
-  submit_command->callback([arguments, &context] { submit(*arguments, context); });
+  command->add_option("--background",
+                      arguments->backgrounds,
+                      "NAME=VIDEO: a video in place of a background of the catalogue");
+  command->add_flag("--dry-run", arguments->slurm.dry_run, "Write the scripts and submit nothing");
+  command->callback([arguments, &context] { submit(*arguments, context); });
+}
+
+}  // namespace
+
+void add_dataset(CLI::App& app, Context& context) {
+  auto* group = app.add_subcommand("dataset", "Make, look after and check whole data sets");
+  group->require_subcommand(1);
+  add_build(*group, context);
+  add_work(*group, context);
+  add_plan(*group, context);
+  add_status(*group, context);
+  add_verify(*group, context);
+  add_dataset_exchange(*group, context);
+  add_submit(*group, context);
 }
 
 }  // namespace airtruth::cli

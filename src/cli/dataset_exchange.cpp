@@ -110,81 +110,85 @@ void run_report(Report arguments, Context& context) {
 
 constexpr const char* kWritten = "coco, yolo, mot, voc, cvat, aot, otb, got10k or vot";
 
-}  // namespace
-
-void add_dataset_exchange(CLI::App& group, Context& context) {
+void add_export(CLI::App& group, Context& context) {
   auto out = std::make_shared<Export>();
-  auto* export_command = group.add_subcommand("export", "Write a data set in a format of others");
-  export_command->add_option("DIR", out->set, "A data set, or a folder that `render` made")
-      ->required();
-  export_command->add_option("--format,-f", out->format, kWritten)->required();
-  export_command
+  auto* command = group.add_subcommand("export", "Write a data set in a format of others");
+  command->add_option("DIR", out->set, "A data set, or a folder that `render` made")->required();
+  command->add_option("--format,-f", out->format, kWritten)->required();
+  command
       ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
       ->required();
-  export_command->add_option("--images",
-                             out->images,
-                             "jpg (default; for aot, whose readers open no jpg: png), png or none");
-  export_command->add_option(
+  command->add_option("--images",
+                      out->images,
+                      "jpg (default; for aot, whose readers open no jpg: png), png or none");
+  command->add_option(
       "--boxes",
       out->boxes,
       "covered (default): the pixels that the aircraft covers, to train on; exact: its projected "
       "shape; visible: the pixels that changed, codec's ripple included");
-  export_command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
+  command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
       ->check(CLI::PositiveNumber);
-  export_command->add_option("--split",
-                             out->split,
-                             "by-background (default): a video is in one part alone; by-sequence; "
-                             "none");
-  export_command
-      ->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
+  command->add_option("--split",
+                      out->split,
+                      "by-background (default): a video is in one part alone; by-sequence; "
+                      "none");
+  command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
       ->expected(3)
       ->check(CLI::NonNegativeNumber);
-  export_command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
-  export_command->add_flag(
+  command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
-  export_command->add_flag("--mot-classes",
-                           out->options.mot_classes,
-                           "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
-                           "one class that MOT17's evaluation counts)");
-  export_command
-      ->add_option("--jobs,-j", out->options.jobs, "Sequences at a time (default: one per core)")
+  command->add_flag("--mot-classes",
+                    out->options.mot_classes,
+                    "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
+                    "one class that MOT17's evaluation counts)");
+  command->add_option("--jobs,-j", out->options.jobs, "Sequences at a time (default: one per core)")
       ->check(CLI::Range(1, 1024));
-  export_command->callback([out, &context] { run_export(*out, context); });
+  command->callback([out, &context] { run_export(*out, context); });
+}
 
+void add_report(CLI::App& group, Context& context) {
   auto page = std::make_shared<Report>();
-  auto* report_command =
+  auto* command =
       group.add_subcommand("report", "A page on a data set: what is in it, and each sequence");
-  report_command->add_option("DIR", page->set, "A data set, or a folder that `render` made")
-      ->required();
-  report_command->add_option("--out,-o", page->out, "The page (default: report.html)");
-  report_command->add_flag(
-      "--overwrite", page->options.overwrite, "Replace the page if it is there");
-  report_command
+  command->add_option("DIR", page->set, "A data set, or a folder that `render` made")->required();
+  command->add_option("--out,-o", page->out, "The page (default: report.html)");
+  command->add_flag("--overwrite", page->options.overwrite, "Replace the page if it is there");
+  command
       ->add_option("--jobs,-j", page->options.jobs, "Sequences at a time (default: one per core)")
       ->check(CLI::Range(1, 1024));
-  report_command->callback([page, &context] { run_report(*page, context); });
+  command->callback([page, &context] { run_report(*page, context); });
+}
 
+void add_import(CLI::App& group, Context& context) {
   auto in = std::make_shared<Import>();
-  auto* import_command = group.add_subcommand(
+  auto* command = group.add_subcommand(
       "import", "Read labelled video of others, to look at and to evaluate on");
-  import_command->add_option("SOURCE", in->source, "Its folder, or its annotation file")
-      ->required();
-  import_command
+  command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
+  command
       ->add_option(
           "--format,-f", in->format, std::string(kWritten) + "; evision or csv (frame,x,y,w,h)")
       ->required();
-  import_command->add_option("--out,-o", in->out, "A new folder")->required();
-  import_command->add_option(
+  command->add_option("--out,-o", in->out, "A new folder")->required();
+  command->add_option(
       "--video", in->videos, "CLIP=VIDEO, or VIDEO where there is one clip: where it is not found");
-  import_command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
-  import_command
+  command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
+  command
       ->add_option("--origin",
                    in->options.read.origin_px,
                    "Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
       ->check(CLI::Range(0, 1));
-  import_command->add_option(
+  command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
-  import_command->callback([in, &context] { run_import(*in, context); });
+  command->callback([in, &context] { run_import(*in, context); });
+}
+
+}  // namespace
+
+void add_dataset_exchange(CLI::App& group, Context& context) {
+  add_export(group, context);
+  add_report(group, context);
+  add_import(group, context);
 }
 
 }  // namespace airtruth::cli

@@ -159,54 +159,64 @@ std::string commands_section(const Page& page) {
   return text;
 }
 
-std::string manual_page(const CLI::App& root, const Page& page) {
+std::string title_and_name(const Page& page, bool is_root) {
   const std::string name = page_name(page.path);
   std::string upper = name;
   std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   });
-  const std::string about = page.app->get_description();
-  const bool is_root = page.app == &root;
-  std::string text = fmt::format(
+  return fmt::format(
       ".\\\" Made by `airtruth describe` from the program's own help.\n"
       ".TH {} 1 \"\" \"airtruth {}\" \"airtruth\"\n.SH NAME\n{} \\- {}\n",
       roff(upper),
       kVersion,
       roff(name),
       is_root ? "3D aircraft in real onboard video, with the exact truth of every frame"
-              : roff(about));
+              : roff(page.app->get_description()));
+}
+
+// The options that every command has, but those that each page explains itself.
+std::string common_options(const CLI::App& root) {
+  std::vector<const CLI::Option*> common = options_of(root, false);
+  std::erase_if(common, [](const CLI::Option* option) {
+    const auto names = spellings(*option);
+    return std::any_of(names.begin(), names.end(), [](const std::string& n) {
+      return n == "--help" || n == "--version";
+    });
+  });
+  return section("COMMON OPTIONS", common);
+}
+
+std::string see_also(const Page& page, bool is_root) {
+  std::vector<std::string> others;
+  if (!is_root) others.push_back("airtruth");
+  if (page.path.size() > 2) others.push_back(page_name({page.path.begin(), page.path.end() - 1}));
+  if (others.empty()) return "";
+  std::string text = ".SH SEE ALSO\n";
+  for (std::size_t i = 0; i < others.size(); ++i)
+    text += fmt::format(".BR {} (1){}\n", roff(others[i]), i + 1 < others.size() ? " ," : "");
+  return text;
+}
+
+std::string manual_page(const CLI::App& root, const Page& page) {
+  const std::string about = page.app->get_description();
+  const bool is_root = page.app == &root;
+  std::string text = title_and_name(page, is_root);
   text += synopsis(page);
   text += ".SH DESCRIPTION\n" + roff(about) + (about.ends_with('.') ? "\n" : ".\n");
   text += commands_section(page);
   text += section("ARGUMENTS", options_of(*page.app, true));
   text += section("OPTIONS", options_of(*page.app, false));
-  if (!is_root) {
-    std::vector<const CLI::Option*> common = options_of(root, false);
-    std::erase_if(common, [](const CLI::Option* option) {
-      const auto names = spellings(*option);
-      return std::any_of(names.begin(), names.end(), [](const std::string& n) {
-        return n == "--help" || n == "--version";
-      });
-    });
-    text += section("COMMON OPTIONS", common);
-  }
+  if (!is_root) text += common_options(root);
   text +=
       ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nA fault of airtruth, or work that has something to "
       "complain of.\n.TP\n2\nWhat was given is wrong: one line says what, where and what was "
       "expected.\n.TP\n130\nInterrupted; nothing half\\-made is left behind.\n";
-  std::vector<std::string> others;
-  if (!is_root) others.push_back("airtruth");
-  if (page.path.size() > 2) others.push_back(page_name({page.path.begin(), page.path.end() - 1}));
   text +=
       ".SH FILES\n.TP\n.I /usr/share/doc/airtruth/\nThe documents: scene files, catalogues, "
       "truth, measures.\n.TP\n.I /usr/share/airtruth/\nExamples, catalogues, schemas and "
       "clients.\n";
-  if (!others.empty()) {
-    text += ".SH SEE ALSO\n";
-    for (std::size_t i = 0; i < others.size(); ++i)
-      text += fmt::format(".BR {} (1){}\n", roff(others[i]), i + 1 < others.size() ? " ," : "");
-  }
-  return text;
+  return text + see_also(page, is_root);
 }
 
 // The command and all its subcommands.

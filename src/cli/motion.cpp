@@ -74,6 +74,36 @@ void check_outputs(const MotionArguments& arguments) {
   if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
 }
 
+void report_gyro(const std::optional<motion::GyroFit>& fit, bool has_gyro, Console& console) {
+  if (fit)
+    console.result(
+        fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
+                    "measured follow it",
+                    fit->correlation,
+                    fit->offset_s,
+                    degrees(fit->rms_radps)));
+  else if (has_gyro)
+    console.warning("the video's gyro does not agree with its motion; it is not used");
+}
+
+void report_frames(const std::vector<motion::FrameMotion>& all,
+                   const std::string& out,
+                   Console& console) {
+  std::size_t measured = 0;
+  std::size_t away = 0;
+  for (const auto& frame : all) {
+    measured += motion::is_known(frame.state) ? 1 : 0;
+    away += frame.state == motion::State::kTurnedAway ? 1 : 0;
+  }
+  if (away > 0)
+    console.warning(
+        fmt::format("in {} frames the camera has turned so far from the first that no homography "
+                    "holds both (turned_away); --reference smoothed and --model rotation have no "
+                    "such limit",
+                    away));
+  console.result(fmt::format("{}: {} frames, measured in {}", out, all.size(), measured));
+}
+
 void measure(const MotionArguments& arguments, Context& context) {
   check_outputs(arguments);
   Console& console = context.console();
@@ -93,15 +123,7 @@ void measure(const MotionArguments& arguments, Context& context) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
   const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<motion::GyroSample>();
-  if (const auto fit = sequence::bridge_by_gyro(gyro, all))
-    console.result(
-        fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
-                    "measured follow it",
-                    fit->correlation,
-                    fit->offset_s,
-                    degrees(fit->rms_radps)));
-  else if (!gyro.empty())
-    console.warning("the video's gyro does not agree with its motion; it is not used");
+  report_gyro(sequence::bridge_by_gyro(gyro, all), !gyro.empty(), console);
   all = arguments.reference == "smoothed"
             ? motion::smoothed(all, options)
             : motion::within_reach(std::move(all), info.width, info.height);
@@ -109,19 +131,7 @@ void measure(const MotionArguments& arguments, Context& context) {
   if (!arguments.plot.empty())
     video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
-  std::size_t measured = 0;
-  std::size_t away = 0;
-  for (const auto& frame : all) {
-    measured += motion::is_known(frame.state) ? 1 : 0;
-    away += frame.state == motion::State::kTurnedAway ? 1 : 0;
-  }
-  if (away > 0)
-    console.warning(
-        fmt::format("in {} frames the camera has turned so far from the first that no homography "
-                    "holds both (turned_away); --reference smoothed and --model rotation have no "
-                    "such limit",
-                    away));
-  console.result(fmt::format("{}: {} frames, measured in {}", arguments.out, all.size(), measured));
+  report_frames(all, arguments.out, console);
 }
 
 }  // namespace

@@ -58,71 +58,89 @@ void synth(SynthArguments arguments, Context& context) {
       "{}: {} frames of {}x{}", arguments.out, options.frame_count, options.width, options.height));
 }
 
+void add_file_options(CLI::App& command, SynthArguments& arguments) {
+  command.add_option("-o,--out", arguments.out, "The video to write (.mp4, .mkv or .avi)")
+      ->required();
+  command.add_option(
+      "--truth", arguments.truth, "Write the true camera of every frame here (.csv)");
+  command.add_option("--mask", arguments.mask, "Write the own-aircraft mask here (.png)");
+}
+
+void add_camera_options(CLI::App& command, SynthArguments& arguments) {
+  synthetic::FlightOptions& flight = arguments.flight;
+  command.add_option("--width", flight.width, "Pixels")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  command.add_option("--height", flight.height, "Pixels")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  command.add_option("--rate", flight.frame_rate_hz, "Frames a second")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command.add_option("--frames", flight.frame_count, "Number of frames")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees")
+      ->check(CLI::Range(1.0, 150.0))
+      ->capture_default_str();
+  command.add_option("--lens", arguments.lens_file, "A calibration file, in place of --fov");
+}
+
+void add_world_options(CLI::App& command, SynthArguments& arguments) {
+  synthetic::FlightOptions& flight = arguments.flight;
+  command.add_option("--speed", flight.speed_mps, "Metres a second")
+      ->check(CLI::Range(0.0, 400.0))
+      ->capture_default_str();
+  command.add_option("--altitude", flight.altitude_m, "Metres above the ground")
+      ->check(CLI::Range(20.0, 900.0))
+      ->capture_default_str();
+  command.add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
+      ->capture_default_str();
+  command.add_option("--sun-elevation", flight.sun_elevation_deg, "Degrees")
+      ->check(CLI::Range(2.0, 90.0))
+      ->capture_default_str();
+  command.add_option("--clouds", flight.cloud_cover, "Cloud cover, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--extinction", flight.extinction_per_km, "Of the air, per km; 0 is none")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+}
+
+void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
+  synthetic::FlightOptions& flight = arguments.flight;
+  command.add_option("--shake", flight.shake_deg, "Vibration, degrees rms")
+      ->check(CLI::Range(0.0, 5.0))
+      ->capture_default_str();
+  command.add_option("--noise", flight.noise, "Sensor noise; 1 is a cheap camera's")
+      ->check(CLI::Range(0.0, 20.0))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--clutter", flight.clutter, "Share of the picture that wanders by itself, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_flag(
+      "--no-own-aircraft", arguments.no_own_aircraft, "Leave the own aircraft out of the view");
+  command.add_flag("--rotate-only",
+                   arguments.rotate_only,
+                   "The camera turns but does not move, so that a homography is exact");
+}
+
 }  // namespace
 
 void add_synth(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "synth", "Make a virtual flight: onboard video of a world that is known exactly");
   auto arguments = std::make_shared<SynthArguments>();
-  synthetic::FlightOptions& flight = arguments->flight;
-  command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")
-      ->required();
-  command->add_option(
-      "--truth", arguments->truth, "Write the true camera of every frame here (.csv)");
-  command->add_option("--mask", arguments->mask, "Write the own-aircraft mask here (.png)");
-  command->add_option("--seed", flight.seed, "Another world and another flight")
+  add_file_options(*command, *arguments);
+  command->add_option("--seed", arguments->flight.seed, "Another world and another flight")
       ->capture_default_str();
-  command->add_option("--width", flight.width, "Pixels")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  command->add_option("--height", flight.height, "Pixels")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  command->add_option("--rate", flight.frame_rate_hz, "Frames a second")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  command->add_option("--frames", flight.frame_count, "Number of frames")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--duration", arguments->duration_s, "Seconds, in place of --frames")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees")
-      ->check(CLI::Range(1.0, 150.0))
-      ->capture_default_str();
-  command->add_option("--lens", arguments->lens_file, "A calibration file, in place of --fov");
-  command->add_option("--speed", flight.speed_mps, "Metres a second")
-      ->check(CLI::Range(0.0, 400.0))
-      ->capture_default_str();
-  command->add_option("--altitude", flight.altitude_m, "Metres above the ground")
-      ->check(CLI::Range(20.0, 900.0))
-      ->capture_default_str();
-  command->add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
-      ->capture_default_str();
-  command->add_option("--sun-elevation", flight.sun_elevation_deg, "Degrees")
-      ->check(CLI::Range(2.0, 90.0))
-      ->capture_default_str();
-  command->add_option("--clouds", flight.cloud_cover, "Cloud cover, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--extinction", flight.extinction_per_km, "Of the air, per km; 0 is none")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  command->add_option("--shake", flight.shake_deg, "Vibration, degrees rms")
-      ->check(CLI::Range(0.0, 5.0))
-      ->capture_default_str();
-  command->add_option("--noise", flight.noise, "Sensor noise; 1 is a cheap camera's")
-      ->check(CLI::Range(0.0, 20.0))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--clutter", flight.clutter, "Share of the picture that wanders by itself, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_flag(
-      "--no-own-aircraft", arguments->no_own_aircraft, "Leave the own aircraft out of the view");
-  command->add_flag("--rotate-only",
-                    arguments->rotate_only,
-                    "The camera turns but does not move, so that a homography is exact");
+  add_camera_options(*command, *arguments);
+  add_world_options(*command, *arguments);
+  add_disturbance_options(*command, *arguments);
   command->add_option("--quality", arguments->quality, "H.264 CRF")
       ->check(CLI::Range(0, 51))
       ->capture_default_str();

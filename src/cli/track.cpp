@@ -103,62 +103,70 @@ void run_track(Track arguments, Context& context) {
   }
 }
 
+// What is followed, by which trackers, and where their results go.
+void add_source_options(CLI::App& command, Track& arguments) {
+  command
+      .add_option("DIR|VIDEO",
+                  arguments.source,
+                  "A data set, made or imported; or a video or folder of images, with --init")
+      ->required();
+  std::string names;
+  for (const std::string& name : tracking::tracker_names()) names += name + ", ";
+  command
+      .add_option("--tracker,-t",
+                  arguments.trackers,
+                  "One or more of " + names +
+                      "trax:COMMAND for a program that speaks TraX (NAME=trax:COMMAND names its "
+                      "results), trax-socket:COMMAND for one that connects to TRAX_SOCKET")
+      ->required();
+  command
+      .add_option("--out,-o",
+                  arguments.out,
+                  "Results, a folder for each tracker; a run that was stopped goes on in it")
+      ->required();
+  command.add_option("--protocol",
+                     arguments.protocol,
+                     "ope: begun once (default); restart: begun anew after each failure; "
+                     "multistart: begun at many frames, forward and backward");
+  command.add_option(
+      "--init", arguments.init, "x,y,width,height of what to follow in a video, pixels from 0");
+  command.add_option("--first-frame", arguments.first_frame, "Frame of --init (default: 0)")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
+}
+
+void add_run_options(CLI::App& command, experiment::RunOptions& options) {
+  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  command.add_option("--seed", options.seed, "Of the trackers' chance (default: 1)");
+  command.add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
+      ->check(CLI::Range(1, 999));
+  command
+      .add_option("--anchor-step",
+                  options.anchor_step,
+                  "Frames between the starts of --protocol multistart (default: 50)")
+      ->check(CLI::Range(1, 1'000'000));
+  command
+      .add_option("--timeout",
+                  options.answer_s,
+                  "Longest that a TraX tracker may take for an answer, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
+  command
+      .add_option(
+          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
+  command
+      .add_option("--jobs,-j",
+                  options.jobs,
+                  "Sequences at a time (default: 1, so that times are a tracker's own)")
+      ->check(CLI::Range(1, 1024));
+}
+
 }  // namespace
 
 void add_track(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Track>();
   auto* command = app.add_subcommand("track", "Run trackers over a data set or a video");
-  experiment::RunOptions& options = arguments->options;
-  command
-      ->add_option("DIR|VIDEO",
-                   arguments->source,
-                   "A data set, made or imported; or a video or folder of images, with --init")
-      ->required();
-  std::string names;
-  for (const std::string& name : tracking::tracker_names()) names += name + ", ";
-  command
-      ->add_option("--tracker,-t",
-                   arguments->trackers,
-                   "One or more of " + names +
-                       "trax:COMMAND for a program that speaks TraX (NAME=trax:COMMAND names its "
-                       "results), trax-socket:COMMAND for one that connects to TRAX_SOCKET")
-      ->required();
-  command
-      ->add_option("--out,-o",
-                   arguments->out,
-                   "Results, a folder for each tracker; a run that was stopped goes on in it")
-      ->required();
-  command->add_option("--protocol",
-                      arguments->protocol,
-                      "ope: begun once (default); restart: begun anew after each failure; "
-                      "multistart: begun at many frames, forward and backward");
-  command->add_option(
-      "--init", arguments->init, "x,y,width,height of what to follow in a video, pixels from 0");
-  command->add_option("--first-frame", arguments->first_frame, "Frame of --init (default: 0)")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
-  command->add_option("--only", options.only, "Sequences whose name fits (* and ?)");
-  command->add_option("--seed", options.seed, "Of the trackers' chance (default: 1)");
-  command->add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
-      ->check(CLI::Range(1, 999));
-  command
-      ->add_option("--anchor-step",
-                   options.anchor_step,
-                   "Frames between the starts of --protocol multistart (default: 50)")
-      ->check(CLI::Range(1, 1'000'000));
-  command
-      ->add_option("--timeout",
-                   options.answer_s,
-                   "Longest that a TraX tracker may take for an answer, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
-  command
-      ->add_option(
-          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
-  command
-      ->add_option("--jobs,-j",
-                   options.jobs,
-                   "Sequences at a time (default: 1, so that times are a tracker's own)")
-      ->check(CLI::Range(1, 1024));
+  add_source_options(*command, *arguments);
+  add_run_options(*command, arguments->options);
   command->callback([arguments, &context] { run_track(*arguments, context); });
 }
 

@@ -91,17 +91,35 @@ std::vector<std::string> mask_faults(const Finished& sequence,
   return faults;
 }
 
+// Differences between a frame's stored truth and masks and those that are computed again.
+std::vector<std::string> truth_faults(const Finished& sequence,
+                                      const annotation::Frame& truth,
+                                      const annotation::Frame& again,
+                                      const image::Layer& layer,
+                                      const image::Mask* own_aircraft) {
+  std::vector<std::string> faults;
+  if (sequence.scene->output.masks) faults = mask_faults(sequence, again, layer, own_aircraft);
+  if (annotation::jsonl_line(again, sequence.truth.lens) !=
+      annotation::jsonl_line(truth, sequence.truth.lens))
+    faults.push_back("has another truth when it is computed again");
+  return faults;
+}
+
+video::Reader background_of(const scene::Scene& scene) {
+  video::ReaderOptions options;
+  options.first_frame = scene.background.first_frame;
+  options.frame_count = scene.background.frame_count;
+  options.with_cuts = true;
+  return video::Reader(scene.background.video, options);
+}
+
 }  // namespace
 
 Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop) {
   check(every > 0, "every n-th frame");
   if (!sequence.scene) throw Error("was imported, not rendered", {sequence.folder.string()});
   const scene::Scene& scene = *sequence.scene;
-  video::ReaderOptions options;
-  options.first_frame = scene.background.first_frame;
-  options.frame_count = scene.background.frame_count;
-  options.with_cuts = true;
-  video::Reader background(scene.background.video, options);
+  video::Reader background = background_of(scene);
   video::Reader stored(sequence.video);
   const lens::ImageSize size{background.info().width, background.info().height};
   const World world = load_world(scene, size, {}, stop);
@@ -134,12 +152,8 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
         frame_truth(world, *before, {truth.motion_state, truth.shake}, moment, painted);
     if (!sequence.has_covered_boxes) as_older_truth(again);
     ++result.compared;
-    if (scene.output.masks)
-      for (const std::string& what : mask_faults(sequence, again, painted.layer, mask_ptr))
-        fault(truth, what);
-    if (annotation::jsonl_line(again, sequence.truth.lens) !=
-        annotation::jsonl_line(truth, sequence.truth.lens))
-      fault(truth, "has another truth when it is computed again");
+    for (const std::string& what : truth_faults(sequence, truth, again, painted.layer, mask_ptr))
+      fault(truth, what);
     if (codec == "png") continue;  // sRGB, rounded on the way
     const std::string found = picture_fault(before->picture, after->picture, truth, codec == "mkv");
     if (!found.empty()) fault(truth, found);
