@@ -8,12 +8,12 @@
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
-#include "measure/calibration/air.h"
-#include "measure/calibration/blur.h"
+#include "measure/air/air.h"
 #include "measure/calibration/calibration.h"
-#include "measure/calibration/edges.h"
-#include "measure/calibration/noise.h"
-#include "measure/calibration/readout.h"
+#include "measure/optics/edges.h"
+#include "measure/sensor/blur.h"
+#include "measure/sensor/noise.h"
+#include "measure/sensor/readout.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::calibration {

@@ -17,6 +17,10 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
+#include "measure/air/frame_horizon.h"
+#include "measure/measured/estimate.h"
+#include "measure/optics/edge_profile.h"
+#include "measure/sensor/noise_point.h"
 #include "world/scene/scene.h"
 
 // Measures the camera model and the air of a scene from a video clip alone: point spread,
@@ -44,47 +48,6 @@ struct Options {
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
-};
-
-// A value and its standard error.
-struct Estimate {
-  double value = 0;
-  double sigma = 0;
-};
-
-// Luma noise at one brightness: one of the points to which the noise curve is fitted.
-struct NoisePoint {
-  // Coded luma, 0 to 1.
-  double luma = 0;
-  // Standard deviation of the luma, code values.
-  double sigma_codes = 0;
-  // The number of flat blocks that the point stands for.
-  int blocks = 0;
-};
-
-// The mean profile across the sharpest edges of a clip, with the fitted step response.
-struct EdgeProfile {
-  // Signed distances from the middle of the edge, px. The three vectors have one size.
-  std::vector<double> place_px;
-  // Measured and fitted height at each place, 0 on the dark side and 1 on the bright side.
-  std::vector<double> height;
-  std::vector<double> fitted;
-  // The distance between 10 % and 90 % of the height of the fitted response, px.
-  double spread_px = 0;
-  // The number of edges that were fitted. The profile shows only those whose spread is nearest to
-  // the spread of the camera.
-  int edges = 0;
-};
-
-// The horizon found in one frame.
-struct Horizon {
-  std::int64_t frame = 0;
-  // Pitch of the camera, positive upwards.
-  double pitch_deg = 0;
-  // Roll of the camera, positive with the right wing down.
-  double roll_deg = 0;
-  // The distance between the colours of sky and ground, in their standard deviations.
-  double separation = 0;
 };
 
 // The result of a calibration.
@@ -121,7 +84,7 @@ struct Calibration {
   std::vector<double> yaw_from_first_deg;
   std::vector<NoisePoint> noise;
   EdgeProfile edge;
-  std::vector<Horizon> horizons;
+  std::vector<FrameHorizon> horizons;
   // A frame with its sky tinted, for the plots.
   std::optional<image::Rgb8> sky_picture;
 };

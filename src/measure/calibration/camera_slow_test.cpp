@@ -7,7 +7,7 @@
 
 #include "foundation/image/colour.h"
 #include "measure/calibration/flight_clip.h"
-#include "measure/calibration/step_response.h"
+#include "measure/optics/step_response.h"
 #include "picture/composite/sensor.h"
 
 // Camera effects that are applied to a virtual flight are measured from its clip.

@@ -106,7 +106,7 @@ image::Rgb8 plot(const Calibration& c) {
   if (c.edge.edges == 0) nothing(canvas, edge);
 
   double low = -1, high = 1;
-  for (const Horizon& h : c.horizons) {
+  for (const FrameHorizon& h : c.horizons) {
     low = std::min({low, h.pitch_deg, h.roll_deg});
     high = std::max({high, h.pitch_deg, h.roll_deg});
   }
@@ -116,7 +116,7 @@ image::Rgb8 plot(const Calibration& c) {
                             "horizon: pitch (blue), roll (orange), degrees",
                             "frame",
                             {0, std::max(1.0, double(c.frames)), low, high});
-  for (const Horizon& h : c.horizons) {
+  for (const FrameHorizon& h : c.horizons) {
     cv::circle(canvas, horizon.at(double(h.frame), h.pitch_deg), 3, kBlue, cv::FILLED, cv::LINE_AA);
     cv::circle(
         canvas, horizon.at(double(h.frame), h.roll_deg), 3, kOrange, cv::FILLED, cv::LINE_AA);

@@ -11,7 +11,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
 #include "measure/calibration/flight_clip.h"
-#include "measure/calibration/own_aircraft.h"
+#include "measure/own_aircraft/own_aircraft.h"
 #include "picture/video/still.h"
 #include "world/synthetic/sky.h"
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "camera/horizon/horizon.h"
+#include "camera/lens/lens.h"
+#include "foundation/image/layer.h"
+#include "foundation/image/picture.h"
+#include "foundation/image/tone_curve.h"
+#include "measure/air/extinction.h"
+#include "measure/air/ground_track.h"
+#include "measure/air/rays.h"
+#include "measure/air/same_ground.h"
+#include "measure/measured/estimate.h"
+
+namespace airtruth::calibration {
+
+// The height from which the range of a ground point follows: a known lens gives the direction of a
+// pixel, and the altitude above level ground gives the range along that direction.
+struct GroundRange {
+  // Height of the camera above the ground, metres.
+  std::optional<double> altitude_m;
+  // If `altitude_m` is empty: the input that is missing, for messages.
+  std::string why_unknown;
+};
+
+// Measures airlight, extinction and the direction of the sun from the light above and below the
+// horizon. Light is linear, per channel (red, green, blue). Views are added one by one; the
+// measurements are made from all of them together. A measurement that is not possible is an empty
+// optional with the reason beside it, never an error.
+class AirMeter {
+ public:
+  AirMeter(const lens::Lens& lens,
+           const image::Mask* own_aircraft,
+           const GroundRange& ground,
+           const image::ToneCurve& tone);
+  // Adds one view. The world frame of `cam_from_world` is north-east-down; azimuths are relative to
+  // the heading that the caller puts into it. The meter keeps a pointer to `picture`, which must
+  // outlive it.
+  void add(const image::Picture& picture, const Quaternion& cam_from_world);
+
+  // Height in metres that is assumed for the visibility when the altitude is unknown. Nearly all
+  // aerial footage is filmed from lower. From a lower camera the same appearance of the horizon
+  // means thicker air, so the assumption errs towards clear air.
+  static constexpr double kAssumedHeightM = 1000;
+  struct Air {
+    // Airlight at the horizon: that of the sky, or the one fitted together with the extinction.
+    std::optional<ColourEstimate> airlight;
+    // Extinction per km. It comes from ground that is seen again at a shorter range
+    // (same_ground.h); if that fails, from the fading of the darkest ground with range
+    // (extinction.h). Empty without an altitude and where neither method finds an answer.
+    std::optional<ColourEstimate> extinction_per_km;
+    // The reasons why `airlight` and `extinction_per_km` are empty.
+    std::string why, why_no_extinction;
+    // The least visibility in km that the appearance of the horizon supports (extinction.h). It is
+    // given only where a horizon is found and the extinction is not measured. Without an altitude
+    // the camera is assumed to fly at kAssumedHeightM.
+    std::optional<double> visibility_km;
+  };
+  Air air(const std::stop_token& stop = {}) const;
+  // Azimuth and elevation of the sun, degrees: the direction towards which the clear sky is
+  // brightest. Clouds are brighter than the clear sky behind them, so the fit follows the darker
+  // part of the sky (asymmetric least squares, Newey and Powell 1987).
+  struct Sun {
+    Estimate azimuth_deg, elevation_deg;
+  };
+  // Empty, with the reason in `why`, where too little sky is seen or the direction is uncertain.
+  std::optional<Sun> sun(std::string& why) const;
+
+ private:
+  std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
+  // The samples above the horizon, rotated by `level_from_world`.
+  std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;
+  struct Glimpse {
+    Vector3 direction;  // in the world frame of the views
+    image::Rgb linear;
+  };
+  lens::Lens lens_;
+  const image::Mask* own_aircraft_;
+  GroundRange ground_;
+  image::ToneCurve tone_;
+  std::vector<PixelRay> sky_rays_;
+  std::vector<GroundView> views_;
+  std::vector<Glimpse> glimpses_;
+};
+
+}  // namespace airtruth::calibration

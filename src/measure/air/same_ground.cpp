@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/air/same_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace airtruth::calibration {
+namespace {
+
+constexpr std::size_t kFewestSeen = 300;
+
+// Error of a square's light relative to the model: kUneven is a share of the square's own light,
+// and kLeastError is the lower bound in linear light. Views of one square share its error, and
+// squares share it in part, so the number of independent measurements is smaller than their count.
+constexpr double kUneven = 0.05, kLeastError = 0.004;
+constexpr double kApart = 4, kShare = 0.3;
+// Error of the light of far ground: as a share of the light of the mean ground, and its lower bound
+// in linear light. kMeanTrust is the relative error of that mean.
+constexpr double kFarUneven = 0.25, kLeastFarError = 0.006, kMeanTrust = 0.05;
+// Standard deviation of the prior that the airlight equals the light of the sky at the horizon: for
+// sectors in which the sky was seen, and for the others.
+constexpr double kSkyTrust = 0.03, kOtherSkyTrust = 0.15;
+// Range in heights at which the loss of contrast among squares is stated, and the prior error of
+// that loss. Large pixels and errors of the path mix the light of neighbouring squares.
+constexpr double kMixedAt = 15, kMixedTrust = 0.03;
+constexpr double kUsualSlope = 0.5, kSlopeSpread = 0.5, kMostSlope = 2, kSlopeStep = 0.1;
+constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
+// Relative error that is added to the extinction: its scatter over virtual flights (same_ground.h).
+constexpr double kModelError = 0.1;
+// Largest relative error of an extinction that is returned.
+constexpr double kLeastKnown = 0.3;
+
+// Number and range of the extinctions that are tried, per km, in equal ratios.
+constexpr int kTried = 240;
+constexpr double kWeakest = 0.01, kStrongest = 2;
+double tried(double i) { return kWeakest * std::pow(kStrongest / kWeakest, i / (kTried - 1)); }
+double place_of(double per_km) {
+  return std::log(per_km / kWeakest) / std::log(kStrongest / kWeakest) * (kTried - 1);
+}
+
+// The unknowns of one channel: the airlight of each sector, the mean light of the ground, and the
+// relative change of contrast among squares at the range kMixedAt, which grows with the range
+// squared.
+constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+// One channel of a square in a view, or of a band of far ground.
+struct Row {
+  int square = 0, sector = 0;
+  double range = 0, light = 0;
+  // `contrast` is used for squares alone: their own light minus the mean.
+  double weight = 1, contrast = 0;
+};
+
+// Weighted least squares for one extinction. The squares' own light is eliminated, since each
+// occurs only in the rows of its own square.
+struct System {
+  struct Square {
+    double tt = 0, ty = 0;
+    Unknowns ta = Unknowns::Zero();
+  };
+  std::vector<Square> squares;
+  Normal aa = Normal::Zero();
+  Unknowns ay = Unknowns::Zero();
+  double yy = 0;
+
+  Unknowns solution() const { return aa.ldlt().solve(ay); }
+  double cost() const { return yy - ay.dot(solution()); }
+  Unknowns sigma() const { return aa.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt(); }
+  std::vector<double> own_light() const {
+    const Unknowns x = solution();
+    std::vector<double> own;
+    for (const Square& q : squares) own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(x)) / q.tt : 0);
+    return own;
+  }
+};
+
+struct Channel {
+  std::vector<Row> squares, far;
+  std::array<double, kSectors> sky{}, sky_trust{};
+  // Starting value of the mean light of the ground.
+  double mean_light = 0.2;
+  // The cost of each extinction that is tried.
+  std::vector<double> cost;
+
+  System system(double per_height) const;
+  void weigh(double per_height);
+  // Computes the cost of every extinction, with the weights that belong to the best one.
+  void try_all(double altitude_m);
+};
+
+System Channel::system(double per_height) const {
+  System result;
+  std::vector<System::Square>& all = result.squares;
+  Normal& aa = result.aa;
+  Unknowns& ay = result.ay;
+  double& yy = result.yy;
+  all.resize(static_cast<std::size_t>(squares.back().square) + 1);
+  const auto expect = [&](int unknown, double value, double trust) {
+    const double weight = 1 / (trust * value * trust * value);
+    aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
+  };
+  aa(kMixed, kMixed) = 1 / (kMixedTrust * kMixedTrust);
+  for (std::size_t s = 0; s < kSectors; ++s) expect(static_cast<int>(s), sky[s], sky_trust[s]);
+  expect(kMean, mean_light, kMeanTrust);
+  for (const Row& r : squares) {
+    const double t = std::exp(-per_height * r.range);
+    System::Square& q = all[static_cast<std::size_t>(r.square)];
+    const double air = 1 - t;
+    const double mixed = t * r.contrast * r.range * r.range / (kMixedAt * kMixedAt);
+    q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
+    q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
+    aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
+    aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
+    ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
+    yy += r.weight * r.light * r.light;
+  }
+  for (const System::Square& q : all) {
+    if (q.tt == 0) continue;
+    aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
+  }
+  for (const Row& r : far) {
+    const double t = std::exp(-per_height * r.range);
+    const double error = std::hypot(kLeastFarError, kFarUneven * mean_light * t);
+    const double w = 1 / (error * error);
+    Unknowns row = Unknowns::Zero();
+    row[r.sector] = 1 - t, row[kMean] = t;
+    aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
+  }
+  return result;
+}
+
+void Channel::weigh(double per_height) {
+  const std::vector<double> own_light = system(per_height).own_light();
+  std::vector<int> views(own_light.size(), 0);
+  for (const Row& r : squares) ++views[static_cast<std::size_t>(r.square)];
+  double sum = 0, total = 0;
+  for (Row& r : squares) {
+    const auto square = static_cast<std::size_t>(r.square);
+    const double own = std::clamp(own_light[square], 0.01, 1.0);
+    const double error = std::hypot(kLeastError, kUneven * own);
+    const double share = std::min(1.0, kApart / views[square]);
+    r.weight = kShare * share / (error * error);
+    r.contrast = own;
+    sum += share * own, total += share;
+  }
+  mean_light = sum / total;
+  for (Row& r : squares) r.contrast -= mean_light;
+}
+
+void Channel::try_all(double altitude_m) {
+  cost.resize(kTried);
+  double best = 0.1;
+  for (int round = 0; round < 3; ++round) {
+    weigh(best * altitude_m * 1e-3);
+    for (int i = 0; i < kTried; ++i)
+      cost[static_cast<std::size_t>(i)] = system(tried(i) * altitude_m * 1e-3).cost();
+    best = tried(double(std::min_element(cost.begin(), cost.end()) - cost.begin()));
+  }
+}
+
+// One hypothesis of the extinctions of all channels, with its cost.
+struct Guess {
+  std::array<double, 3> per_km{};
+  double cost = 0;
+};
+
+std::vector<Guess> guesses(const std::array<Channel, 3>& channels) {
+  std::vector<Guess> result;
+  for (int i = 0; i < kTried; ++i)
+    for (double slope = 0; slope <= kMostSlope; slope += kSlopeStep) {
+      Guess guess;
+      guess.cost = (slope - kUsualSlope) * (slope - kUsualSlope) / (kSlopeSpread * kSlopeSpread);
+      bool inside = true;
+      for (std::size_t c = 0; c < 3 && inside; ++c) {
+        guess.per_km[c] = tried(i) * std::pow(550 / kWavelengthNm[c], slope);
+        const double place = place_of(guess.per_km[c]);
+        inside = place >= 0 && place < kTried - 1;
+        if (!inside) continue;
+        const auto k = static_cast<std::size_t>(place);
+        const auto& cost = channels[c].cost;
+        guess.cost += cost[k] + (place - double(k)) * (cost[k + 1] - cost[k]);
+      }
+      if (inside) result.push_back(guess);
+    }
+  return result;
+}
+
+// Mean and spread of the hypotheses, each weighted by exp(-cost / 2).
+ColourEstimate mean_of(const std::vector<Guess>& guesses) {
+  const double least =
+      std::min_element(guesses.begin(), guesses.end(), [](const Guess& a, const Guess& b) {
+        return a.cost < b.cost;
+      })->cost;
+  double total = 0;
+  std::array<double, 3> sum{}, squares{};
+  for (const Guess& guess : guesses) {
+    const double p = std::exp(0.5 * (least - guess.cost));
+    total += p;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += p * guess.per_km[c];
+      squares[c] += p * guess.per_km[c] * guess.per_km[c];
+    }
+  }
+  ColourEstimate result;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double mean = sum[c] / total;
+    result[c] = {mean, std::sqrt(std::max(0.0, squares[c] / total - mean * mean))};
+  }
+  return result;
+}
+
+// Mean over the sectors that the views cover.
+Estimate airlight_ahead(const Channel& channel, const System& system) {
+  const Unknowns airlight = system.solution(), sigma = system.sigma();
+  std::array<bool, kSectors> seen{};
+  for (const Row& r : channel.squares) seen[static_cast<std::size_t>(r.sector)] = true;
+  Estimate mean;
+  int count = 0;
+  for (int sector = 0; sector < kSectors; ++sector) {
+    if (!seen[static_cast<std::size_t>(sector)]) continue;
+    mean.value += airlight[sector], mean.sigma += sigma[sector];
+    ++count;
+  }
+  mean.value /= count, mean.sigma /= count;
+  return {mean.value, std::hypot(mean.sigma, kModelError * mean.value)};
+}
+
+}  // namespace
+
+std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
+                                               const SkyCurves& sky,
+                                               double altitude_m) {
+  const auto mean_sky = airlight_of(sky, 0);
+  if (!mean_sky || seen.squares.size() < kFewestSeen) return std::nullopt;
+  std::array<Channel, 3> channels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    Channel& channel = channels[c];
+    for (const SquareSeen& s : seen.squares)
+      channel.squares.push_back({s.square, s.sector, s.range, s.light[c]});
+    for (const FarGround& f : seen.far) channel.far.push_back({0, f.sector, f.range, f.light[c]});
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      channel.sky[s] = sky[s] ? sky[s]->at(c, 0) : (*mean_sky)[c].value;
+      channel.sky_trust[s] = sky[s] ? kSkyTrust : kOtherSkyTrust;
+    }
+    channel.try_all(altitude_m);
+  }
+  SeenAgain result;
+  result.extinction_per_km = mean_of(guesses(channels));
+  for (std::size_t c = 0; c < 3; ++c) {
+    Estimate& extinction = result.extinction_per_km[c];
+    result.airlight[c] =
+        airlight_ahead(channels[c], channels[c].system(extinction.value * altitude_m * 1e-3));
+    extinction.sigma = std::hypot(extinction.sigma, kModelError * extinction.value);
+    if (extinction.sigma > kLeastKnown * extinction.value) return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace airtruth::calibration
