@@ -134,7 +134,7 @@ class EarlyErrors(unittest.TestCase):
             (("inspect", "made/clip", "--frame", "0", "-o", "i.txt"), "expected .png or .jpg"),
             (("dataset", "report", "made/clip", "-o", "no/r.html"), "no folder no"),
             (("track", "short.mkv", "--init", "1,1,9,9", "-t", "am3", "-o", "there.txt"), "there.txt is no folder"),
-            (("evaluate", "made/clip", "nowhere", "-o", "e", "--against", "there.txt"), "no evaluation.json"),
+            (("evaluate", "made/clip", "nowhere", "-o", "e", "--against", "there.txt"), "is not JSON"),
         ]
         before = sorted(os.listdir(ROOT))
         for words, message in faults:

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "foundation/base/error.h"
+#include "foundation/base/line_of.h"
 
 namespace airtruth::aircraft {
 namespace {
@@ -172,13 +173,9 @@ Eigen::Affine3d offsets_of(const pugi::xml_node& node) {
 
 pugi::xml_node load(pugi::xml_document& document, std::string_view text, const fs::path& name) {
   const auto parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) {
-    const auto at =
-        std::clamp<std::ptrdiff_t>(parsed.offset, 0, static_cast<std::ptrdiff_t>(text.size()));
-    const auto line = 1 + std::count(text.begin(), text.begin() + at, '\n');
+  if (!parsed)
     throw Error(std::string("is not XML: ") + parsed.description(),
-                {name.string(), static_cast<int>(line)});
-  }
+                {name.string(), line_of(text, parsed.offset)});
   const pugi::xml_node root = document.child("PropertyList");
   if (!root) throw Error("has no <PropertyList>; expected a model of FlightGear", {name.string()});
   return root;

@@ -5,12 +5,12 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "benchmark/experiment/trajectories.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/json/json_object.h"
 
 namespace airtruth::experiment {
 namespace {
@@ -337,19 +337,15 @@ Agreement agreement(const Assessment& assessment, const fs::path& other) {
   Agreement result;
   std::vector<double> mine;
   std::vector<double> theirs;
-  try {
-    const nlohmann::json json = nlohmann::json::parse(read_file(other));
-    const nlohmann::json& trackers = json.at("trackers");
-    for (const ScoredTracker& tracker : assessment.trackers)
-      for (const auto& that : trackers)
-        if (tracker.overall && that.at("name") == tracker.name && that.contains("overall")) {
-          result.trackers.push_back(tracker.name);
-          mine.push_back(tracker.overall->auc);
-          theirs.push_back(that.at("overall").at("auc").get<double>());
-        }
-  } catch (const nlohmann::json::exception&) {
-    throw Error("is no evaluation.json", {other.string()});
-  }
+  const JsonDocument record(other);
+  const std::vector<JsonObject> trackers = record.objects("trackers");
+  for (const ScoredTracker& tracker : assessment.trackers)
+    for (const JsonObject& that : trackers)
+      if (tracker.overall && that.text("name") == tracker.name && that.has("overall")) {
+        result.trackers.push_back(tracker.name);
+        mine.push_back(tracker.overall->auc);
+        theirs.push_back(that.object("overall").number("auc"));
+      }
   result.tau = evaluation::kendall_tau(mine, theirs);
   return result;
 }

@@ -15,6 +15,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
+#include "foundation/json/json_object.h"
 
 namespace airtruth::judge {
 namespace {
@@ -109,20 +110,15 @@ struct Measured {
 void add_measures(const fs::path& folder, Measured& measured) {
   const fs::path file = folder / "comparison.json";
   if (!fs::is_regular_file(file)) return;  // the patches alone are enough for the areas
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
-  const auto measures = json.is_object() ? json.find("measures") : json.end();
-  if (json.is_discarded() || measures == json.end() || !measures->is_array())
-    throw Error("is no comparison: it has no measures", {file.string()});
-  for (const auto& one : *measures) {
-    if (!one.is_object() || !one.contains("name") || !one["name"].is_string() ||
-        !one.contains("real") || !one.contains("inserted"))
-      throw Error("has a measure without name, real and inserted", {file.string()});
-    const std::string name = one["name"];
+  const JsonDocument comparison(file);
+  for (const JsonObject& measure : comparison.objects("measures")) {
+    const std::string name = measure.text("name");
     auto& values = measured.values[name];
     if (std::find(measured.names.begin(), measured.names.end(), name) == measured.names.end())
       measured.names.push_back(name);
-    if (one["real"].is_number() && one["inserted"].is_number())
-      values.push_back({one["real"].get<double>(), one["inserted"].get<double>()});
+    const auto real = measure.maybe_number("real");  // null where it could not be measured
+    const auto inserted = measure.maybe_number("inserted");
+    if (real && inserted) values.push_back({*real, *inserted});
   }
 }
 

@@ -111,13 +111,13 @@ TEST(Calibration, ARefusedShapeNamesTheCameraWhatFitsAndHowToCrop) {
 
 TEST(Gyroflow, NamesTheFieldItCannotHonour) {
   EXPECT_THAT(error_of(profile("\"input_horizontal_stretch\": 1.33,\n"), "a.json"),
-              testing::StartsWith("a.json:2: input_horizontal_stretch is not 1"));
+              testing::StartsWith("a.json:2: input_horizontal_stretch is 1.33; expected 1"));
   EXPECT_THAT(error_of(profile("\"digital_lens\": \"gopro_superview\",\n"), "a.json"),
               testing::HasSubstr("digital_lens"));
   EXPECT_THAT(error_of(profile("\"distortion_model\": \"insta360\",\n"), "a.json"),
               testing::HasSubstr("distortion_model"));
   EXPECT_THAT(error_of(profile("\"interpolations\": {\"24\": {}},\n"), "a.json"),
-              testing::HasSubstr("interpolations is set"));
+              testing::HasSubstr("interpolations is an object; expected none"));
   EXPECT_THAT(error_of(profile("\"use_opencv_standard\": true,\n"), "a.json"),
               testing::HasSubstr("use_opencv_standard"));
   EXPECT_THAT(error_of("{\"a\": 1e999}", "a.json"), testing::HasSubstr("too large"));
@@ -173,6 +173,35 @@ TEST(OpenCv, ReadsAMatrixOfRowsOverSeveralLines) {
       "a.yml",
       kProfileSize);
   EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
+}
+
+// As PyYAML writes ROS's camera_info by default: lists by dashes, words in quotes.
+TEST(OpenCv, ReadsListsByDashesAndQuotedWords) {
+  const std::string text =
+      "image_width: 1280\nimage_height: 960  # pixels\ndistortion_model: \"plumb_bob\"\n"
+      "camera_matrix:\n  rows: 3\n  cols: 3\n  data:\n  - 900\n  - 0\n  - 639.5\n  - 0\n  - 905\n"
+      "  - 479.5\n  - 0\n  - 0\n  - 1\ndistortion_coefficients:\n  data: [-0.28, 0.09, 0, 0, 0]\n";
+  const Lens lens = parse_calibration(text, "a.yaml", kProfileSize);
+  EXPECT_EQ(std::get<BrownConrady>(lens.model()).focal_px, Pixel(900, 905));
+}
+
+// A stranger's file can fail to load and nothing else: depth, aliases of aliases, size.
+TEST(OpenCv, HostileYamlFailsToLoad) {
+  const auto repeated = [](const std::string& part, std::size_t times) {
+    std::string text;
+    for (std::size_t i = 0; i < times; ++i) text += part;
+    return text;
+  };
+  EXPECT_THAT(error_of("K: " + repeated("[", 100'000), "a.yml"),
+              testing::StartsWith("a.yml:1: is not YAML"));
+  EXPECT_THAT(error_of("a: 1\nK: [1,\n b: {\n", "a.yml"), testing::StartsWith("a.yml:4: is not"));
+  EXPECT_THAT(
+      error_of("a: &a [" + repeated("1,", 10'000) + "1]\nK: [" + repeated("*a,", 10'000) + "*a]\n",
+               "a.yml"),
+      testing::StartsWith("a.yml:2: K holds too many numbers"));
+  EXPECT_THAT(error_of("a: &a [*a, *a]\nK: *a\n", "a.yml"), testing::HasSubstr("a.yml"));
+  EXPECT_THAT(error_of(repeated("# note\n", 200'000), "a.yml"),
+              testing::HasSubstr("larger than 1 MiB"));
 }
 
 TEST(OpenCv, RefusesSkewPrismAndGarbage) {

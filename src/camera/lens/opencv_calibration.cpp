@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenCV's FileStorage, as its calibration samples, kalibr-like tools and ROS write it: XML through
-// pugixml, and the small part of YAML that FileStorage and camera_info files use (scalars, flow
-// lists, nested maps by indentation).
+// pugixml, YAML through yaml-cpp, which refuses nesting beyond 500 levels and keeps an alias as a
+// reference.
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -11,9 +11,11 @@
 #include <string>
 
 #include <pugixml.hpp>
+#include <yaml-cpp/yaml.h>
 
 #include "camera/lens/calibration.h"
 #include "foundation/base/error.h"
+#include "foundation/base/line_of.h"
 
 namespace airtruth::lens {
 namespace {
@@ -22,23 +24,23 @@ struct Value {
   std::string text;
   int line = 0;
 };
-using Values = std::map<std::string, Value>;  // "camera_matrix.data" -> "[ 1, 0, ... ]"
+// A calibration of 14 coefficients has about 1 kB. yaml-cpp takes about 3 s for the worst text of 1
+// MB.
+constexpr std::size_t kLargestYaml_bytes = std::size_t{1} << 20;
+// A matrix and a list of coefficients hold at most 64 numbers.
+constexpr std::size_t kLongestValue_bytes = 4096;
 
-int line_at(std::string_view text, std::ptrdiff_t offset) {
-  const auto end = text.begin() +
-                   std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text.size()));
-  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
-}
+using Values = std::map<std::string, Value>;  // "camera_matrix.data" -> "[ 1, 0, ... ]"
 
 Values values_of_xml(std::string_view text, const std::string& file) {
   pugi::xml_document document;
   const auto parsed = document.load_buffer(text.data(), text.size());
   if (!parsed)
     throw Error(std::string("is not XML: ") + parsed.description(),
-                {file, line_at(text, parsed.offset)});
+                {file, line_of(text, parsed.offset)});
   Values values;
   for (const pugi::xml_node node : document.child("opencv_storage")) {
-    const int line = line_at(text, node.offset_debug());
+    const int line = line_of(text, node.offset_debug());
     if (node.child("data")) {
       values[std::string(node.name()) + ".data"] = {node.child("data").text().get(), line};
     } else {
@@ -57,34 +59,42 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-Values values_of_yaml(std::string_view text) {
+// Appends the scalars of a value, a list, or a list of lists to `text`. An alias can stand for a
+// list that stands for many others: what is appended is bounded, and so is the depth.
+void append(const YAML::Node& node, int depth, std::string& text) {
+  if (text.size() > kLongestValue_bytes) return;
+  if (node.IsScalar()) text += (text.empty() ? "" : " ") + node.Scalar();
+  if (!node.IsSequence() || depth == 0) return;
+  for (const YAML::Node& element : node) append(element, depth - 1, text);
+}
+
+Value value_of(const YAML::Node& node, int line) {
+  Value value{"", line};
+  append(node, 2, value.text);
+  return value;
+}
+
+Values values_of_yaml(std::string_view text, const std::string& file) {
+  if (text.size() > kLargestYaml_bytes)
+    throw Error("is larger than 1 MiB; expected an OpenCV calibration", {file});
+  YAML::Node top;
+  try {
+    top = YAML::Load(std::string(text));
+  } catch (const YAML::Exception& error) {
+    throw Error("is not YAML: " + error.msg, {file, error.mark.line + 1});
+  }
   Values values;
-  std::istringstream lines{std::string(text)};
-  std::string parent;
-  int number = 0;
-  std::string* open_list = nullptr;  // a flow list that goes on over several lines
-  const auto is_open = [](const std::string& list) {
-    return std::count(list.begin(), list.end(), '[') > std::count(list.begin(), list.end(), ']');
-  };
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (open_list != nullptr) {
-      *open_list += " " + line;
-      if (line.find(']') != std::string::npos && !is_open(*open_list)) open_list = nullptr;
-      continue;
-    }
-    const std::string content = trimmed(line.substr(0, line.find(" #")));
-    const std::size_t colon = content.find(':');
-    if (content.empty() || content[0] == '%' || content[0] == '#' || colon == std::string::npos)
-      continue;
-    const bool nested = line[0] == ' ' || line[0] == '\t';
-    const std::string key = trimmed(content.substr(0, colon));
-    std::string value = trimmed(content.substr(colon + 1));
-    if (!nested) parent = key;
-    if (value.rfind("!!", 0) == 0) value.clear();  // !!opencv-matrix
-    const std::string name = nested ? parent + "." + key : key;
-    values[name] = {value, number};
-    if (is_open(value)) open_list = &values[name].text;
+  if (!top.IsMap()) return values;
+  for (const auto& entry : top) {
+    const YAML::Node& name = entry.first;
+    const YAML::Node& node = entry.second;
+    if (!name.IsScalar()) continue;
+    const int line = name.Mark().line + 1;
+    const YAML::Node data = node.IsMap() ? node["data"] : YAML::Node(YAML::NodeType::Undefined);
+    if (data.IsDefined())
+      values[name.Scalar() + ".data"] = value_of(data, line);
+    else
+      values[name.Scalar()] = value_of(node, line);
   }
   return values;
 }
@@ -159,7 +169,7 @@ bool says_fisheye(const Values& values, const std::string& file) {
 Calibration parse_opencv_calibration(std::string_view text, const std::filesystem::path& name) {
   const std::string file = name.string();
   const Values values =
-      name.extension() == ".xml" ? values_of_xml(text, file) : values_of_yaml(text);
+      name.extension() == ".xml" ? values_of_xml(text, file) : values_of_yaml(text, file);
   Calibration c;
   std::string key;
   const Value* matrix =

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "foundation/base/count_in.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/version.h"
+#include "foundation/json/json_object.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -16,21 +16,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kLinesInAFile = 10'000;
 
-Json line_of(const Folder& folder, const Item& item) {
-  const fs::path file = folder.sequence(item.name) / "sequence.json";
-  try {
-    const Json record = Json::parse(read_file(file));
-    const Json& summary = record.at("summary");
-    return {{"index", item.index},
-            {"name", item.name},
-            {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
-            {"frames", count_in(summary, "frames", file)},
-            {"frames_with_an_intruder_visible",
-             count_in(summary, "frames_with_an_intruder_visible", file)},
-            {"outputs", record.at("outputs")}};
-  } catch (const Json::exception&) {
-    throw Error("is not a record that airtruth wrote", {file.string()});
-  }
+Json manifest_line(const Folder& folder, const Item& item) {
+  const JsonDocument record(folder.sequence(item.name) / "sequence.json");
+  const JsonObject summary = record.object("summary");
+  return {{"index", item.index},
+          {"name", item.name},
+          {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
+          {"frames", summary.count("frames")},
+          {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")},
+          {"outputs", record.value("outputs")}};
 }
 
 }  // namespace
@@ -59,7 +53,7 @@ bool write_manifest(const Catalogue& catalogue, const Folder& folder) {
   for (std::int64_t first = 0; first < expansion.size(); first += kLinesInAFile) {
     std::string text;
     for (std::int64_t i = first; i < std::min(expansion.size(), first + kLinesInAFile); ++i) {
-      const Json line = line_of(folder, expansion.at(i));
+      const Json line = manifest_line(folder, expansion.at(i));
       frames += line.at("frames").get<std::int64_t>();
       text += line.dump() + "\n";
     }

@@ -3,11 +3,10 @@
 
 #include <set>
 
-#include <nlohmann/json.hpp>
-
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/frame/masks.h"
@@ -54,12 +53,10 @@ class Check {
     ++result_.sequences;
     if (!folder_.holds(item.name)) return fault("is not there");
     try {
-      files(nlohmann::json::parse(read_file(folder_.sequence(item.name) / "sequence.json")));
+      files(JsonDocument(folder_.sequence(item.name) / "sequence.json"));
       const sequence::Finished finished = sequence::open_finished(folder_.sequence(item.name));
       truth(finished);
       if (options_.deep_every > 0) deep(finished);
-    } catch (const nlohmann::json::exception&) {
-      fault("sequence.json is not a record that airtruth wrote");
     } catch (const Error& error) {
       fault(error.what());
     }
@@ -68,17 +65,17 @@ class Check {
  private:
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
 
-  void files(const nlohmann::json& record) {
+  void files(const JsonObject& record) {
     std::set<std::string> known = {"sequence.json"};
-    for (const nlohmann::json& output : record.at("outputs")) {
-      const std::string name = output.at("name");
+    for (const JsonObject& output : record.objects("outputs")) {
+      const std::string name = output.text("name");
       known.insert(name);
       const fs::path file = folder_.sequence(name_) / name;
       if (!is_below(folder_.sequence(name_), name))
         fault("'" + name.substr(0, 80) + "' is outside of this sequence");
       else if (!fs::exists(file))
         fault(name + " is missing");
-      else if (sha256_of_file(file) != output.at("sha256"))
+      else if (sha256_of_file(file) != output.text("sha256"))
         fault(name + " is not as it was written (its SHA-256 differs)");
     }
     for (const auto& entry : fs::recursive_directory_iterator(folder_.sequence(name_)))
@@ -167,19 +164,19 @@ void check_manifest(const Folder& folder, VerifyResult& result) {
     return;
   }
   try {
-    const nlohmann::json record = nlohmann::json::parse(read_file(folder.record()));
-    if (record.at("catalogue_sha256") != sha256_of_file(folder.catalogue()))
+    const JsonDocument record(folder.record());
+    if (record.text("catalogue_sha256") != sha256_of_file(folder.catalogue()))
       result.faults.emplace_back("dataset.json was written for another catalogue");
-    for (const nlohmann::json& file : record.at("manifest")) {
-      const std::string name = file.at("name").get<std::string>();
+    for (const JsonObject& file : record.objects("manifest")) {
+      const std::string name = file.text("name");
       const fs::path path = folder.root / name;
       if (!is_below(folder.root, name))
         result.faults.push_back("'" + name.substr(0, 80) + "' of dataset.json is outside of it");
-      else if (!fs::exists(path) || sha256_of_file(path) != file.at("sha256"))
+      else if (!fs::exists(path) || sha256_of_file(path) != file.text("sha256"))
         result.faults.push_back(path.filename().string() + " is not as it was written");
     }
-  } catch (const nlohmann::json::exception&) {
-    result.faults.emplace_back("dataset.json is not a record that airtruth wrote");
+  } catch (const Error& error) {
+    result.faults.emplace_back(error.what());
   }
 }
 

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "foundation/base/count_in.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/json/json_object.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -325,16 +325,12 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;
-    try {
-      const Json record = Json::parse(read_file(place.record())).at("summary");
-      summary.sequences = count_in(record, "sequences", place.record());
-      summary.frames = count_in(record, "frames", place.record());
-      for (const auto& [part, frames] : record.at("frames_of_part").items())
-        summary.frames_of_part[part] =
-            count_in(record.at("frames_of_part"), part.c_str(), place.record());
-    } catch (const Json::exception&) {
-      throw Error("is not a record that airtruth wrote", {place.record().string()});
-    }
+    const JsonDocument file(place.record());
+    const JsonObject record = file.object("summary");
+    summary.sequences = record.count("sequences");
+    summary.frames = record.count("frames");
+    const JsonObject parts = record.object("frames_of_part");
+    for (const std::string& part : parts.keys()) summary.frames_of_part[part] = parts.count(part);
     summary.was_there = true;
     return summary;
   }

@@ -5,13 +5,11 @@
 #include <cmath>
 #include <set>
 
-#include <nlohmann/json.hpp>
-
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
-#include "foundation/base/count_in.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/frame/masks.h"
@@ -171,9 +169,7 @@ exchange::Clip LabelledSet::clip(const std::string& name, Boxes boxes, bool with
 
 bool LabelledSet::has_covered_boxes(const std::string& name) const {
   if (is_imported(name)) return true;
-  const auto record =
-      nlohmann::json::parse(read_file(folder(name) / "sequence.json"), nullptr, false);
-  return record.is_object() && record.contains("covered_alpha");
+  return JsonDocument(folder(name) / "sequence.json").has("covered_alpha");
 }
 
 void LabelledSet::expect_covered_boxes(const std::string& name) const {
@@ -204,23 +200,18 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
   ClipFacts facts;
   facts.name = name;
   const fs::path file = folder(name) / "sequence.json";
+  const JsonDocument record(file);
   std::set<std::string> categories;
-  try {
-    const nlohmann::json record = nlohmann::json::parse(read_file(file));
-    if (record.contains("scene_toml")) {
-      const scene::Scene scene =
-          scene::parse_scene(record.at("scene_toml").get<std::string>(), file);
-      facts.background = scene.background.video.string();
-      facts.frames = count_in(record.at("summary"), "frames", file);
-      for (const scene::Intruder& intruder : scene.intruders)
-        categories.insert(category_of(intruder.aircraft));
-    } else {
-      facts.background = record.value("media", name);
-      facts.frames = count_in(record, "frames", file);
-      for (const nlohmann::json& category : record.at("categories")) categories.insert(category);
-    }
-  } catch (const nlohmann::json::exception&) {
-    throw Error("is not a record that airtruth wrote", {file.string()});
+  if (record.has("scene_toml")) {
+    const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
+    facts.background = scene.background.video.string();
+    facts.frames = record.object("summary").count("frames");
+    for (const scene::Intruder& intruder : scene.intruders)
+      categories.insert(category_of(intruder.aircraft));
+  } else {
+    facts.background = record.maybe_text("media").value_or(name);
+    facts.frames = record.count("frames");
+    for (const std::string& category : record.texts("categories")) categories.insert(category);
   }
   facts.categories = {categories.begin(), categories.end()};
   return facts;

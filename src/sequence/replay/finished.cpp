@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
 #include "foundation/image/colour.h"
+#include "foundation/json/json_object.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
 #include "sequence/frame/paint.h"
@@ -109,19 +109,14 @@ Finished open_finished(const fs::path& folder) {
                 {folder.string()});
   Finished finished;
   finished.folder = folder;
-  try {
-    const auto record = nlohmann::json::parse(read_file(record_file));
-    finished.name = record.at("name").get<std::string>();
-    // A manipulated record must not name files outside its folder.
-    if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
-      throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
-                  {record_file.string()});
-    finished.has_covered_boxes = record.contains("covered_alpha");
-    finished.scene = scene::parse_scene(record.at("scene_toml").get<std::string>(), record_file);
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(std::string("is not a record of airtruth: ") + error.what(),
+  const JsonDocument record(record_file);
+  finished.name = record.text("name");
+  // A manipulated record must not name files outside its folder.
+  if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
+    throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
                 {record_file.string()});
-  }
+  finished.has_covered_boxes = record.has("covered_alpha");
+  finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
   const auto format = video::format_from_name(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
 #include "truth/annotation/evision.h"
 
 namespace airtruth::annotation {
@@ -16,22 +16,6 @@ namespace {
 
 // Largest pixel coordinate; sums of two such numbers fit an int.
 constexpr int kLargestPixel = 1 << 29;
-
-// Maps an offset in the text to its line.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : text_(text) {}
-  int line_of(std::ptrdiff_t offset) {
-    const auto end =
-        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text_)));
-    const auto newlines =
-        std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-    return static_cast<int>(newlines) + 1;
-  }
-
- private:
-  std::string_view text_;
-};
 
 // Names in corrupt files may be long and contain any character.
 std::string short_name(const pugi::xml_node& node) {
@@ -50,7 +34,7 @@ std::string_view trimmed(std::string_view text) {
 
 class Reader {
  public:
-  Reader(std::string_view text, std::string file) : lines_(text), file_(std::move(file)) {}
+  Reader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
   Evision read(const pugi::xml_node& storage) {
     Evision result;
@@ -71,7 +55,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& message) {
-    throw Error(message, {file_, lines_.line_of(node.offset_debug()), 0});
+    throw Error(message, {file_, line_of(text_, node.offset_debug()), 0});
   }
 
   int frame_number(const pugi::xml_node& node) {
@@ -135,7 +119,7 @@ class Reader {
     return frame;
   }
 
-  Lines lines_;
+  std::string_view text_;
   std::string file_;
 };
 
@@ -147,7 +131,7 @@ Evision parse_evision(std::string_view text, const std::filesystem::path& name) 
       document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!parsed)
     throw Error(std::string("is not XML: ") + parsed.description(),
-                {name.string(), Lines(text).line_of(parsed.offset), 0});
+                {name.string(), line_of(text, parsed.offset), 0});
   const pugi::xml_node storage = document.child("opencv_storage");
   if (!storage)
     throw Error("has no <opencv_storage>; expected an annotation of OpenCV's FileStorage",

@@ -1,139 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <array>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
 #include "truth/annotation/truth.h"
 #include "truth/annotation/truth_rules.h"
 
 namespace airtruth::annotation {
 namespace {
 
-using Json = nlohmann::json;
+// Largest position or size in pixels, far below the values whose sums overflow an int.
+constexpr std::int64_t kLargestTruthPixel = 1 << 29;
 
-// The JSON object of one line, and its name in error messages.
-class Object {
- public:
-  Object(const Json& json, std::string name, const Where& where)
-      : json_(&json), name_(std::move(name)), where_(where) {
-    if (!json.is_object()) fail(name_, "an object");
-  }
+int pixels(const JsonObject& object, const char* key) {
+  return static_cast<int>(object.whole(key, -kLargestTruthPixel, kLargestTruthPixel));
+}
 
-  bool has(const char* key) const { return json_->contains(key); }
-  Object object(const char* key) const { return {at(key), key, where_}; }
+template <std::size_t n>
+std::array<double, n> tuple(const JsonObject& object, const char* key) {
+  const std::vector<double> numbers = object.numbers(key, n);
+  std::array<double, n> result{};
+  std::copy(numbers.begin(), numbers.end(), result.begin());
+  return result;
+}
 
-  std::vector<Object> objects(const char* key) const {
-    const Json& list = at(key);
-    if (!list.is_array()) fail(key, "an array");
-    std::vector<Object> result;
-    for (const Json& element : list) result.emplace_back(element, key, where_);
-    return result;
-  }
+Vector3 vector(const JsonObject& object, const char* key) {
+  const auto v = tuple<3>(object, key);
+  return {v[0], v[1], v[2]};
+}
 
-  std::string text(const char* key) const {
-    if (!at(key).is_string()) fail(key, "a string");
-    return at(key).get<std::string>();
-  }
-  bool truth(const char* key) const {
-    if (!at(key).is_boolean()) fail(key, "true or false");
-    return at(key).get<bool>();
-  }
-  double number(const char* key) const { return number(at(key), key); }
-  std::int64_t whole(const char* key) const { return whole(at(key), key); }
+YawPitchRoll attitude(const JsonObject& object, const char* key) {
+  const auto v = tuple<3>(object, key);
+  return {v[0], v[1], v[2]};
+}
 
-  std::vector<double> numbers(const char* key) const {
-    if (!at(key).is_array()) fail(key, "an array of numbers");
-    std::vector<double> result;
-    for (const Json& element : at(key)) result.push_back(number(element, key));
-    return result;
-  }
+std::optional<Vector3> maybe_vector(const JsonObject& object, const char* key) {
+  return object.has(key) ? std::optional(vector(object, key)) : std::nullopt;
+}
 
-  template <std::size_t n>
-  std::array<double, n> tuple(const char* key) const {
-    return tuple<n>(at(key), key);
-  }
+std::optional<YawPitchRoll> maybe_attitude(const JsonObject& object, const char* key) {
+  return object.has(key) ? std::optional(attitude(object, key)) : std::nullopt;
+}
 
-  Homography matrix(const char* key) const {
-    const Json& rows = at(key);
-    if (!rows.is_array() || rows.size() != 3) fail(key, "3 rows of 3 numbers");
-    Homography h;
-    for (int i = 0; i < 3; ++i) {
-      const auto row = tuple<3>(rows[static_cast<std::size_t>(i)], key);
-      h.row(i) << row[0], row[1], row[2];
-    }
-    return h;
-  }
+Homography homography(const JsonObject& object, const char* key) {
+  const std::vector<double> numbers = object.matrix(key, 3, 3);
+  Homography h;
+  for (int i = 0; i < 9; ++i) h(i / 3, i % 3) = numbers[static_cast<std::size_t>(i)];
+  return h;
+}
 
-  std::optional<PixelBox> pixel_box(const char* key) const {
-    if (!has(key)) return std::nullopt;
-    if (!at(key).is_array() || at(key).size() != 4) fail(key, "4 whole numbers");
-    std::array<int, 4> v{};
-    for (std::size_t i = 0; i < 4; ++i) v[i] = small(at(key)[i], key);
-    return PixelBox{v[0], v[1], v[2], v[3]};
-  }
-  int small(const char* key) const { return small(at(key), key); }
+std::optional<PixelBox> pixel_box(const JsonObject& object, const char* key) {
+  if (!object.has(key)) return std::nullopt;
+  const auto v = object.wholes(key, 4, -kLargestTruthPixel, kLargestTruthPixel);
+  return PixelBox{static_cast<int>(v[0]),
+                  static_cast<int>(v[1]),
+                  static_cast<int>(v[2]),
+                  static_cast<int>(v[3])};
+}
 
-  std::optional<double> maybe_number(const char* key) const {
-    return has(key) ? std::optional(number(key)) : std::nullopt;
-  }
-  std::optional<Vector3> maybe_vector(const char* key) const {
-    return has(key) ? std::optional(vector(key)) : std::nullopt;
-  }
-  std::optional<YawPitchRoll> maybe_attitude(const char* key) const {
-    return has(key) ? std::optional(attitude(key)) : std::nullopt;
-  }
-  Vector3 vector(const char* key) const {
-    const auto v = tuple<3>(key);
-    return {v[0], v[1], v[2]};
-  }
-  YawPitchRoll attitude(const char* key) const {
-    const auto v = tuple<3>(key);
-    return {v[0], v[1], v[2]};
-  }
-
-  [[noreturn]] void fail(const std::string& key, std::string_view expected) const {
-    throw Error(fmt::format("{} is not what it should be; expected {}", key, expected), where_);
-  }
-
- private:
-  const Json& at(const char* key) const {
-    const auto found = json_->find(key);
-    if (found == json_->end()) throw Error(fmt::format("{} has no '{}'", name_, key), where_);
-    return *found;
-  }
-  double number(const Json& value, const char* key) const {
-    if (!value.is_number()) fail(key, "a number");
-    return value.get<double>();
-  }
-  std::int64_t whole(const Json& value, const char* key) const {
-    const bool too_large =
-        value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{INT64_MAX};
-    if (!value.is_number_integer() || too_large) fail(key, "a whole number");
-    return value.get<std::int64_t>();
-  }
-  // A size or position in pixels, far below the values where sums overflow.
-  int small(const Json& value, const char* key) const {
-    const std::int64_t number = whole(value, key);
-    if (number < -(1 << 29) || number > (1 << 29)) fail(key, "a number of pixels");
-    return static_cast<int>(number);
-  }
-  template <std::size_t n>
-  std::array<double, n> tuple(const Json& value, const char* key) const {
-    if (!value.is_array() || value.size() != n) fail(key, fmt::format("{} numbers", n));
-    std::array<double, n> result{};
-    for (std::size_t i = 0; i < n; ++i) result[i] = number(value[i], key);
-    return result;
-  }
-
-  const Json* json_;
-  std::string name_;
-  Where where_;
-};
-
-State state_from(const Object& object) {
+State state_from(const JsonObject& object) {
   const std::string word = object.text("state");
   for (const State state :
        {State::kVisible, State::kHidden, State::kOutside, State::kBehind, State::kEnded})
@@ -141,15 +68,15 @@ State state_from(const Object& object) {
   object.fail("state", "visible, hidden, outside, behind or ended");
 }
 
-Intruder intruder_from(const Object& object) {
+Intruder intruder_from(const JsonObject& object) {
   Intruder intruder;
   intruder.id = object.text("id");
   intruder.aircraft = object.text("aircraft");
   intruder.state = state_from(object);
-  intruder.position_ned_m = object.maybe_vector("position_ned_m");
-  intruder.velocity_ned_mps = object.maybe_vector("velocity_ned_mps");
-  intruder.attitude_yaw_pitch_roll_deg = object.maybe_attitude("attitude_yaw_pitch_roll_deg");
-  intruder.position_in_cam_m = object.maybe_vector("position_in_cam_m");
+  intruder.position_ned_m = maybe_vector(object, "position_ned_m");
+  intruder.velocity_ned_mps = maybe_vector(object, "velocity_ned_mps");
+  intruder.attitude_yaw_pitch_roll_deg = maybe_attitude(object, "attitude_yaw_pitch_roll_deg");
+  intruder.position_in_cam_m = maybe_vector(object, "position_in_cam_m");
   intruder.range_m = object.maybe_number("range_m");
   intruder.range_rate_mps = object.maybe_number("range_rate_mps");
   intruder.azimuth_deg = object.maybe_number("azimuth_deg");
@@ -157,15 +84,15 @@ Intruder intruder_from(const Object& object) {
   intruder.nominal_azimuth_deg = object.maybe_number("nominal_azimuth_deg");
   intruder.nominal_elevation_deg = object.maybe_number("nominal_elevation_deg");
   if (object.has("exact_box_px")) {
-    const auto box = object.tuple<4>("exact_box_px");
+    const auto box = tuple<4>(object, "exact_box_px");
     intruder.exact_box_px = Box{box[0], box[1], box[2], box[3]};
   }
-  intruder.covered_box_px = object.pixel_box("covered_box_px");
-  intruder.visible_box_px = object.pixel_box("visible_box_px");
+  intruder.covered_box_px = pixel_box(object, "covered_box_px");
+  intruder.visible_box_px = pixel_box(object, "visible_box_px");
   intruder.visible_area_px = object.whole("visible_area_px");
   intruder.alpha_sum_px = object.number("alpha_sum_px");
   if (object.has("centroid_px")) {
-    const auto at = object.tuple<2>("centroid_px");
+    const auto at = tuple<2>(object, "centroid_px");
     intruder.centroid_px = Pixel(at[0], at[1]);
   }
   intruder.hidden_by_own_aircraft = object.number("hidden_by_own_aircraft");
@@ -174,16 +101,16 @@ Intruder intruder_from(const Object& object) {
   return intruder;
 }
 
-Shake shake_from(const Object& motion) {
+Shake shake_from(const JsonObject& motion) {
   Shake shake;
-  shake.frame_from_reference = motion.matrix("frame_from_reference");
+  shake.frame_from_reference = homography(motion, "frame_from_reference");
   if (motion.has("rotation")) {
-    const auto q = motion.tuple<4>("rotation");
+    const auto q = tuple<4>(motion, "rotation");
     shake.rotation = Quaternion(q[0], q[1], q[2], q[3]);
   }
-  if (motion.has("rate_radps")) shake.rate_radps = motion.vector("rate_radps");
+  if (motion.has("rate_radps")) shake.rate_radps = vector(motion, "rate_radps");
   if (motion.has("frame_from_reference_per_s"))
-    shake.frame_from_reference_per_s = motion.matrix("frame_from_reference_per_s");
+    shake.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
   return shake;
 }
 
@@ -198,30 +125,30 @@ void place_old_bearing(const Shake& shake, Intruder& intruder) {
   intruder.elevation_deg.reset();
 }
 
-Frame frame_from(const Object& object) {
+Frame frame_from(const JsonObject& object) {
   Frame frame;
   frame.frame = object.whole("frame");
   frame.time_s = object.number("time_s");
   frame.damaged = object.truth("damaged");
-  const Object camera = object.object("camera");
-  frame.camera_position_ned_m = camera.vector("position_ned_m");
-  frame.camera_attitude_yaw_pitch_roll_deg = camera.attitude("attitude_yaw_pitch_roll_deg");
-  const Object motion = object.object("motion");
+  const JsonObject camera = object.object("camera");
+  frame.camera_position_ned_m = vector(camera, "position_ned_m");
+  frame.camera_attitude_yaw_pitch_roll_deg = attitude(camera, "attitude_yaw_pitch_roll_deg");
+  const JsonObject motion = object.object("motion");
   frame.motion_state = motion.text("state");
   frame.shake = shake_from(motion);
-  for (const Object& intruder : object.objects("intruders"))
+  for (const JsonObject& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
   for (Intruder& intruder : frame.intruders) place_old_bearing(frame.shake, intruder);
   return frame;
 }
 
-LensFacts lens_from(const Object& object) {
+LensFacts lens_from(const JsonObject& object) {
   LensFacts lens;
   lens.model = object.text("model");
-  lens.width = object.small("width");
-  lens.height = object.small("height");
-  lens.focal_px = object.tuple<2>("focal_px");
-  lens.principal_point_px = object.tuple<2>("principal_point_px");
+  lens.width = pixels(object, "width");
+  lens.height = pixels(object, "height");
+  lens.focal_px = tuple<2>(object, "focal_px");
+  lens.principal_point_px = tuple<2>(object, "principal_point_px");
   lens.distortion = object.numbers("distortion");
   return lens;
 }
@@ -232,13 +159,7 @@ struct Line {
 };
 
 Line line_from(std::string_view text, const Where& where) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception&) {
-    throw Error("is not JSON; expected an object, as `airtruth render` writes them", where);
-  }
-  const Object object(json, "the line", where);
+  const JsonDocument object(text, where);
   Line line{frame_from(object), lens_from(object.object("lens"))};
   for (const auto& found : {fault(line.frame), fault(line.lens)})
     if (found) throw Error(*found, where);

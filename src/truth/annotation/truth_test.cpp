@@ -133,28 +133,29 @@ std::string with(const std::function<void(Json&)>& spoil) {
 }
 
 TEST(Truth, FaultsHaveTheirFileAndLine) {
-  EXPECT_EQ(line_message("{"),
-            "truth.jsonl:7: is not JSON; expected an object, as `airtruth render` writes them");
-  EXPECT_EQ(line_message("[]"),
-            "truth.jsonl:7: the line is not what it should be; expected an object");
-  EXPECT_EQ(line_message("{}"), "truth.jsonl:7: the line has no 'frame'");
+  EXPECT_EQ(line_message("{"), "truth.jsonl:7: is not JSON");
+  EXPECT_EQ(line_message("[]"), "truth.jsonl:7: is a list; expected an object");
+  EXPECT_EQ(line_message("{}"), "truth.jsonl:7: has no frame");
   EXPECT_EQ(with([](Json& j) { j["frame"] = 1.5; }),
-            "truth.jsonl:7: frame is not what it should be; expected a whole number");
-  EXPECT_EQ(with([](Json& j) { j["intruders"][0]["state"] = "seen"; }),
-            "truth.jsonl:7: state is not what it should be; expected visible, hidden, outside, "
-            "behind or ended");
+            "truth.jsonl:7: frame is 1.5; expected a whole number from -9007199254740992 to "
+            "9007199254740992");
+  EXPECT_EQ(
+      with([](Json& j) { j["intruders"][0]["state"] = "seen"; }),
+      "truth.jsonl:7: intruders[0].state is \"seen\"; expected visible, hidden, outside, behind "
+      "or ended");
   EXPECT_EQ(with([](Json& j) { j["intruders"][0].erase("visible_box_px"); }),
             "truth.jsonl:7: intruder 'b737' is visible and has no visible_box_px");
   EXPECT_EQ(with([](Json& j) {
               j["intruders"][0]["exact_box_px"] = {1, 2, 3};
             }),
-            "truth.jsonl:7: exact_box_px is not what it should be; expected 4 numbers");
+            "truth.jsonl:7: intruders[0].exact_box_px is a list; expected a list of 4 numbers");
   EXPECT_EQ(with([](Json& j) {
               j["motion"]["frame_from_reference"] = {1, 2, 3};
             }),
-            "truth.jsonl:7: frame_from_reference is not what it should be; expected 3 numbers");
+            "truth.jsonl:7: motion.frame_from_reference is a list; expected 3 lists of 3 numbers");
   EXPECT_EQ(with([](Json& j) { j["intruders"][0]["visible_box_px"][2] = 4'000'000'000; }),
-            "truth.jsonl:7: visible_box_px is not what it should be; expected a number of pixels");
+            "truth.jsonl:7: intruders[0].visible_box_px[2] is 4000000000; expected a whole number "
+            "from -536870912 to 536870912");
 }
 
 // The single bearing of an older file is the nominal camera's where motion is a homography, the

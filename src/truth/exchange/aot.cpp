@@ -9,8 +9,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
-#include "truth/exchange/json_file.h"
 #include "truth/exchange/parts.h"
+#include "truth/exchange/python_json.h"
 #include "truth/exchange/text.h"
 
 // Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit": docs/DATASET.md,
@@ -201,8 +201,7 @@ class FlightReader {
     const auto time = entity.maybe_integer("time");
     if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
     if (!entity.has("id") || !entity.has("bb")) return;
-    const std::vector<double> bb = entity.numbers("bb");
-    if (bb.size() != 4) entity.fail("bb has not 4 numbers");
+    const std::vector<double> bb = entity.numbers("bb", 4);
     Label label;
     label.box_px = {bb[0], bb[1], bb[2], bb[3]};
     label.track = track_of(entity.text("id"));
@@ -269,10 +268,10 @@ Clips read_aot(const fs::path& source, const ReadOptions&, const Warn& warn) {
   LeftOut left_out(warn);
   Clips clips;
   for (const fs::path& file : files) {
-    const JsonFile json(file);
+    const JsonDocument json = python_json(file);
     const JsonObject samples = json.object("samples");
     for (const std::string& id : samples.keys())
-      clips.push_back(FlightReader(file, id, samples.object(id.c_str()), left_out).read());
+      clips.push_back(FlightReader(file, id, samples.object(id), left_out).read());
   }
   return clips;
 }

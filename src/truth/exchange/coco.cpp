@@ -10,8 +10,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
-#include "truth/exchange/json_file.h"
 #include "truth/exchange/parts.h"
+#include "truth/exchange/python_json.h"
 #include "truth/exchange/text.h"
 
 // COCO (Lin et al. 2014; cocodataset.org, "Data format"): one JSON file with images, annotations
@@ -199,7 +199,7 @@ class CocoWriter : public IndexedWriter {
 class CocoReader {
  public:
   CocoReader(const fs::path& file, const Warn& warn)
-      : file_(file), json_(file), left_out_(warn), warn_(warn) {}
+      : file_(file), json_(python_json(file)), left_out_(warn), warn_(warn) {}
 
   Clips read() {
     categories();
@@ -317,8 +317,7 @@ class CocoReader {
   // The box is bbox, or the bounds of the polygons.
   static std::optional<Box> box_of(const JsonObject& annotation) {
     if (annotation.has("bbox")) {
-      const auto b = annotation.numbers("bbox");
-      if (b.size() != 4) annotation.fail("bbox has not 4 numbers");
+      const auto b = annotation.numbers("bbox", 4);
       return Box{b[0], b[1], b[2], b[3]};
     }
     BoxBounds bounds;
@@ -369,7 +368,7 @@ class CocoReader {
   }
 
   fs::path file_;
-  JsonFile json_;
+  JsonDocument json_;
   LeftOut left_out_;
   const Warn& warn_;
   std::map<std::int64_t, std::string> categories_;

@@ -541,7 +541,7 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kCoco, folder.file("a.json", "{\n\"images\": [}")),
        "a.json:2: is not JSON");
   ends(error_of(Format::kCoco, folder.file("b.json", R"({"categories": [{"id": 1}]})")),
-       "b.json: categories[0]: has no name");
+       "b.json: categories[0] has no name");
   folder.file("m/gt/gt.txt", "1,1,5,5,9,9\n0,1,5,5,9,9\n");
   ends(error_of(Format::kMot, folder.path() / "m"),
        "gt.txt:2: the frame is no whole number from 1 on");
@@ -552,7 +552,7 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kVot, folder.path() / "mask"),
        "groundtruth.txt:1: is no mask: its run lengths do not fit its window");
   ends(error_of(Format::kAot, folder.file("n.json", "{\"samples\": NaN}")),
-       "n.json: samples: is no object");
+       "n.json: samples is null; expected an object");
   ends(error_of(Format::kVoc, folder.file("v/p_1.xml", "<annotation>\n<size>")),
        "p_1.xml: holds no Annotations/*.xml");
   ends(error_of(Format::kCsv, folder.file("t.csv", "frame,x,y,w,h\n0,1,2,3\n")),
@@ -591,11 +591,12 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
             "frame is 0.5; expected a whole number from 0 to 9007199254740992 at 2");
   EXPECT_EQ(error(head + R"(
 {"frame":0,"labels":[{"track":1e30,"category":"a","box_px":[1,2,3,4]}]})"),
-            "track is 1e+30; expected a whole number from -9007199254740992 to 9007199254740992 at "
+            "labels[0].track is 1e+30; expected a whole number from -9007199254740992 to "
+            "9007199254740992 at "
             "2");
   EXPECT_EQ(error(head + R"(
 {"frame":0,"labels":[{"track":1,"category":"a","box_px":[1,2,3,1e999]}]})"),
-            "is no line of labels at 2");
+            "holds a number that is too large for 64 bits at 2");
   EXPECT_EQ(of_head(R"("width":640,"height":480,"frame_rate_hz":29.97)"), "no error");
 }
 

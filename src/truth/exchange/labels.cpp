@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truth/exchange/labels.h"
 
-#include <array>
-#include <cmath>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -23,44 +23,17 @@ void put(Json& json, const char* key, const std::optional<T>& value) {
   if (value) json[key] = *value;
 }
 
-// Bounds of whole numbers: a double holds them exactly, as it does all numbers of the imported
-// formats.
-constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
 constexpr std::int64_t kLongestSide_px = 1'000'000;
 constexpr double kHighestRate_hz = 1e6;
 
-template <typename T>
-std::optional<T> get(const Json& json, const char* key) {
-  return json.contains(key) ? std::optional(json.at(key).get<T>()) : std::nullopt;
+int side(const JsonObject& json, const char* key) {
+  return json.has(key) ? static_cast<int>(json.whole(key, 1, kLongestSide_px)) : 0;
 }
 
-[[noreturn]] void fail(const Json& value, const char* key, const std::string& expected) {
-  throw Error(fmt::format("{} is {}; expected {}", key, value.dump().substr(0, 40), expected));
-}
-
-// The number is parsed from its text, because get<int>() would truncate it to the type's width.
-std::int64_t whole(const Json& json, const char* key, std::int64_t least, std::int64_t most) {
-  const Json& value = json.at(key);
-  const double number = value.is_number() ? value.get<double>() : NAN;
-  if (!(number >= double(least) && number <= double(most)) || number != std::floor(number))
-    fail(value, key, fmt::format("a whole number from {} to {}", least, most));
-  return static_cast<std::int64_t>(number);
-}
-
-std::optional<double> maybe_number(const Json& json, const char* key) {
-  if (!json.contains(key)) return std::nullopt;
-  if (!json.at(key).is_number()) fail(json.at(key), key, "a number");
-  return json.at(key).get<double>();
-}
-
-int side(const Json& json, const char* key) {
-  return json.contains(key) ? static_cast<int>(whole(json, key, 1, kLongestSide_px)) : 0;
-}
-
-std::optional<double> rate(const Json& json, const char* key) {
-  const auto found = maybe_number(json, key);
+std::optional<double> rate(const JsonObject& json, const char* key) {
+  const auto found = json.maybe_number(key);
   if (found && !(*found > 0 && *found <= kHighestRate_hz))
-    fail(json.at(key), key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
+    json.fail(key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
   return found;
 }
 
@@ -77,41 +50,40 @@ Json json_of(const Label& label) {
   return json;
 }
 
-Label label_of(const Json& json) {
+Label label_of(const JsonObject& json) {
   Label label;
-  label.track = whole(json, "track", -kLargestWhole, kLargestWhole);
-  label.category = json.at("category").get<std::string>();
-  const auto box = json.at("box_px").get<std::array<double, 4>>();
+  label.track = json.whole("track");
+  label.category = json.text("category");
+  const auto box = json.numbers("box_px", 4);
   label.box_px = {box[0], box[1], box[2], box[3]};
-  label.visible = maybe_number(json, "visible");
-  label.occluded = get<bool>(json, "occluded");
-  label.truncated = get<bool>(json, "truncated");
-  label.range_m = maybe_number(json, "range_m");
-  label.above_horizon = get<bool>(json, "above_horizon");
+  label.visible = json.maybe_number("visible");
+  label.occluded = json.maybe_truth("occluded");
+  label.truncated = json.maybe_truth("truncated");
+  label.range_m = json.maybe_number("range_m");
+  label.above_horizon = json.maybe_truth("above_horizon");
   return label;
 }
 
-LabelledFrame frame_of(const Json& json) {
+LabelledFrame frame_of(const JsonObject& json) {
   LabelledFrame frame;
-  frame.frame = whole(json, "frame", 0, kLargestWhole);
-  frame.time_s = maybe_number(json, "time_s");
-  for (const Json& label : json.at("labels")) frame.labels.push_back(label_of(label));
+  frame.frame = json.count("frame");
+  frame.time_s = json.maybe_number("time_s");
+  for (const JsonObject& label : json.objects("labels")) frame.labels.push_back(label_of(label));
   return frame;
 }
 
-Clip clip_of(const Json& json) {
-  if (json.at("format") != kFormat)
-    throw Error("is not of the format '" + std::string(kFormat) + "'");
+Clip clip_of(const JsonObject& json) {
+  if (json.text("format") != kFormat) json.fail("format", std::string("'") + kFormat + "'");
   Clip clip;
-  clip.name = json.at("name").get<std::string>();
-  clip.media = get<std::string>(json, "media").value_or("");
+  clip.name = json.text("name");
+  clip.media = json.maybe_text("media").value_or("");
   clip.width = side(json, "width");
   clip.height = side(json, "height");
   clip.frame_rate_hz = rate(json, "frame_rate_hz");
   return clip;
 }
 
-std::string line_of(const Json& json) {
+std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -123,13 +95,13 @@ std::string labels_jsonl(const Clip& clip) {
   if (clip.width > 0) head["width"] = clip.width;
   if (clip.height > 0) head["height"] = clip.height;
   put(head, "frame_rate_hz", clip.frame_rate_hz);
-  std::string text = line_of(head);
+  std::string text = text_of(head);
   for (const LabelledFrame& frame : clip.frames) {
     Json json = {{"frame", frame.frame}};
     put(json, "time_s", frame.time_s);
     json["labels"] = Json::array();
     for (const Label& label : frame.labels) json["labels"].push_back(json_of(label));
-    text += line_of(json);
+    text += text_of(json);
   }
   return text;
 }
@@ -141,17 +113,11 @@ Clip read_labels(const fs::path& file) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     ++line;
-    try {
-      const Json json = Json::parse(text.substr(at, end - at));
-      if (line == 1)
-        clip = clip_of(json);
-      else
-        clip.frames.push_back(frame_of(json));
-    } catch (const Json::exception&) {
-      throw Error("is no line of labels", {file.string(), line});
-    } catch (const Error& error) {
-      throw Error(error.message(), {file.string(), line});
-    }
+    const JsonDocument json(std::string_view(text).substr(at, end - at), {file.string(), line});
+    if (line == 1)
+      clip = clip_of(json);
+    else
+      clip.frames.push_back(frame_of(json));
     at = end + 1;
   }
   if (line == 0) throw Error("is empty; expected labels", {file.string()});

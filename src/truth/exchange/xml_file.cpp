@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truth/exchange/xml_file.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
 
 namespace airtruth::exchange {
-namespace {
-
-int line_at(const std::string& text, std::ptrdiff_t offset) {
-  const auto end = std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text));
-  return static_cast<int>(std::count(text.begin(), text.begin() + end, '\n')) + 1;
-}
-
-}  // namespace
 
 std::optional<double> number_in(const std::string& text) {
   double value = 0;
@@ -38,7 +30,7 @@ XmlFile::XmlFile(const std::filesystem::path& file)
   const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
   if (!result)
     throw Error(std::string("is not XML: ") + result.description(),
-                {file.string(), line_at(text_, result.offset)});
+                {file.string(), line_of(text_, result.offset)});
 }
 
 pugi::xml_node XmlFile::top(const char* name) const {
@@ -70,7 +62,7 @@ double XmlFile::attribute(const pugi::xml_node& node, const char* name) const {
 
 void XmlFile::fail(const pugi::xml_node& node, const std::string& what) const {
   throw Error("<" + std::string(node.name()) + "> " + what,
-              {file_.string(), line_at(text_, node.offset_debug())});
+              {file_.string(), line_of(text_, node.offset_debug())});
 }
 
 std::string text_of(const pugi::xml_document& document) {

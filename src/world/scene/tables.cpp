@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
 #include "world/scene/toml_guard.h"
 
 namespace airtruth::scene {
@@ -45,12 +46,9 @@ std::optional<std::array<double, 3>> three_from(const TableReader& table,
 toml::table parsed_toml(std::string_view text, const std::string& file) {
   if (text.size() > kLargestToml)
     throw Error(fmt::format("is {} bytes long; expected at most 16 MiB", text.size()), {file});
-  if (const std::size_t fault = utf8_fault(text); fault != std::string_view::npos) {
-    const auto newlines =
-        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(fault), '\n');
+  if (const std::size_t fault = utf8_fault(text); fault != std::string_view::npos)
     throw Error("is not UTF-8; expected a text file in UTF-8",
-                {file, static_cast<int>(newlines) + 1, 0});
-  }
+                {file, line_of(text, static_cast<std::ptrdiff_t>(fault))});
   refuse_deep_nesting(text, file);
   try {
     return toml::parse(text, file);
