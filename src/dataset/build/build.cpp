@@ -2,7 +2,6 @@
 #include "dataset/build/build.h"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -14,6 +13,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/file_lock.h"
 #include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/stopwatch.h"
 #include "sequence/sequence/sequence.h"
@@ -34,10 +34,13 @@ class Work {
     count();
     jobs_ = static_cast<int>(std::clamp<std::int64_t>(missing_, 1, jobs_));
     prepare_backgrounds();
-    std::vector<std::jthread> threads;
-    for (int i = 0; i < std::min<std::int64_t>(jobs_, missing_); ++i)
-      threads.emplace_back([this] { make_sequences(); });
-    threads.clear();  // joins the threads
+    if (missing_ > 0)
+      in_parallel(
+          static_cast<std::size_t>(share_size()),
+          jobs_,
+          [this](std::size_t i) { make_if_missing(static_cast<std::int64_t>(i)); },
+          {},
+          options_.stop);
     if (options_.stop.stop_requested()) throw Interrupted();
     std::sort(summary_.failures.begin(),
               summary_.failures.end(),
@@ -111,14 +114,15 @@ class Work {
     }
   }
 
-  void make_sequences() {
-    for (;;) {
-      if (options_.stop.stop_requested()) return;
-      const std::int64_t i = options_.share + next_.fetch_add(1) * options_.shares;
-      if (i >= expansion_.size()) return;
-      Item item = expansion_.at(i);
-      if (is_wanted(item) && !folder_.holds(item.name)) make(item);
-    }
+  // The number of the catalogue's sequences that are of this share.
+  std::int64_t share_size() const {
+    return (expansion_.size() - options_.share + options_.shares - 1) / options_.shares;
+  }
+
+  // Makes the i-th sequence of this share.
+  void make_if_missing(std::int64_t i) {
+    Item item = expansion_.at(options_.share + i * options_.shares);
+    if (is_wanted(item) && !folder_.holds(item.name)) make(item);
   }
 
   void make(Item& item) {
@@ -164,7 +168,6 @@ class Work {
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
-  std::atomic<std::int64_t> next_ = 0;
   std::mutex mutex_;
   BuildSummary summary_;
 };

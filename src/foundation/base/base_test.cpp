@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
 #include "foundation/base/median.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/seed.h"
@@ -29,6 +30,14 @@ TEST(Error, SaysThePlaceThenTheFact) {
   EXPECT_STREQ(error.what(), "scene.toml:12:3: is -1; expected a positive number");
   EXPECT_EQ(error.message(), "is -1; expected a positive number");
   EXPECT_STREQ(Error("no place").what(), "no place");
+}
+
+TEST(LineOf, CountsFromOneAndStaysWithinTheText) {
+  EXPECT_EQ(line_of("", 0), 1);
+  EXPECT_EQ(line_of("a\nb", 1), 1);
+  EXPECT_EQ(line_of("a\nb", 2), 2);
+  EXPECT_EQ(line_of("a\nb\n", 99), 3);
+  EXPECT_EQ(line_of("a\nb", -1), 1);
 }
 
 TEST(EditDistance, IsDamerausOnKnownPairs) {

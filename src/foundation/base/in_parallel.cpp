@@ -12,6 +12,9 @@
 
 namespace airtruth {
 
+// Threads of its own, not oneTBB's: a job waits for a tracker in a child process, or limits oneTBB
+// while it renders, and the number of jobs that the user asks for is under way all the same
+// (docs/decisions/0022).
 void in_parallel(std::size_t count,
                  int jobs,
                  const std::function<void(std::size_t)>& each,

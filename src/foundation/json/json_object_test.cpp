@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "foundation/base/line_of.h"
-
 namespace airtruth {
 namespace {
 
@@ -21,14 +19,6 @@ std::string error_of(std::string_view text, const Read& read) {
     return error.what();
   }
   return "no error";
-}
-
-TEST(LineOf, CountsFromOneAndStaysWithinTheText) {
-  EXPECT_EQ(line_of("", 0), 1);
-  EXPECT_EQ(line_of("a\nb", 1), 1);
-  EXPECT_EQ(line_of("a\nb", 2), 2);
-  EXPECT_EQ(line_of("a\nb\n", 99), 3);
-  EXPECT_EQ(line_of("a\nb", -1), 1);
 }
 
 TEST(JsonObject, ReadsEachKindOfValue) {
