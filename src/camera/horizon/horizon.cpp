@@ -103,7 +103,8 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
         const double v = picture.planes[0].row(y)[x];
         sum += v, squares += v * v;
       }
-    const double n = double((step_ + 1) / 2) * ((step_ + 1) / 2);
+    const int samples_along = (step_ + 1) / 2;
+    const double n = double(samples_along) * samples_along;
     const double mean = sum / n;
     Feature f(mean, 0, 0, std::sqrt(std::max(0.0, squares / n - mean * mean)));
     if (picture.plane_count == 3) {
