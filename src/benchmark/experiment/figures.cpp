@@ -22,7 +22,7 @@ namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-// The colours of the page (dataset/page/common.js): black is for the truth alone, and the first six
+// The colours of the page (show/html/assets/common.js): black is for the truth alone, and the first six
 // are distinguishable with every kind of colour vision.
 constexpr Colour kTruthColour = {0, 0, 0};
 constexpr Colour kTruthOnPictures = {255, 255, 255};  // with a dark rim
