@@ -15,7 +15,9 @@
 #include "measure/air/ground_track.h"
 #include "measure/air/rays.h"
 #include "measure/air/same_ground.h"
-#include "measure/measured/estimate.h"
+#include "measure/air/sky_curve.h"
+#include "measure/air/sun.h"
+#include "measure/measured/measured.h"
 
 namespace airtruth::calibration {
 
@@ -28,10 +30,27 @@ struct GroundRange {
   std::string why_unknown;
 };
 
+// Height in metres that is assumed for the visibility when the altitude is unknown. Nearly all
+// aerial footage is filmed from lower. From a lower camera the same appearance of the horizon means
+// thicker air, so the assumption errs towards clear air.
+inline constexpr double kAssumedHeightM = 1000;
+
+struct Air {
+  // Airlight at the horizon: that of the sky, or the one fitted together with the extinction.
+  Measured<ColourEstimate> airlight;
+  // It comes from ground that is seen again at a shorter range (same_ground.h); if that fails, from
+  // the fading of the darkest ground with range (extinction.h). Not measured without an altitude
+  // and where neither method finds an answer.
+  Measured<ColourEstimate> extinction_per_km;
+  // The least visibility in km that the appearance of the horizon supports (extinction.h). It is
+  // given only where a horizon is found and the extinction is not measured. Without an altitude the
+  // camera is assumed to fly at kAssumedHeightM.
+  std::optional<double> visibility_km;
+};
+
 // Measures airlight, extinction and the direction of the sun from the light above and below the
 // horizon. Light is linear, per channel (red, green, blue). Views are added one by one; the
-// measurements are made from all of them together. A measurement that is not possible is an empty
-// optional with the reason beside it, never an error.
+// measurements are made from all of them together.
 class AirMeter {
  public:
   AirMeter(const lens::Lens& lens,
@@ -43,35 +62,12 @@ class AirMeter {
   // outlive it.
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
-  // Height in metres that is assumed for the visibility when the altitude is unknown. Nearly all
-  // aerial footage is filmed from lower. From a lower camera the same appearance of the horizon
-  // means thicker air, so the assumption errs towards clear air.
-  static constexpr double kAssumedHeightM = 1000;
-  struct Air {
-    // Airlight at the horizon: that of the sky, or the one fitted together with the extinction.
-    std::optional<ColourEstimate> airlight;
-    // Extinction per km. It comes from ground that is seen again at a shorter range
-    // (same_ground.h); if that fails, from the fading of the darkest ground with range
-    // (extinction.h). Empty without an altitude and where neither method finds an answer.
-    std::optional<ColourEstimate> extinction_per_km;
-    // The reasons why `airlight` and `extinction_per_km` are empty.
-    std::string why, why_no_extinction;
-    // The least visibility in km that the appearance of the horizon supports (extinction.h). It is
-    // given only where a horizon is found and the extinction is not measured. Without an altitude
-    // the camera is assumed to fly at kAssumedHeightM.
-    std::optional<double> visibility_km;
-  };
   Air air(const std::stop_token& stop = {}) const;
-  // Azimuth and elevation of the sun, degrees: the direction towards which the clear sky is
-  // brightest. Clouds are brighter than the clear sky behind them, so the fit follows the darker
-  // part of the sky (asymmetric least squares, Newey and Powell 1987).
-  struct Sun {
-    Estimate azimuth_deg, elevation_deg;
-  };
-  // Empty, with the reason in `why`, where too little sky is seen or the direction is uncertain.
-  std::optional<Sun> sun(std::string& why) const;
+  // The direction of the sun (sun.h).
+  Measured<Sun> sun() const;
 
  private:
+  std::optional<double> visibility_km(const SkyCurves& sky, double height_m) const;
   std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
   // The samples above the horizon, rotated by `level_from_world`.
   std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;

@@ -61,9 +61,9 @@ TEST(AirMeter, TellsExtinctionFromTheDarkestGround) {
     meter.add(picture, cam_from_body());
     blind.add(picture, cam_from_body());
   }
-  const AirMeter::Air air = meter.air();
-  ASSERT_TRUE(air.extinction_per_km) << air.why_no_extinction;
-  ASSERT_TRUE(air.airlight) << air.why;
+  const Air air = meter.air();
+  ASSERT_TRUE(air.extinction_per_km) << air.extinction_per_km.why();
+  ASSERT_TRUE(air.airlight) << air.airlight.why();
   for (std::size_t c = 0; c < 3; ++c) {
     // The method itself is an eighth too low here.
     EXPECT_NEAR((*air.extinction_per_km)[c].value, kExtinctionPerKm[c], 0.2 * kExtinctionPerKm[c]);

@@ -6,39 +6,37 @@
 #include <iterator>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "foundation/base/median.h"
 
 namespace airtruth::calibration {
 namespace {
 
-constexpr double kSkyUnitDeg = 10;
-constexpr int kSkyBands = 16;
-constexpr std::size_t kFewestInBand = 20;
-constexpr int kFewestBands = 6;
-
-constexpr double kLeastDepressionDeg = 0.6;
-constexpr double kMostDepressionDeg = 40;
+// Range of depressions that is used, degrees, and the number of bands into which it is divided in
+// equal ratios.
+constexpr double kMinDepressionDeg = 0.6, kMaxDepressionDeg = 40;
 constexpr int kGroundBands = 14;
-constexpr std::size_t kFewestInCell = 100;
-constexpr int kFewestCells = 10;
-// Relative standard deviation of the prior of the airlight.
-constexpr double kAirlightTrust = 0.1;
+// Least number of samples of a cell, and of cells for a fit.
+constexpr std::size_t kMinSamples = 100;
+constexpr int kMinCells = 10;
 // Quantile of the light of a cell that counts as its darkest ground.
-constexpr double kDark = 0.03;
-constexpr double kLeastDarkSpread = 0.01;
-constexpr double kTiltTrustDeg = 3;
-constexpr double kTiltStepDeg = 0.25;
-// Range of the extinctions that are tried, per km.
-constexpr double kWeakest = 0.004;
-constexpr double kStrongest = 4;
-constexpr double kStep = 1.02;
+constexpr double kDarkQuantile = 0.03;
+// Least error of the light of the darkest ground, linear.
+constexpr double kMinDarkError = 0.01;
+// Relative standard deviation of the prior of the airlight.
+constexpr double kAirlightPrior = 0.1;
+// Standard deviation of the prior of the horizon's tilt, and the spacing of tilts, degrees.
+constexpr double kTiltPriorDeg = 3, kTiltStepDeg = 0.25;
+// Range of the extinctions that are tried, per km, and their ratio. A fit within kMinOverWeakest of
+// either end has found no minimum.
+constexpr double kMinExtinctionPerKm = 0.004, kMaxExtinctionPerKm = 4, kExtinctionRatio = 1.02;
+constexpr double kMinOverWeakest = 1.2;
+// Number of parts of the view, whose scatter is the error.
 constexpr int kParts = 3;
-// Relative error that is added because dark ground is not the same everywhere.
-constexpr double kModelError = 0.15;
+// Relative error of an extinction because dark ground is not the same everywhere: the scatter over
+// virtual flights (extinction.h).
+constexpr double kUnevenGroundError = 0.15;
 // Largest relative error of an extinction that is returned.
-constexpr double kLeastKnown = 0.5;
+constexpr double kMaxRelativeError = 0.5;
 
 // The darkest ground of one sector at one depression. It consists of woods and shadows, which have
 // nearly the same light everywhere; fields do not.
@@ -57,8 +55,8 @@ double quantile(std::vector<float>& values, double share) {
 }
 
 std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
-  const double low = radians(kLeastDepressionDeg);
-  const double step = std::log(kMostDepressionDeg / kLeastDepressionDeg) / kGroundBands;
+  const double low = radians(kMinDepressionDeg);
+  const double step = std::log(kMaxDepressionDeg / kMinDepressionDeg) / kGroundBands;
   struct Seen {
     double depression = 0;
     std::array<std::vector<float>, 3> light;
@@ -75,15 +73,15 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t count = all[i].light[0].size();
-    if (count < kFewestInCell) continue;
+    if (count < kMinSamples) continue;
     Cell cell;
     cell.sector = static_cast<int>(i) / kGroundBands;
     cell.depression_rad = all[i].depression / double(count);
     for (std::size_t c = 0; c < 3; ++c) {
-      cell.dark[c] = quantile(all[i].light[c], kDark);
+      cell.dark[c] = quantile(all[i].light[c], kDarkQuantile);
       // Ground that varies more within a cell also varies more between cells.
-      const double spread = quantile(all[i].light[c], 3 * kDark) - cell.dark[c];
-      cell.weight[c] = 1 / (spread * spread + kLeastDarkSpread * kLeastDarkSpread);
+      const double spread = quantile(all[i].light[c], 3 * kDarkQuantile) - cell.dark[c];
+      cell.weight[c] = 1 / (spread * spread + kMinDarkError * kMinDarkError);
     }
     cells.push_back(cell);
   }
@@ -116,7 +114,7 @@ double misfit(const std::vector<Cell>& cells,
     Sector s = sectors[i];
     if (!sky[i] || s.aa == 0) continue;
     const double a = sky[i]->at(c, tilt_rad);
-    const double trust = 1 / (kAirlightTrust * a * kAirlightTrust * a);
+    const double trust = 1 / (kAirlightPrior * a * kAirlightPrior * a);
     s.aa += trust, s.ay += trust * a, yy += trust * a * a;
     gg -= s.ag * s.ag / s.aa, gy -= s.ag * s.ay / s.aa, yy -= s.ay * s.ay / s.aa;
   }
@@ -131,136 +129,114 @@ struct Fit {
   std::array<double, 3> sigma{};
 };
 
+// The extinction of one channel at one tilt, with its error and the misfit.
+struct ChannelFit {
+  double beta = 0, sigma = 0, misfit = 1e300;
+};
+
+ChannelFit fit_channel(const std::vector<Cell>& cells,
+                       std::size_t c,
+                       const SkyCurves& sky,
+                       double altitude_m,
+                       double tilt_rad,
+                       double freedom) {
+  ChannelFit best;
+  std::vector<std::pair<double, double>> curve;
+  for (double beta = kMinExtinctionPerKm; beta < kMaxExtinctionPerKm; beta *= kExtinctionRatio) {
+    const double m = misfit(cells, c, sky, altitude_m, tilt_rad, beta);
+    curve.push_back({beta, m});
+    if (m < best.misfit) best.misfit = m, best.beta = beta;
+  }
+  double low = best.beta, high = best.beta;
+  for (const auto& [beta, m] : curve)
+    if (m <= best.misfit * (1 + 1 / freedom))
+      low = std::min(low, beta), high = std::max(high, beta);
+  best.sigma = (high - low) / 2;
+  return best;
+}
+
 Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m) {
-  const double free = std::max(1.0, double(cells.size()) - 4);
+  constexpr double kMinMisfit = 1e-12;
+  const double freedom = std::max(1.0, double(cells.size()) - 4);
   Fit best;
   double best_total = 1e300;
-  for (double tilt_deg = -2 * kTiltTrustDeg; tilt_deg < 2.01 * kTiltTrustDeg;
+  for (double tilt_deg = -2 * kTiltPriorDeg; tilt_deg < 2.01 * kTiltPriorDeg;
        tilt_deg += kTiltStepDeg) {
     Fit at;
     at.tilt_rad = radians(tilt_deg);
-    double total = tilt_deg * tilt_deg / (kTiltTrustDeg * kTiltTrustDeg);
+    double total = tilt_deg * tilt_deg / (kTiltPriorDeg * kTiltPriorDeg);
     for (std::size_t c = 0; c < 3; ++c) {
-      std::vector<std::pair<double, double>> curve;
-      double least = 1e300;
-      for (double beta = kWeakest; beta < kStrongest; beta *= kStep) {
-        const double m = misfit(cells, c, sky, altitude_m, radians(tilt_deg), beta);
-        curve.push_back({beta, m});
-        if (m < least) least = m, at.beta[c] = beta;
-      }
-      double low = at.beta[c], high = at.beta[c];
-      for (const auto& [beta, m] : curve)
-        if (m <= least * (1 + 1 / free)) low = std::min(low, beta), high = std::max(high, beta);
-      at.sigma[c] = (high - low) / 2;
-      total += free * std::log(std::max(least, 1e-12));
+      const ChannelFit found = fit_channel(cells, c, sky, altitude_m, at.tilt_rad, freedom);
+      at.beta[c] = found.beta, at.sigma[c] = found.sigma;
+      total += freedom * std::log(std::max(found.misfit, kMinMisfit));
     }
     if (total < best_total) best_total = total, best = at;
   }
   return best;
 }
 
-}  // namespace
-
-SeenLight seen_under(const Vector3& direction, const image::Rgb& linear) {
-  return {std::atan2(direction.y(), direction.x()),
-          std::asin(std::clamp(-direction.z(), -1.0, 1.0)),
-          linear};
-}
-
-int sector_of(double azimuth_rad) {
-  const double turn = azimuth_rad / (2 * kPi) - std::floor(azimuth_rad / (2 * kPi));
-  return std::min(kSectors - 1, static_cast<int>(turn * kSectors));
-}
-
-double SkyCurve::at(std::size_t channel, double elevation_rad) const {
-  const double x = elevation_rad / radians(kSkyUnitDeg);
-  const auto& p = by_channel[channel];
-  return std::clamp(p[0] + x * (p[1] + x * p[2]), 0.01, 1.5);
-}
-
-SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach) {
-  std::vector<std::array<std::vector<double>, 3>> bands(
-      static_cast<std::size_t>(kSectors * kSkyBands));
-  const double low = radians(reach.low_deg);
-  const double span = radians(reach.high_deg) - low;
-  for (const SeenLight& s : seen) {
-    const double at = (s.elevation_rad - low) / span * kSkyBands;
-    if (!(at >= 0 && at < kSkyBands)) continue;
-    auto& band = bands[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kSkyBands) +
-                       static_cast<std::size_t>(at)];
-    for (std::size_t c = 0; c < 3; ++c) band[c].push_back(double(s.linear[c]));
-  }
-  SkyCurves result;
-  for (int sector = 0; sector < kSectors; ++sector) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    // One column per channel.
-    Eigen::Matrix3d right = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-    int count = 0;
-    for (int i = 0; i < kSkyBands; ++i) {
-      const auto& band = bands[static_cast<std::size_t>(sector * kSkyBands + i)];
-      if (band[0].size() < kFewestInBand) continue;
-      ++count;
-      const double x = (low + (i + 0.5) / kSkyBands * span) / radians(kSkyUnitDeg);
-      const Eigen::Vector3d row(1, x, x * x);
-      Eigen::RowVector3d middle;
-      for (int c = 0; c < 3; ++c) middle[c] = median(band[static_cast<std::size_t>(c)]);
-      normal += row * row.transpose();
-      right += row * middle;
-      squares += middle.cwiseAbs2().transpose();
-    }
-    if (count < kFewestBands) continue;
-    const auto solver = normal.ldlt();
-    const Eigen::Matrix3d solution = solver.solve(right);
-    const Eigen::Matrix3d inverse = solver.solve(Eigen::Matrix3d::Identity());
-    SkyCurve curve;
-    for (int c = 0; c < 3; ++c) {
-      const double rest = std::max(0.0, squares[c] - solution.col(c).dot(right.col(c)));
-      const auto channel = static_cast<std::size_t>(c);
-      curve.by_channel[channel] = {solution(0, c), solution(1, c), solution(2, c)};
-      curve.sigma[channel] = std::sqrt(rest / (count - 3 + 1) * inverse(0, 0));
-    }
-    result[static_cast<std::size_t>(sector)] = curve;
-  }
-  return result;
-}
-
-std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation_rad) {
-  ColourEstimate mean;
-  int count = 0;
-  for (const auto& sector : sky) {
-    if (!sector) continue;
-    ++count;
-    for (std::size_t c = 0; c < 3; ++c) {
-      mean[c].value += sector->at(c, elevation_rad);
-      mean[c].sigma = std::hypot(mean[c].sigma, sector->sigma[c]);
-    }
-  }
-  if (count == 0) return std::nullopt;
-  for (Estimate& e : mean) e = {e.value / count, e.sigma / count};
-  return mean;
-}
-
-std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
-                                       const SkyCurves& sky,
-                                       double altitude_m,
-                                       std::string& why) {
-  std::vector<Cell> cells = cells_of(ground);
-  std::erase_if(cells, [&](const Cell& c) { return !sky[static_cast<std::size_t>(c.sector)]; });
-  if (cells.size() < kFewestCells) {
-    why = "too little ground is seen at different distances";
-    return std::nullopt;
-  }
-  const Fit all = fit(cells, sky, altitude_m);
-  // The error comes from separate fits to parts of the view, each with its own fields and woods.
+// Separate fits to parts of the view, each with its own fields and woods.
+std::vector<Fit> fits_of_parts(const std::vector<Cell>& cells,
+                               const SkyCurves& sky,
+                               double altitude_m) {
   std::vector<Fit> parts;
   for (int part = 0; part < kParts; ++part) {
     std::vector<Cell> some;
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(some), [&](const Cell& c) {
       return c.sector % kParts == part;
     });
-    if (some.size() >= kFewestCells / kParts) parts.push_back(fit(some, sky, altitude_m));
+    if (some.size() >= kMinCells / kParts) parts.push_back(fit(some, sky, altitude_m));
   }
+  return parts;
+}
+
+// The colour channel from which the visibility follows: the one nearest to the eye's sensitivity.
+constexpr std::size_t kGreen = 1;
+
+// The light of the darkest ground near the camera; empty if none is seen.
+std::optional<double> dark_near_ground(const std::vector<Cell>& cells) {
+  constexpr double kNearDepressionDeg = 10;
+  std::vector<double> near;
+  for (const Cell& cell : cells)
+    if (cell.depression_rad > radians(kNearDepressionDeg)) near.push_back(cell.dark[kGreen]);
+  if (near.empty()) return std::nullopt;
+  return median(std::move(near));
+}
+
+// The largest extinction, per km, that the darkest far ground of each cell supports.
+std::vector<float> largest_extinctions_per_km(const std::vector<Cell>& cells,
+                                              const SkyCurves& sky,
+                                              double dark,
+                                              double altitude_m) {
+  constexpr double kFarDepressionDeg = 5;
+  // Least contrast between near ground and sky, linear light.
+  constexpr double kMinContrast = 0.02;
+  constexpr double kMinShare = 1e-3;
+  std::vector<float> per_km;
+  for (const Cell& cell : cells) {
+    const auto& curve = sky[static_cast<std::size_t>(cell.sector)];
+    if (!curve || cell.depression_rad > radians(kFarDepressionDeg)) continue;
+    const double contrast = curve->at(kGreen, 0) - dark;
+    if (contrast < kMinContrast) continue;
+    const double share =
+        std::clamp((curve->at(kGreen, 0) - cell.dark[kGreen]) / contrast, kMinShare, 1.0);
+    const double range_km = 1e-3 * altitude_m / std::sin(cell.depression_rad);
+    per_km.push_back(static_cast<float>(-std::log(share) / range_km));
+  }
+  return per_km;
+}
+
+}  // namespace
+
+Measured<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
+                                  const SkyCurves& sky,
+                                  double altitude_m) {
+  std::vector<Cell> cells = cells_of(ground);
+  std::erase_if(cells, [&](const Cell& c) { return !sky[static_cast<std::size_t>(c.sector)]; });
+  if (cells.size() < kMinCells)
+    return NotMeasured{"too little ground is seen at different distances"};
+  const Fit all = fit(cells, sky, altitude_m);
+  const std::vector<Fit> parts = fits_of_parts(cells, sky, altitude_m);
   Fading result;
   result.horizon_rad = all.tilt_rad;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -268,12 +244,11 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
     for (const Fit& p : parts) squares += (p.beta[c] - all.beta[c]) * (p.beta[c] - all.beta[c]);
     const double n = std::max<double>(2, double(parts.size()));
     const double scatter = std::max(all.sigma[c], std::sqrt(squares / (n * (n - 1))));
-    const double sigma = std::hypot(scatter, kModelError * all.beta[c]);
-    if (all.beta[c] < 1.2 * kWeakest || all.beta[c] > kStrongest / 1.2 ||
-        sigma > kLeastKnown * all.beta[c]) {
-      why = "the ground's colour does not go over into the airlight clearly enough";
-      return std::nullopt;
-    }
+    const double sigma = std::hypot(scatter, kUnevenGroundError * all.beta[c]);
+    if (all.beta[c] < kMinOverWeakest * kMinExtinctionPerKm ||
+        all.beta[c] > kMaxExtinctionPerKm / kMinOverWeakest ||
+        sigma > kMaxRelativeError * all.beta[c])
+      return NotMeasured{"the ground's colour does not go over into the airlight clearly enough"};
     result.extinction_per_km[c] = {all.beta[c], sigma};
   }
   return result;
@@ -282,33 +257,18 @@ std::optional<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
 std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& ground,
                                                const SkyCurves& sky,
                                                double altitude_m) {
-  constexpr double kFarDeg = 5, kNearDeg = 10;
-  // Least contrast between near ground and sky, linear light.
-  constexpr double kLeastContrast = 0.02;
-  // Share of the values that lie below the one that is used.
-  constexpr double kClearerShare = 0.25;
-  constexpr std::size_t kGreen = 1;
   // -ln(0.02): Koschmieder's visibility is the range at which 2 % of the contrast remain.
-  constexpr double kSeen = 3.912;
+  constexpr double kKoschmieder = 3.912;
+  // Share of the values that lie below the one that is used.
+  constexpr double kQuantile = 0.25;
+  constexpr std::size_t kMinValues = 3;
+  constexpr double kMinPerKm = 1e-6;
   const std::vector<Cell> cells = cells_of(ground);
-  std::vector<double> near;
-  for (const Cell& cell : cells)
-    if (cell.depression_rad > radians(kNearDeg)) near.push_back(cell.dark[kGreen]);
-  if (near.empty()) return std::nullopt;
-  const double dark = median(std::move(near));
-  std::vector<float> per_km;
-  for (const Cell& cell : cells) {
-    const auto& curve = sky[static_cast<std::size_t>(cell.sector)];
-    if (!curve || cell.depression_rad > radians(kFarDeg)) continue;
-    const double contrast = curve->at(kGreen, 0) - dark;
-    if (contrast < kLeastContrast) continue;
-    const double share =
-        std::clamp((curve->at(kGreen, 0) - cell.dark[kGreen]) / contrast, 1e-3, 1.0);
-    const double range_km = 1e-3 * altitude_m / std::sin(cell.depression_rad);
-    per_km.push_back(static_cast<float>(-std::log(share) / range_km));
-  }
-  if (per_km.size() < 3) return std::nullopt;
-  const double visibility_km = kSeen / std::max(quantile(per_km, kClearerShare), 1e-6);
+  const auto dark = dark_near_ground(cells);
+  if (!dark) return std::nullopt;
+  std::vector<float> per_km = largest_extinctions_per_km(cells, sky, *dark, altitude_m);
+  if (per_km.size() < kMinValues) return std::nullopt;
+  const double visibility_km = kKoschmieder / std::max(quantile(per_km, kQuantile), kMinPerKm);
   for (const double class_km : kVisibilityClassesKm)
     if (visibility_km <= class_km) return class_km;
   return kVisibilityClassesKm.back();

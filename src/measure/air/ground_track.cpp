@@ -15,27 +15,27 @@ namespace {
 
 // Lengths in heights: multiples of the camera's height above the ground.
 // Range of the ground that is used, measured from the camera.
-constexpr double kNear = 0.8, kFar = 14;
+constexpr double kMinRange = 0.8, kMaxRange = 14;
 // Size of a cell of the rectified view.
 constexpr double kCell = 0.1;
 // Largest distance between one view and the next.
-constexpr double kMostBetween = 3;
+constexpr double kMaxBetweenViews = 3;
 // Size of the window in which the contrast is equalised.
-constexpr double kEvenOver = 1.1;
+constexpr double kContrastWindow = 1.1;
 // Distance between the views whose agreement determines the horizon.
-constexpr double kApart = 2.5;
-constexpr double kLeastAgreement = 0.25;
+constexpr double kFarViewDistance = 2.5;
+constexpr double kMinAgreement = 0.25;
 constexpr double kTiltStepDeg = 0.25;
-constexpr int kCoarse = 4, kMostTiltSteps = static_cast<int>(kMostTiltDeg / kTiltStepDeg);
-static_assert(kMostTiltSteps % kCoarse == 0);
-constexpr std::size_t kFewestViews = 4;
-constexpr int kSide = 2 * static_cast<int>(kFar / kCell) + 1;
-constexpr int kReach = static_cast<int>(kMostBetween / kCell);
+constexpr int kCoarse = 4, kMaxTiltSteps = static_cast<int>(kMaxTiltDeg / kTiltStepDeg);
+static_assert(kMaxTiltSteps % kCoarse == 0);
+constexpr std::size_t kMinViews = 4;
+constexpr int kSide = 2 * static_cast<int>(kMaxRange / kCell) + 1;
+constexpr int kReach = static_cast<int>(kMaxBetweenViews / kCell);
 // Search radius, in cells, about the expected displacement of views that are farther apart.
 constexpr int kAround = 4;
 // Size of the padded view: the cyclic correlation must not wrap around.
-constexpr int kPadded = kSide + static_cast<int>(2 * kApart / kCell) + kAround + 1;
-static_assert(2 * kApart > kMostBetween);
+constexpr int kPadded = kSide + static_cast<int>(2 * kFarViewDistance / kCell) + kAround + 1;
+static_assert(2 * kFarViewDistance > kMaxBetweenViews);
 
 // Spectra of a view that is rectified to the ground plane (rows north, columns east): of its
 // contrast, which is 0 where nothing is seen, and of the mask of what is seen.
@@ -46,7 +46,7 @@ struct Straightened {
 // The light with its local mean subtracted and its local contrast equalised. Cells that are not
 // seen have the value 0.
 cv::Mat evened(const cv::Mat& light, const cv::Mat& seen) {
-  const int window = static_cast<int>(kEvenOver / kCell) | 1;
+  const int window = static_cast<int>(kContrastWindow / kCell) | 1;
   const cv::Size size(window, window);
   cv::Mat count, sum, squares;
   cv::boxFilter(seen, count, CV_32F, size, {-1, -1}, true, cv::BORDER_CONSTANT);
@@ -60,9 +60,9 @@ cv::Mat evened(const cv::Mat& light, const cv::Mat& seen) {
       const float mean = sum.at<float>(y, x) / n;
       const float variance = squares.at<float>(y, x) / n - mean * mean;
       // Squared code values.
-      constexpr float kLeastVariance = 0.25F;
+      constexpr float kMinVariance = 0.25F;
       result.at<float>(y, x) = std::clamp(
-          (light.at<float>(y, x) - mean) / std::sqrt(variance + kLeastVariance), -3.0F, 3.0F);
+          (light.at<float>(y, x) - mean) / std::sqrt(variance + kMinVariance), -3.0F, 3.0F);
     }
   return result;
 }
@@ -84,9 +84,9 @@ Straightened straightened(const GroundView& view,
   cv::Mat light(kSide, kSide, CV_32F, cv::Scalar(0)), seen(kSide, kSide, CV_32F, cv::Scalar(0));
   for (int row = 0; row < kSide; ++row)
     for (int column = 0; column < kSide; ++column) {
-      const Eigen::Vector2d place(row * kCell - kFar, column * kCell - kFar);
+      const Eigen::Vector2d place(row * kCell - kMaxRange, column * kCell - kMaxRange);
       const double far = place.norm();
-      if (far < kNear || far > kFar) continue;
+      if (far < kMinRange || far > kMaxRange) continue;
       const auto pixel = lens.pixel_from_cam(cam_from_level * Vector3(place.x(), place.y(), 1));
       if (!pixel) continue;
       const double x = pixel->x() - 0.5, y = pixel->y() - 0.5;
@@ -186,7 +186,7 @@ GroundTrack track_at(const std::vector<GroundView>& views,
     run = {first, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0};
   };
   for (std::size_t k = 1; k < flat.size(); ++k) {
-    if (next[k] && next[k]->agreement >= kLeastAgreement)
+    if (next[k] && next[k]->agreement >= kMinAgreement)
       run.places.push_back(run.places.back() + next[k]->moved);
     else
       end_run(k);
@@ -196,10 +196,11 @@ GroundTrack track_at(const std::vector<GroundView>& views,
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0, j = 0; i < best.places.size(); ++i) {
-    while (j < best.places.size() && (best.places[j] - best.places[i]).norm() < kApart) ++j;
+    while (j < best.places.size() && (best.places[j] - best.places[i]).norm() < kFarViewDistance)
+      ++j;
     if (j == best.places.size()) break;
     const Eigen::Vector2d moved = best.places[j] - best.places[i];
-    if (moved.norm() > 2 * kApart) continue;
+    if (moved.norm() > 2 * kFarViewDistance) continue;
     const auto laid = laid_over(flat[best.first + i], flat[best.first + j], moved, kAround);
     sum += laid ? laid->agreement : 0;
     ++count;
@@ -211,8 +212,8 @@ GroundTrack track_at(const std::vector<GroundView>& views,
 }  // namespace
 
 std::optional<Eigen::Vector2d> place_on_ground(const Vector3& direction) {
-  constexpr double kLeastDown = 1e-3;
-  if (direction.z() < kLeastDown) return std::nullopt;
+  constexpr double kMinDown = 1e-3;
+  if (direction.z() < kMinDown) return std::nullopt;
   return Eigen::Vector2d(direction.x(), direction.y()) / direction.z();
 }
 
@@ -220,7 +221,7 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
                                         const lens::Lens& lens,
                                         const image::Mask* own_aircraft,
                                         const std::stop_token& stop) {
-  if (views.size() < kFewestViews) return std::nullopt;
+  if (views.size() < kMinViews) return std::nullopt;
   const auto at = [&](double steps) {
     if (stop.stop_requested()) throw Interrupted();
     return track_at(views, lens, own_aircraft, radians(kTiltStepDeg) * steps);
@@ -232,10 +233,10 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
     if (is_new) found->second = at(steps).agreement;
     return found->second;
   };
-  int best = -kMostTiltSteps;
-  for (int steps = -kMostTiltSteps; steps <= kMostTiltSteps; steps += kCoarse)
+  int best = -kMaxTiltSteps;
+  for (int steps = -kMaxTiltSteps; steps <= kMaxTiltSteps; steps += kCoarse)
     if (agreement(steps) > agreement(best)) best = steps;
-  if (std::abs(best) == kMostTiltSteps) return std::nullopt;
+  if (std::abs(best) == kMaxTiltSteps) return std::nullopt;
   for (int step = kCoarse / 2; step > 0; step /= 2) {
     const int middle = best;
     for (const int steps : {middle - step, middle + step})
@@ -243,7 +244,7 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
   }
   const double before = agreement(best - 1), after = agreement(best + 1);
   GroundTrack track = at(best + peak(before, agreement(best), after));
-  if (track.agreement < kLeastAgreement) return std::nullopt;
+  if (track.agreement < kMinAgreement) return std::nullopt;
   return track;
 }
 

@@ -14,7 +14,7 @@
 namespace airtruth::calibration {
 
 // The largest error, degrees, that is searched for in the horizon of the views.
-constexpr double kMostTiltDeg = 6;
+constexpr double kMaxTiltDeg = 6;
 
 struct GroundView {
   // The picture must outlive the view.

@@ -10,39 +10,44 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr std::size_t kFewestSeen = 300;
+constexpr std::size_t kMinSquares = 300;
 
-// Error of a square's light relative to the model: kUneven is a share of the square's own light,
-// and kLeastError is the lower bound in linear light. Views of one square share its error, and
-// squares share it in part, so the number of independent measurements is smaller than their count.
-constexpr double kUneven = 0.05, kLeastError = 0.004;
-constexpr double kApart = 4, kShare = 0.3;
+// Error of a square's light relative to the model: kSquareError is a share of the square's own
+// light, and kMinSquareError is the lower bound in linear light. Views of one square share its
+// error, and squares share it in part, so the number of independent measurements is smaller than
+// their count.
+constexpr double kSquareError = 0.05, kMinSquareError = 0.004;
+constexpr double kIndependentViews = 4, kIndependentShare = 0.3;
 // Error of the light of far ground: as a share of the light of the mean ground, and its lower bound
-// in linear light. kMeanTrust is the relative error of that mean.
-constexpr double kFarUneven = 0.25, kLeastFarError = 0.006, kMeanTrust = 0.05;
+// in linear light. kMeanPrior is the relative error of that mean.
+constexpr double kFarError = 0.25, kMinFarError = 0.006, kMeanPrior = 0.05;
 // Standard deviation of the prior that the airlight equals the light of the sky at the horizon: for
 // sectors in which the sky was seen, and for the others.
-constexpr double kSkyTrust = 0.03, kOtherSkyTrust = 0.15;
+constexpr double kSkyPrior = 0.03, kUnseenSkyPrior = 0.15;
 // Range in heights at which the loss of contrast among squares is stated, and the prior error of
 // that loss. Large pixels and errors of the path mix the light of neighbouring squares.
-constexpr double kMixedAt = 15, kMixedTrust = 0.03;
-constexpr double kUsualSlope = 0.5, kSlopeSpread = 0.5, kMostSlope = 2, kSlopeStep = 0.1;
+constexpr double kMixedRange = 15, kMixedPrior = 0.03;
+constexpr double kMeanAngstrom = 0.5, kAngstromSigma = 0.5, kMaxAngstrom = 2, kAngstromStep = 0.1;
 constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
 // Relative error that is added to the extinction: its scatter over virtual flights (same_ground.h).
-constexpr double kModelError = 0.1;
+constexpr double kFlightScatter = 0.1;
 // Largest relative error of an extinction that is returned.
-constexpr double kLeastKnown = 0.3;
+constexpr double kMaxRelativeError = 0.3;
 
 // Number and range of the extinctions that are tried, per km, in equal ratios.
 constexpr int kTried = 240;
-constexpr double kWeakest = 0.01, kStrongest = 2;
-double tried(double i) { return kWeakest * std::pow(kStrongest / kWeakest, i / (kTried - 1)); }
+constexpr double kMinExtinctionPerKm = 0.01, kMaxExtinctionPerKm = 2;
+double tried(double i) {
+  return kMinExtinctionPerKm *
+         std::pow(kMaxExtinctionPerKm / kMinExtinctionPerKm, i / (kTried - 1));
+}
 double place_of(double per_km) {
-  return std::log(per_km / kWeakest) / std::log(kStrongest / kWeakest) * (kTried - 1);
+  return std::log(per_km / kMinExtinctionPerKm) /
+         std::log(kMaxExtinctionPerKm / kMinExtinctionPerKm) * (kTried - 1);
 }
 
 // The unknowns of one channel: the airlight of each sector, the mean light of the ground, and the
-// relative change of contrast among squares at the range kMixedAt, which grows with the range
+// relative change of contrast among squares at the range kMixedRange, which grows with the range
 // squared.
 constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
@@ -104,14 +109,14 @@ System Channel::system(double per_height) const {
     const double weight = 1 / (trust * value * trust * value);
     aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
   };
-  aa(kMixed, kMixed) = 1 / (kMixedTrust * kMixedTrust);
+  aa(kMixed, kMixed) = 1 / (kMixedPrior * kMixedPrior);
   for (std::size_t s = 0; s < kSectors; ++s) expect(static_cast<int>(s), sky[s], sky_trust[s]);
-  expect(kMean, mean_light, kMeanTrust);
+  expect(kMean, mean_light, kMeanPrior);
   for (const Row& r : squares) {
     const double t = std::exp(-per_height * r.range);
     System::Square& q = all[static_cast<std::size_t>(r.square)];
     const double air = 1 - t;
-    const double mixed = t * r.contrast * r.range * r.range / (kMixedAt * kMixedAt);
+    const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
     q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
     q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
     aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
@@ -125,7 +130,7 @@ System Channel::system(double per_height) const {
   }
   for (const Row& r : far) {
     const double t = std::exp(-per_height * r.range);
-    const double error = std::hypot(kLeastFarError, kFarUneven * mean_light * t);
+    const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
     const double w = 1 / (error * error);
     Unknowns row = Unknowns::Zero();
     row[r.sector] = 1 - t, row[kMean] = t;
@@ -142,9 +147,9 @@ void Channel::weigh(double per_height) {
   for (Row& r : squares) {
     const auto square = static_cast<std::size_t>(r.square);
     const double own = std::clamp(own_light[square], 0.01, 1.0);
-    const double error = std::hypot(kLeastError, kUneven * own);
-    const double share = std::min(1.0, kApart / views[square]);
-    r.weight = kShare * share / (error * error);
+    const double error = std::hypot(kMinSquareError, kSquareError * own);
+    const double share = std::min(1.0, kIndependentViews / views[square]);
+    r.weight = kIndependentShare * share / (error * error);
     r.contrast = own;
     sum += share * own, total += share;
   }
@@ -172,9 +177,10 @@ struct Guess {
 std::vector<Guess> guesses(const std::array<Channel, 3>& channels) {
   std::vector<Guess> result;
   for (int i = 0; i < kTried; ++i)
-    for (double slope = 0; slope <= kMostSlope; slope += kSlopeStep) {
+    for (double slope = 0; slope <= kMaxAngstrom; slope += kAngstromStep) {
       Guess guess;
-      guess.cost = (slope - kUsualSlope) * (slope - kUsualSlope) / (kSlopeSpread * kSlopeSpread);
+      guess.cost =
+          (slope - kMeanAngstrom) * (slope - kMeanAngstrom) / (kAngstromSigma * kAngstromSigma);
       bool inside = true;
       for (std::size_t c = 0; c < 3 && inside; ++c) {
         guess.per_km[c] = tried(i) * std::pow(550 / kWavelengthNm[c], slope);
@@ -227,7 +233,7 @@ Estimate airlight_ahead(const Channel& channel, const System& system) {
     ++count;
   }
   mean.value /= count, mean.sigma /= count;
-  return {mean.value, std::hypot(mean.sigma, kModelError * mean.value)};
+  return {mean.value, std::hypot(mean.sigma, kFlightScatter * mean.value)};
 }
 
 }  // namespace
@@ -236,7 +242,7 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
                                                const SkyCurves& sky,
                                                double altitude_m) {
   const auto mean_sky = airlight_of(sky, 0);
-  if (!mean_sky || seen.squares.size() < kFewestSeen) return std::nullopt;
+  if (!mean_sky || seen.squares.size() < kMinSquares) return std::nullopt;
   std::array<Channel, 3> channels;
   for (std::size_t c = 0; c < 3; ++c) {
     Channel& channel = channels[c];
@@ -245,7 +251,7 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
     for (const FarGround& f : seen.far) channel.far.push_back({0, f.sector, f.range, f.light[c]});
     for (std::size_t s = 0; s < kSectors; ++s) {
       channel.sky[s] = sky[s] ? sky[s]->at(c, 0) : (*mean_sky)[c].value;
-      channel.sky_trust[s] = sky[s] ? kSkyTrust : kOtherSkyTrust;
+      channel.sky_trust[s] = sky[s] ? kSkyPrior : kUnseenSkyPrior;
     }
     channel.try_all(altitude_m);
   }
@@ -255,8 +261,8 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
     Estimate& extinction = result.extinction_per_km[c];
     result.airlight[c] =
         airlight_ahead(channels[c], channels[c].system(extinction.value * altitude_m * 1e-3));
-    extinction.sigma = std::hypot(extinction.sigma, kModelError * extinction.value);
-    if (extinction.sigma > kLeastKnown * extinction.value) return std::nullopt;
+    extinction.sigma = std::hypot(extinction.sigma, kFlightScatter * extinction.value);
+    if (extinction.sigma > kMaxRelativeError * extinction.value) return std::nullopt;
   }
   return result;
 }

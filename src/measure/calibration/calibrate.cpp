@@ -147,16 +147,16 @@ class Session {
   void lack(const std::string& key, const std::string& why) { result_.missing[key] = why; }
 
   void take_noise() {
-    std::string why;
     result_.noise = noise_.points();
-    if (const auto found = noise_.result(why)) {
+    const auto found = noise_.result();
+    if (found) {
       put("sensor.noise_gain", {found->gain});
       put("sensor.noise_floor", {found->floor});
       put("sensor.noise_correlation_px", {found->correlation_px});
     } else {
       for (const char* key :
            {"sensor.noise_gain", "sensor.noise_floor", "sensor.noise_correlation_px"})
-        lack(key, why);
+        lack(key, found.why());
     }
   }
 
@@ -182,8 +182,8 @@ class Session {
   }
 
   void take_edges() {
-    std::string why;
-    if (const auto found = edges_.result(why, codec_step())) {
+    const auto found = edges_.result(codec_step());
+    if (found) {
       put("optics.point_spread_px", {found->point_spread_px});
       put("optics.sharpening", {found->sharpening});
       put("optics.sharpening_px", {found->sharpening_px});
@@ -198,36 +198,42 @@ class Session {
                               "optics.sharpening",
                               "optics.sharpening_px",
                               "sensor.chroma_spread_px"})
-        lack(key, why);
+        lack(key, found.why());
     }
   }
 
   void take_chroma(const StepResponse& response) {
-    std::string why;
-    if (const auto found = edges_.chroma(response, why, codec_step()))
+    const auto found = edges_.chroma(response, codec_step());
+    if (found)
       put("sensor.chroma_spread_px", {*found});
     else
-      lack("sensor.chroma_spread_px", why);
+      lack("sensor.chroma_spread_px", found.why());
+  }
+
+  // A share of the frame interval as a time.
+  Measured<Estimate> in_seconds(const Measured<Estimate>& share) const {
+    if (!share) return share;
+    if (!(result_.frame_rate_hz > 0)) return NotMeasured{"the video has no frame rate"};
+    const double interval_s = 1 / result_.frame_rate_hz;
+    return Estimate{share->value * interval_s, share->sigma * interval_s};
   }
 
   void take_shutter() {
-    std::string why;
-    const double interval_s = result_.frame_rate_hz > 0 ? 1 / result_.frame_rate_hz : 0;
-    if (const auto share = blur_.share(why); share && interval_s > 0)
-      put("shutter.exposure_s", {{share->value * interval_s, share->sigma * interval_s}});
+    const auto exposure_s = in_seconds(blur_.share());
+    if (exposure_s)
+      put("shutter.exposure_s", {*exposure_s});
     else
-      lack("shutter.exposure_s", why.empty() ? "the video has no frame rate" : why);
-    why.clear();
-    const auto share = readout_share(steps_, result_.width, result_.height, why);
-    if (!share || !(interval_s > 0)) {
-      lack("shutter.readout_s", why.empty() ? "the video has no frame rate" : why);
+      lack("shutter.exposure_s", exposure_s.why());
+    const auto readout_s = in_seconds(readout_share(steps_, result_.width, result_.height));
+    if (!readout_s) {
+      lack("shutter.readout_s", readout_s.why());
       return;
     }
-    const Estimate downwards_s{share->value * interval_s, share->sigma * interval_s};
+    const Estimate& downwards_s = *readout_s;
     result_.downwards_s = downwards_s;
     put("shutter.readout_s",
         {{rolls(downwards_s) ? std::abs(downwards_s.value) : 0, downwards_s.sigma}});
-    result_.notes["shutter.readout"] = rolls(downwards_s) && share->value < 0 ? "up" : "down";
+    result_.notes["shutter.readout"] = rolls(downwards_s) && downwards_s.value < 0 ? "up" : "down";
   }
 
   void take_sky() {
@@ -257,11 +263,11 @@ class Session {
       else if (!options_.lens && found[i])
         air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
     }
-    const AirMeter::Air measured = air.air(options_.stop);
+    const Air measured = air.air(options_.stop);
     if (measured.airlight)
       put("air.airlight", {measured.airlight->begin(), measured.airlight->end()});
     else
-      lack("air.airlight", measured.why);
+      lack("air.airlight", measured.airlight.why());
     take_extinction(measured);
     take_sun(air, first_from_level.has_value());
     if (first_from_level) take_yaw(*first_from_level);
@@ -296,7 +302,7 @@ class Session {
     return cam_from_heading * heading;
   }
 
-  void take_extinction(const AirMeter::Air& air) {
+  void take_extinction(const Air& air) {
     if (air.extinction_per_km) {
       put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
       return;
@@ -316,8 +322,8 @@ class Session {
           *air.visibility_km,
           options_.altitude_m && options_.lens
               ? ""
-              : fmt::format(" from {} m above the ground", AirMeter::kAssumedHeightM),
-          air.why_no_extinction);
+              : fmt::format(" from {} m above the ground", kAssumedHeightM),
+          air.extinction_per_km.why());
       return;
     }
     const Estimate clear{0, kKoschmieder / kClearKm};
@@ -325,21 +331,21 @@ class Session {
     result_.notes["air.extinction_per_km"] =
         fmt::format("not measured, and drawn as clear air{}: {}",
                     air.visibility_km ? ", as the horizon looks" : "",
-                    air.why_no_extinction);
+                    air.extinction_per_km.why());
   }
 
   void take_sun(const AirMeter& air, bool level_known) {
-    std::string why = !options_.lens ? "the lens is not known (--lens)"
-                      : !level_known ? "no horizon is seen that says where level is"
-                                     : "";
-    std::optional<AirMeter::Sun> sun;
-    if (options_.lens && level_known) sun = air.sun(why);
+    const auto sun = [&]() -> Measured<Sun> {
+      if (!options_.lens) return NotMeasured{"the lens is not known (--lens)"};
+      if (!level_known) return NotMeasured{"no horizon is seen that says where level is"};
+      return air.sun();
+    }();
     if (sun) {
       put("light.sun_azimuth_deg", {sun->azimuth_deg});
       put("light.sun_elevation_deg", {sun->elevation_deg});
     } else {
-      lack("light.sun_azimuth_deg", why);
-      lack("light.sun_elevation_deg", why);
+      lack("light.sun_azimuth_deg", sun.why());
+      lack("light.sun_elevation_deg", sun.why());
     }
   }
 

@@ -18,7 +18,7 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 #include "measure/air/frame_horizon.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 #include "measure/optics/edge_profile.h"
 #include "measure/sensor/noise_point.h"
 #include "world/scene/scene.h"

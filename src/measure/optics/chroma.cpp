@@ -16,22 +16,24 @@ namespace airtruth::calibration {
 namespace {
 
 // Distance from the edge up to which chroma samples are used, px.
-constexpr double kReach = 10;
+constexpr double kReachPx = 10;
 // Distance from the edge at which the two levels begin, px.
-constexpr double kLevel = 6.5;
+constexpr double kLevelFromPx = 6.5;
 // Least height of a step, code values. A codec does not preserve the shape of smaller steps.
-constexpr double kLeastHeight = 6;
+constexpr double kMinHeightCodes = 6;
 // Largest standard deviation of a level, as a share of the height of the step.
-constexpr double kMostUneven = 0.2;
-constexpr std::size_t kFewestSamples = 24;
-// Largest standard deviation of a step, px. The levels of a wider step would begin beyond kLevel.
-constexpr double kWidest = 6;
+constexpr double kMaxLevelDeviation = 0.2;
+constexpr std::size_t kMinSamples = 24;
+// Largest standard deviation of a step, px. The levels of a wider step would begin beyond
+// kLevelFromPx.
+constexpr double kMaxStepWidthPx = 6;
 // Largest spread of luma across an edge, as a multiple of the camera's. The spread of a softer edge
 // is mostly that of the world.
-constexpr double kSharpest = 2;
-constexpr std::size_t kFewest = 12;
+constexpr double kMaxLumaSpreadRatio = 2;
+// Least number of steps of Cb and Cr for a median with a useful error.
+constexpr std::size_t kMinSteps = 12;
 // Variance of a box of one pixel, px^2.
-constexpr double kPixel = 1.0 / 12;
+constexpr double kPixelVariance = 1.0 / 12;
 
 struct Sample {
   double place = 0, value = 0;
@@ -45,7 +47,7 @@ struct Level {
 std::optional<Level> level_of(const std::vector<Sample>& samples, bool high) {
   double sum = 0, squares = 0, count = 0;
   for (const Sample& s : samples)
-    if ((high ? s.place : -s.place) > kLevel)
+    if ((high ? s.place : -s.place) > kLevelFromPx)
       sum += s.value, squares += s.value * s.value, count += 1;
   if (count < 4) return std::nullopt;
   return Level{sum / count, std::sqrt(std::max(0.0, squares / count - sum / count * sum / count))};
@@ -62,8 +64,9 @@ struct Grid {
 };
 
 Grid grid_of(int log2_size, bool on_a_pixel) {
-  if (log2_size == 0) return {0, 0, kPixel};
-  return on_a_pixel ? Grid{1, 0, 0.5 + 4 * kPixel} : Grid{1, 0.5, 0.25 + 4 * kPixel};
+  if (log2_size == 0) return {0, 0, kPixelVariance};
+  return on_a_pixel ? Grid{1, 0, 0.5 + 4 * kPixelVariance}
+                    : Grid{1, 0.5, 0.25 + 4 * kPixelVariance};
 }
 
 std::vector<Sample> samples_across(const image::Plane& plane,
@@ -71,7 +74,7 @@ std::vector<Sample> samples_across(const image::Plane& plane,
                                    const Grid& down,
                                    const EdgeLine& line) {
   std::vector<Sample> samples;
-  const double reach = std::hypot(kReach, line.half_length_px);
+  const double reach = std::hypot(kReachPx, line.half_length_px);
   const auto range = [&](double middle, const Grid& grid, int count) {
     const double size = 1 << grid.log2_size;
     return std::pair(std::max(0, static_cast<int>((middle - reach) / size)),
@@ -84,7 +87,7 @@ std::vector<Sample> samples_across(const image::Plane& plane,
       const double x = across.first_px + (cx << across.log2_size) - line.x;
       const double y = down.first_px + (cy << down.log2_size) - line.y;
       const double place = x * line.nx + y * line.ny;
-      if (std::abs(place) < kReach && std::abs(y * line.nx - x * line.ny) <= line.half_length_px)
+      if (std::abs(place) < kReachPx && std::abs(y * line.nx - x * line.ny) <= line.half_length_px)
         samples.push_back({place, double(plane.row(cy)[cx])});
     }
   return samples;
@@ -93,13 +96,13 @@ std::vector<Sample> samples_across(const image::Plane& plane,
 // Fits the two levels, the place and the width of a Gaussian step by Gauss-Newton; the levels are
 // eliminated by variable projection (Golub and Pereyra 1973).
 std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
-  constexpr int kMostRounds = 20;
-  constexpr double kMostChange = 0.4, kLeastChange = 1e-3, kMostPlace = 4;
+  constexpr int kMaxRounds = 20;
+  constexpr double kMaxChange = 0.4, kMinChange = 1e-3, kMaxPlacePx = 4;
   const auto count = static_cast<Eigen::Index>(samples.size());
   double place = 0, log_width = std::log(2.0);
   Eigen::MatrixXd slopes(count, 4);
   Eigen::VectorXd values(count);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const double width = std::exp(log_width);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Sample& s = samples[static_cast<std::size_t>(i)];
@@ -112,12 +115,12 @@ std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
     square.diagonal().array() += 1e-9 * square.trace();
     const Eigen::Matrix4d inverse = square.inverse();
     const Eigen::Vector4d x = inverse * (slopes.transpose() * values);
-    if (std::abs(x[1]) < kLeastHeight / 2) return std::nullopt;
-    const double shift = std::clamp(x[2] / x[1], -kMostChange, kMostChange);
-    const double wider = std::clamp(x[3] / x[1], -kMostChange, kMostChange);
+    if (std::abs(x[1]) < kMinHeightCodes / 2) return std::nullopt;
+    const double shift = std::clamp(x[2] / x[1], -kMaxChange, kMaxChange);
+    const double wider = std::clamp(x[3] / x[1], -kMaxChange, kMaxChange);
     place += shift, log_width += wider;
-    if (std::abs(place) > kMostPlace || log_width > std::log(kWidest)) return std::nullopt;
-    if (std::abs(shift) + std::abs(wider) > kLeastChange) continue;
+    if (std::abs(place) > kMaxPlacePx || log_width > std::log(kMaxStepWidthPx)) return std::nullopt;
+    if (std::abs(shift) + std::abs(wider) > kMinChange) continue;
     const double left = (values - slopes * x).squaredNorm() / double(count - 4);
     const double error = std::sqrt(left * inverse(3, 3)) / std::abs(x[1]);
     const double variance = std::exp(2 * log_width);
@@ -139,24 +142,24 @@ std::vector<ChromaStep> chroma_steps(const image::Picture& picture, const EdgeLi
   for (const std::size_t p : {1U, 2U}) {
     const std::vector<Sample> samples = samples_across(picture.planes[p], across, down, line);
     const auto low = level_of(samples, false), high = level_of(samples, true);
-    if (!low || !high || samples.size() < kFewestSamples) continue;
+    if (!low || !high || samples.size() < kMinSamples) continue;
     const double height = std::abs(high->mean - low->mean);
-    if (height < kLeastHeight || std::max(low->deviation, high->deviation) > kMostUneven * height)
+    if (height < kMinHeightCodes ||
+        std::max(low->deviation, high->deviation) > kMaxLevelDeviation * height)
       continue;
     if (auto step = fitted(samples)) {
       step->variance_px2 -= line.nx * line.nx * across.variance_px2 +
-                            line.ny * line.ny * down.variance_px2 + 2 * kPixel;
+                            line.ny * line.ny * down.variance_px2 + 2 * kPixelVariance;
       steps.push_back(*step);
     }
   }
   return steps;
 }
 
-std::optional<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
-                                      std::size_t at_once,
-                                      const StepResponse& response,
-                                      const image::ToneCurve& tone,
-                                      std::string& why) {
+Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
+                                 std::size_t at_once,
+                                 const StepResponse& response,
+                                 const image::ToneCurve& tone) {
   std::vector<GatheredEdge> luma;
   for (const LumaAndChroma& edge : edges) luma.emplace_back(*edge.luma);
   const std::vector<EdgeFit> fits =
@@ -164,16 +167,15 @@ std::optional<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
   std::vector<double> beyond;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const double luma_px = fits[e].spread_px;
-    if (luma_px > kSharpest * response.point_spread_px.value) continue;
+    if (luma_px > kMaxLumaSpreadRatio * response.point_spread_px.value) continue;
     for (const ChromaStep& step : *edges[e].chroma)
       beyond.push_back(step.variance_px2 - luma_px * luma_px);
   }
-  if (beyond.size() < kFewest) {
-    why = fmt::format("the clip shows {} sharp edges with a clean step of colour; it takes {}",
-                      beyond.size(),
-                      kFewest);
-    return std::nullopt;
-  }
+  if (beyond.size() < kMinSteps)
+    return NotMeasured{
+        fmt::format("the clip shows {} sharp edges with a clean step of colour; it takes {}",
+                    beyond.size(),
+                    kMinSteps)};
   std::sort(beyond.begin(), beyond.end());
   const auto root_at = [&](std::size_t percent) {
     return std::sqrt(std::max(0.0, beyond[beyond.size() * percent / 100]));
@@ -181,8 +183,8 @@ std::optional<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
   const double scatter = (root_at(84) - root_at(16)) / 2;
   const double many = double(std::clamp<std::size_t>(at_once, 1, beyond.size()));
   // Error of the median of Gaussian values relative to the error of their mean.
-  constexpr double kOfAMedian = 1.25;
-  return Estimate{root_at(50), kOfAMedian * scatter / std::sqrt(many)};
+  constexpr double kMedianErrorRatio = 1.25;
+  return Estimate{root_at(50), kMedianErrorRatio * scatter / std::sqrt(many)};
 }
 
 }  // namespace airtruth::calibration

@@ -2,25 +2,18 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
+#include "measure/optics/edge_line.h"
 #include "measure/optics/step_response.h"
 
 // Measures how much softer chroma is than luma across the same edges. Cameras and codecs keep less
 // colour detail than the grid of chroma samples could hold: on the clips of data/camera-profiles,
 // edges that luma crosses within 2 px are 6 to 9 px wide in Cb and Cr.
 namespace airtruth::calibration {
-
-// A straight edge in luma, in pixels with integer centres.
-struct EdgeLine {
-  double x = 0, y = 0;    // a point on the edge
-  double nx = 0, ny = 0;  // unit vector across the edge
-  double half_length_px = 0;
-};
 
 // The fitted step of Cb or of Cr across an edge.
 struct ChromaStep {
@@ -45,12 +38,11 @@ struct LumaAndChroma {
 // the median difference between the variances of chroma and luma. It uses edges whose luma is
 // nearly as sharp as the camera's step response `response`. The error is the scatter of the
 // differences divided by the square root of `at_once`, the largest number of such edges in one
-// frame: edges of other frames may be the same edges again. Empty, with the reason in `why`, where
-// there are fewer than 12 steps.
-std::optional<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
-                                      std::size_t at_once,
-                                      const StepResponse& response,
-                                      const image::ToneCurve& tone,
-                                      std::string& why);
+// frame: edges of other frames may be the same edges again. Not measured where there are fewer
+// than 12 steps.
+Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
+                                 std::size_t at_once,
+                                 const StepResponse& response,
+                                 const image::ToneCurve& tone);
 
 }  // namespace airtruth::calibration

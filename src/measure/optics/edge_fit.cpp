@@ -14,19 +14,19 @@ namespace airtruth::calibration {
 namespace {
 
 // Bounds of the spread, px, and of the amount of the mask.
-constexpr double kLeastSpread = 0.05, kMostSpread = 5;
-constexpr double kLeastAmount = -0.9, kMostAmount = 3;
+constexpr double kMinSpreadPx = 0.05, kMaxSpreadPx = 5;
+constexpr double kMinAmount = -0.9, kMaxAmount = 3;
 // Half the width of the profile of an edge, px.
-constexpr double kAcross = 6;
+constexpr double kHalfWidthPx = 6;
 // Width of the bins in which samples are averaged, px.
-constexpr double kTogether = 0.25;
+constexpr double kBinPx = 0.25;
 // Step of the numerical derivatives, in the logarithm of the spread and in the amount.
-constexpr double kFiner = 0.01;
+constexpr double kDerivativeStep = 0.01;
 // Largest change of an unknown in one round.
-constexpr double kMostChange = 0.3;
+constexpr double kMaxChange = 0.3;
 // The iteration ends when all changes are smaller than this.
-constexpr double kLeastChange = 0.001;
-constexpr int kMostRounds = 12;
+constexpr double kMinChange = 0.001;
+constexpr int kMaxRounds = 12;
 
 // The Jacobian. Its columns are plateau, height, place, spread and, if it is unknown, the amount.
 Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
@@ -38,17 +38,17 @@ Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
     return StepModel(spread_px, {amount, radius_px}, edge.low, edge.high, tone);
   };
   const StepModel here = model(fit.spread_px, fit.amount);
-  const StepModel wider = model(fit.spread_px * std::exp(kFiner), fit.amount);
+  const StepModel wider = model(fit.spread_px * std::exp(kDerivativeStep), fit.amount);
   Eigen::MatrixXd slopes(edge.places.size(), unknowns);
   for (Eigen::Index i = 0; i < edge.places.size(); ++i) {
     const double place = edge.places[i];
     const auto [value, slope] = here.at(place);
-    slopes.row(i).head<4>() << 1, value, slope, (wider.at(place).first - value) / kFiner;
+    slopes.row(i).head<4>() << 1, value, slope, (wider.at(place).first - value) / kDerivativeStep;
   }
   if (unknowns == 4) return slopes;
-  const StepModel sharper = model(fit.spread_px, fit.amount + kFiner);
+  const StepModel sharper = model(fit.spread_px, fit.amount + kDerivativeStep);
   for (Eigen::Index i = 0; i < edge.places.size(); ++i)
-    slopes(i, 4) = (sharper.at(edge.places[i]).first - slopes(i, 1)) / kFiner;
+    slopes(i, 4) = (sharper.at(edge.places[i]).first - slopes(i, 1)) / kDerivativeStep;
   return slopes;
 }
 
@@ -60,7 +60,7 @@ EdgeFit fitted(const GatheredEdge& edge,
   const Eigen::VectorXd heights = edge.roots.cwiseProduct(edge.heights);
   EdgeFit fit;
   fit.amount = amount.value_or(0);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const Eigen::MatrixXd slopes =
         edge.roots.asDiagonal() * slopes_of(edge, fit, radius_px, unknowns, tone);
     Eigen::MatrixXd square = slopes.transpose() * slopes;
@@ -74,17 +74,17 @@ EdgeFit fitted(const GatheredEdge& edge,
       return unit_error * std::sqrt(std::max(0.0, inverse(i, i)));
     };
     const auto change = [&](Eigen::Index i) {
-      return std::clamp(x[i] / height, -kMostChange, kMostChange);
+      return std::clamp(x[i] / height, -kMaxChange, kMaxChange);
     };
     fit.rms = std::sqrt(left / edge.roots.squaredNorm());
     fit.spread_error = error(3);
     const double wider = change(3), sharper = amount ? 0 : change(4);
-    fit.spread_px = std::clamp(fit.spread_px * std::exp(wider), kLeastSpread, kMostSpread);
+    fit.spread_px = std::clamp(fit.spread_px * std::exp(wider), kMinSpreadPx, kMaxSpreadPx);
     if (!amount) {
       fit.amount_error = error(4);
-      fit.amount = std::clamp(fit.amount + sharper, kLeastAmount, kMostAmount);
+      fit.amount = std::clamp(fit.amount + sharper, kMinAmount, kMaxAmount);
     }
-    if (std::abs(wider) < kLeastChange && std::abs(sharper) < kLeastChange) break;
+    if (std::abs(wider) < kMinChange && std::abs(sharper) < kMinChange) break;
   }
   return fit;
 }
@@ -92,13 +92,13 @@ EdgeFit fitted(const GatheredEdge& edge,
 }  // namespace
 
 GatheredEdge::GatheredEdge(const StepEdge& step) : low(step.low), high(step.high) {
-  constexpr auto kBins = static_cast<std::size_t>(2 * kAcross / kTogether);
+  constexpr auto kBins = static_cast<std::size_t>(2 * kHalfWidthPx / kBinPx);
   struct Bin {
     double n = 0, place = 0, height = 0;
   };
   std::array<Bin, kBins> bins{};
   for (const auto& [place, height] : step.samples) {
-    const double at = (place + kAcross) / kTogether;
+    const double at = (place + kHalfWidthPx) / kBinPx;
     if (!(at >= 0 && at < double(kBins))) continue;
     Bin& bin = bins[static_cast<std::size_t>(at)];
     bin.n += 1, bin.place += place, bin.height += height;

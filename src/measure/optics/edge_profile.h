@@ -3,6 +3,9 @@
 
 #include <vector>
 
+#include "foundation/image/tone_curve.h"
+#include "measure/optics/step_response.h"
+
 namespace airtruth::calibration {
 
 // The mean profile across the sharpest edges of a clip, with the fitted step response.
@@ -18,5 +21,11 @@ struct EdgeProfile {
   // the spread of the camera.
   int edges = 0;
 };
+
+// The profile of the edges whose spread is nearest to the camera's. `response` must be the fit to
+// these edges.
+EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
+                         const StepResponse& response,
+                         const image::ToneCurve& tone);
 
 }  // namespace airtruth::calibration

@@ -8,12 +8,15 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 #include "measure/optics/chroma.h"
+#include "measure/optics/edge_line.h"
 #include "measure/optics/edge_profile.h"
 #include "measure/optics/step_response.h"
 
 namespace airtruth::calibration {
+
+struct StraightStep;
 
 // Measures the camera's step response from the sharp straight edges of a clip. It samples the
 // profiles across them to a fraction of a pixel (the slanted-edge method of ISO 12233). The width
@@ -28,8 +31,7 @@ class EdgeMeter {
   // frame, by which edges blurred by motion are recognised; empty if it is not known.
   void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
 
-  // The step response of the camera. Empty, with the reason in `why`, where there are too few sharp
-  // edges.
+  // The step response of the camera. Not measured where there are too few sharp edges.
   //
   // The error of the spread includes the chance that the sharpest of few edges is soft in the
   // world. The number of different edges is that of one frame: the edges of other frames may be the
@@ -37,27 +39,29 @@ class EdgeMeter {
   //
   // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
   // softens weak edges. Where enough edges are high compared with the step, only those are used.
-  std::optional<StepResponse> result(std::string& why, double codec_step = 0);
+  Measured<StepResponse> result(double codec_step = 0);
   // The extra spread of chroma beyond luma (chroma.h) across edges that are as sharp as `response`.
   // `response` must be the answer of result() with the same `codec_step`.
-  std::optional<Estimate> chroma(const StepResponse& response,
-                                 std::string& why,
-                                 double codec_step = 0) const;
+  Measured<Estimate> chroma(const StepResponse& response, double codec_step = 0) const;
   // The mean profile of the edges that the last result() used.
   const EdgeProfile& profile() const { return profile_; }
 
  private:
   struct Edge {
-    double x = 0, y = 0;    // a point on the edge, px of the picture
-    double nx = 0, ny = 0;  // unit vector across the edge
-    double width_px = 0;    // standard deviation of the derivative of the profile
-    double asymmetry = 0;   // rms difference between the two halves of the profile, as heights
-    double height = 0;      // of the step, code values
-    double moved_px = 0;    // motion across the edge since the previous frame; NaN: not known
+    EdgeLine line;
+    double width_px = 0;   // standard deviation of the derivative of the profile
+    double asymmetry = 0;  // rms difference between the two halves of the profile, as heights
+    double height = 0;     // of the step, code values
+    double moved_px = 0;   // motion across the edge since the previous frame; NaN: not known
     bool is_long = false;
     StepEdge step;
     std::vector<ChromaStep> chroma;
   };
+  // The edge of a step, without its motion and chroma. `dark`, `unit`: luma of black, and of white
+  // above black, code values.
+  static Edge edge_of(StraightStep found, double dark, double unit);
+  // Whether the edge was added before. An edge that stays at its place in the picture, such as one
+  // of the own aircraft, is the same edge in all frames.
   bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable(double codec_step) const;
   std::vector<const StepEdge*> sharp_ones(double codec_step) const;

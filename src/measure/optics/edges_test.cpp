@@ -70,10 +70,9 @@ StepResponse measured(double line_depth) {
   EdgeMeter meter(nullptr, {});
   for (const double shift_px : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5})
     meter.add(bars(line_depth, shift_px), std::nullopt);
-  std::string why;
-  const auto found = meter.result(why);
-  EXPECT_TRUE(found) << why;
-  return found.value_or(StepResponse{});
+  const auto found = meter.result();
+  EXPECT_TRUE(found) << found.why();
+  return found ? *found : StepResponse{};
 }
 
 TEST(Edges, SpreadOfCleanOnes) {
@@ -114,11 +113,10 @@ TEST(Edges, ChromaThatIsSofterThanLuma) {
         }
       meter.add(picture, std::nullopt);
     }
-    std::string why;
-    const auto luma = meter.result(why);
-    ASSERT_TRUE(luma) << why;
-    const auto found = meter.chroma(*luma, why);
-    ASSERT_TRUE(found) << why;
+    const auto luma = meter.result();
+    ASSERT_TRUE(luma) << luma.why();
+    const auto found = meter.chroma(*luma);
+    ASSERT_TRUE(found) << found.why();
     std::printf(
         "chroma beyond luma: %.2f +- %.2f px (%.2f)\n", found->value, found->sigma, beyond_px);
     EXPECT_NEAR(found->value, beyond_px, 0.1 * beyond_px);
@@ -134,11 +132,10 @@ TEST(Edges, WithoutColourSayNothingOfChroma) {
         std::fill_n(picture.planes[p].row(y), picture.planes[p].width, std::uint8_t{128});
     meter.add(picture, std::nullopt);
   }
-  std::string why;
-  const auto luma = meter.result(why);
-  ASSERT_TRUE(luma) << why;
-  EXPECT_FALSE(meter.chroma(*luma, why));
-  EXPECT_EQ(why, "the clip shows 0 sharp edges with a clean step of colour; it takes 12");
+  const auto luma = meter.result();
+  ASSERT_TRUE(luma) << luma.why();
+  EXPECT_EQ(meter.chroma(*luma).why(),
+            "the clip shows 0 sharp edges with a clean step of colour; it takes 12");
 }
 
 // An edge that does not move, such as one of the own aircraft, counts once in ten frames.
@@ -147,9 +144,8 @@ TEST(Edges, ThatStayWhereTheyAreAreOne) {
   for (int frame = 0; frame < 10; ++frame) meter.add(bars(0, 0), std::nullopt);
   EdgeMeter once(nullptr, {});
   once.add(bars(0, 0), std::nullopt);
-  std::string why;
-  ASSERT_TRUE(meter.result(why));
-  ASSERT_TRUE(once.result(why));
+  ASSERT_TRUE(meter.result());
+  ASSERT_TRUE(once.result());
   EXPECT_GT(once.profile().edges, 10);
   EXPECT_EQ(meter.profile().edges, once.profile().edges);
 }
@@ -173,10 +169,9 @@ TEST(Edges, ThatACodecSoftenedGiveWayToThoseThatStandOutFromItsStep) {
                   std::uint8_t{128});
     meter.add(codec.coded(frame, grey), std::nullopt);
   }
-  std::string why;
-  const auto all = meter.result(why);
-  const auto clear = meter.result(why, kStep);
-  ASSERT_TRUE(all && clear) << why;
+  const auto all = meter.result();
+  const auto clear = meter.result(kStep);
+  ASSERT_TRUE(all && clear) << all.why() << clear.why();
   EXPECT_NEAR(clear->point_spread_px.value, kSpreadPx, 0.05);
   EXPECT_GT(std::abs(all->point_spread_px.value - kSpreadPx),
             std::abs(clear->point_spread_px.value - kSpreadPx));
@@ -187,9 +182,7 @@ TEST(Edges, NoneIsNoAnswer) {
   image::Picture grey = image::make_picture(320, 240, {});
   for (int y = 0; y < 240; ++y) std::fill_n(grey.planes[0].row(y), 320, std::uint8_t{128});
   meter.add(grey, std::nullopt);
-  std::string why;
-  EXPECT_FALSE(meter.result(why));
-  EXPECT_EQ(why, "the clip shows 0 clean straight edges; it takes 12");
+  EXPECT_EQ(meter.result().why(), "the clip shows 0 clean straight edges; it takes 12");
 }
 
 // Edges of different softness in the world, some with lines along them, through an unsharp mask.

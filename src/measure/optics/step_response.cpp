@@ -16,21 +16,21 @@ namespace airtruth::calibration {
 namespace {
 
 // Radii of the unsharp mask that are tried, px.
-constexpr std::array kRadii = {0.6, 0.75, 0.9, 1.05, 1.25, 1.5, 1.8, 2.2, 2.7};
+constexpr std::array kTriedRadiiPx = {0.6, 0.75, 0.9, 1.05, 1.25, 1.5, 1.8, 2.2, 2.7};
 // Prior of the radius: its median, px, and the standard deviation of its logarithm.
-constexpr double kUsualRadius = 1.1, kUsualRadiusSpread = 0.3;
+constexpr double kMedianRadiusPx = 1.1, kRadiusLogSigma = 0.3;
 // An amount of sharpening is significant above this multiple of its standard error.
-constexpr double kSure = 2;
+constexpr double kMinAmountInErrors = 2;
 // Lower bound of the rms residual of an edge, in heights 0 to 1. A smaller residual is accidental.
-constexpr double kLeastRms = 0.0005;
+constexpr double kMinRms = 0.0005;
 // Scatter of the amounts of edges beyond their fitted errors.
-constexpr double kAmountLuck = 0.15;
+constexpr double kAmountScatter = 0.15;
 // Excess of the logarithm of an edge's spread over the camera's at which the edge has half weight.
-constexpr double kSoft = 0.5;
+constexpr double kHalfWeightExcess = 0.5;
 // Effective number of independent residuals of an edge in the likelihood of its rms. It is much
 // smaller than the number of samples, since neighbouring samples and edges of one scene have
 // correlated errors.
-constexpr double kCounts = 6;
+constexpr double kIndependentResiduals = 6;
 
 struct Likely {
   double value = 0, log_likelihood = 0;
@@ -87,9 +87,14 @@ double sum_likelihood(double sum, double world, double error) {
 // other effects outside the model change the spread by a random amount, which is occasionally
 // larger.
 double likelihood(double over_camera, double world, double error) {
-  constexpr double kLuck = 0.05, kMoreLuck = 0.2, kMore = 0.1, kAtLeast = 1e-4;
-  return (1 - kMore) * sum_likelihood(over_camera, world, std::hypot(error, kLuck)) +
-         kMore * sum_likelihood(over_camera, world, std::hypot(error, kMoreLuck)) + kAtLeast;
+  // Standard deviations of the logarithm of the spread: of most edges, and of outliers.
+  constexpr double kScatter = 0.05, kOutlierScatter = 0.2;
+  constexpr double kOutlierShare = 0.1;
+  // Likelihood of an edge that neither describes.
+  constexpr double kMinLikelihood = 1e-4;
+  return (1 - kOutlierShare) * sum_likelihood(over_camera, world, std::hypot(error, kScatter)) +
+         kOutlierShare * sum_likelihood(over_camera, world, std::hypot(error, kOutlierScatter)) +
+         kMinLikelihood;
 }
 
 // The posterior mean of the camera's spread, marginalised over the mean excess in the world.
@@ -97,11 +102,11 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
   std::vector<double> spreads;
   for (const EdgeFit& fit : fits) spreads.push_back(std::log(fit.spread_px));
   const auto [least, most] = std::minmax_element(spreads.begin(), spreads.end());
-  constexpr int kPlaces = 200;
-  const double first = *least, step = (*most - *least) / (kPlaces - 1);
+  constexpr int kTriedSpreads = 200;
+  const double first = *least, step = (*most - *least) / (kTriedSpreads - 1);
   std::vector<Likely> all;
   for (const double world : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64})
-    for (int i = 0; i < kPlaces; ++i) {
+    for (int i = 0; i < kTriedSpreads; ++i) {
       Likely camera{first + i * step, 0};
       for (std::size_t e = 0; e < fits.size(); ++e)
         camera.log_likelihood +=
@@ -114,10 +119,11 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
 // Reduces the weight of soft edges. The effect of the camera shows on sharp edges; softer ones do
 // not have a Gaussian profile and imply a negative amount of sharpening.
 void weigh(std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
-  const std::vector<EdgeFit> fits = fit_edges(edges, kUsualRadius, 0, tone);
+  const std::vector<EdgeFit> fits = fit_edges(edges, kMedianRadiusPx, 0, tone);
   const double camera_px = camera_spread(fits).value;
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    const double softer = std::max(0.0, std::log(fits[e].spread_px / camera_px)) / kSoft;
+    const double softer =
+        std::max(0.0, std::log(fits[e].spread_px / camera_px)) / kHalfWeightExcess;
     edges[e].weight = 1 / (1 + softer * softer);
   }
 }
@@ -130,7 +136,7 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges,
   std::vector<Weighted> amounts;
   const std::vector<EdgeFit> fits = fit_edges(edges, radius_px, std::nullopt, tone);
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    const double error = std::hypot(fits[e].amount_error, kAmountLuck);
+    const double error = std::hypot(fits[e].amount_error, kAmountScatter);
     amounts.push_back({fits[e].amount, edges[e].weight / (error * error)});
   }
   const double middle = median_of(amounts);
@@ -142,7 +148,7 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges,
   constexpr double kSigmaFromMedian = 1.4826;
   // The median of Gaussian values has the error of a mean of 2 / pi as many values.
   const double many = total * total / squares * 2 / kPi;
-  const double scatter = std::hypot(kSigmaFromMedian * median_of(amounts), kAmountLuck);
+  const double scatter = std::hypot(kSigmaFromMedian * median_of(amounts), kAmountScatter);
   return {middle, scatter / std::sqrt(many)};
 }
 
@@ -151,11 +157,11 @@ double log_likelihood(const std::vector<GatheredEdge>& edges,
                       double radius_px,
                       double amount,
                       const image::ToneCurve& tone) {
-  const double off = std::log(radius_px / kUsualRadius) / kUsualRadiusSpread;
+  const double off = std::log(radius_px / kMedianRadiusPx) / kRadiusLogSigma;
   double sum = -0.5 * off * off;
   const std::vector<EdgeFit> fits = fit_edges(edges, radius_px, amount, tone);
   for (std::size_t e = 0; e < edges.size(); ++e)
-    sum -= kCounts * edges[e].weight * std::log(std::max(fits[e].rms, kLeastRms));
+    sum -= kIndependentResiduals * edges[e].weight * std::log(std::max(fits[e].rms, kMinRms));
   return sum;
 }
 
@@ -165,7 +171,7 @@ struct Mask {
 
 Mask likely_mask(const std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
   std::vector<Likely> log_radii, amounts;
-  for (const double radius_px : kRadii) {
+  for (const double radius_px : kTriedRadiiPx) {
     const double amount = common_amount(edges, radius_px, tone).value;
     const double likelihood = log_likelihood(edges, radius_px, amount, tone);
     log_radii.push_back({std::log(radius_px), likelihood});
@@ -175,8 +181,8 @@ Mask likely_mask(const std::vector<GatheredEdge>& edges, const image::ToneCurve&
   mask.amount = common_amount(edges, mask.radius_px.value, tone);
   // A camera's mask does not soften. A weak mask is hardly distinguishable from no mask with a
   // slightly smaller spread.
-  if (mask.amount.value <= kSure * mask.amount.sigma)
-    return {{0, mask.amount.sigma}, {kUsualRadius, kUsualRadius * kUsualRadiusSpread}};
+  if (mask.amount.value <= kMinAmountInErrors * mask.amount.sigma)
+    return {{0, mask.amount.sigma}, {kMedianRadiusPx, kMedianRadiusPx * kRadiusLogSigma}};
   mask.amount.sigma = std::hypot(mask.amount.sigma, mean_of(amounts).sigma);
   return mask;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "foundation/image/tone_curve.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 
 // The step response of a camera: a Gaussian point spread in linear light, the tone curve and an
 // unsharp mask on coded luma, each integrated over whole pixels (step_model.h). It is fitted to the

@@ -13,17 +13,25 @@
 namespace airtruth::calibration {
 namespace {
 
-constexpr std::size_t kMostFrames = 300;
+// Frames whose crops are kept, and the size of a crop, px: they bound memory to 45 MB.
+constexpr std::size_t kMaxFrames = 300;
 constexpr int kCropWidth = 448;
 constexpr int kCropHeight = 336;
 // Least speed of a frame in motion, px per frame.
-constexpr double kFastPx = 4;
+constexpr double kMinMovingSpeed = 4;
 // Largest speed of a frame at rest, as a share of the speed of the frame in motion.
-constexpr double kSlowShare = 0.35;
+constexpr double kMaxRestSpeedShare = 0.35;
 // Largest distance between the two, frames.
-constexpr std::size_t kNear = 4;
-constexpr std::size_t kMostPairs = 60;
-constexpr std::size_t kFewestPairs = 8;
+constexpr std::size_t kMaxFramesApart = 4;
+// Number of pairs of a frame in motion and a frame at rest.
+constexpr std::size_t kMaxPairs = 60;
+constexpr std::size_t kMinPairs = 8;
+// Largest length of a blur that is tried, as a multiple of the motion in one frame interval.
+constexpr double kMaxLengthShare = 1.3;
+// Least share of the interval that is measured, absolute and in standard errors: below them the
+// frames in motion are as sharp as those at rest.
+constexpr double kMinShare = 0.04;
+constexpr double kMinShareInErrors = 2;
 
 // Energy of the gradients of the picture along a direction divided by that across it.
 double slope_ratio(const cv::Mat& grey, const Pixel& along) {
@@ -97,7 +105,7 @@ std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
 }
 
 void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& moved) {
-  if (frames_++ >= kMostFrames) return;
+  if (frames_++ >= kMaxFrames) return;
   Shot& shot = shots_.back();
   const Pixel before = shot.places.empty() ? Pixel(0, 0) : shot.places.back();
   shot.places.push_back(before + moved.value_or(Pixel(0, 0)));
@@ -124,13 +132,15 @@ void BlurMeter::cut() {
 
 std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares) {
   std::size_t tried = 0;
-  for (std::size_t k = 1; k < shot.crops.size() && shares.size() < kMostPairs; ++k) {
+  for (std::size_t k = 1; k < shot.crops.size() && shares.size() < kMaxPairs; ++k) {
     const auto fast = rate_at(shot.places, k);
-    if (!fast || !shot.known[k] || fast->norm() < kFastPx) continue;
+    if (!fast || !shot.known[k] || fast->norm() < kMinMovingSpeed) continue;
     const Pixel along = fast->normalized();
     std::optional<std::size_t> partner;
-    double slowest = kSlowShare * fast->norm();
-    for (std::size_t j = k > kNear ? k - kNear : 0; j <= k + kNear && j < shot.crops.size(); ++j) {
+    double slowest = kMaxRestSpeedShare * fast->norm();
+    for (std::size_t j = k > kMaxFramesApart ? k - kMaxFramesApart : 0;
+         j <= k + kMaxFramesApart && j < shot.crops.size();
+         ++j) {
       const auto rate = rate_at(shot.places, j);
       if (j == k || !rate || !shot.known[j] || rate->norm() >= slowest) continue;
       slowest = rate->norm();
@@ -141,7 +151,7 @@ std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares)
     cv::Mat still, moving;
     shot.crops[*partner].convertTo(still, CV_32F);
     shot.crops[k].convertTo(moving, CV_32F);
-    const auto length = length_of(still, moving, along, 1.3 * fast->norm());
+    const auto length = length_of(still, moving, along, kMaxLengthShare * fast->norm());
     if (!length) continue;
     // The neighbour is slightly blurred as well; variances add.
     const double own = slowest * slowest / fast->squaredNorm();
@@ -150,23 +160,23 @@ std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares)
   return tried;
 }
 
-std::optional<Estimate> BlurMeter::share(std::string& why) const {
+Measured<Estimate> BlurMeter::share() const {
   std::vector<double> shares;
   std::size_t tried = 0;
   for (const Shot& shot : shots_) tried += add_shares(shot, shares);
-  if (shares.size() < kFewestPairs) {
-    why = tried < kFewestPairs
-              ? "too few frames in fast motion have a neighbour at rest"
-              : "moving frames have lost more detail than a whole frame's exposure would take";
-    return std::nullopt;
+  if (shares.size() < kMinPairs) {
+    return NotMeasured{
+        tried < kMinPairs
+            ? "too few frames in fast motion have a neighbour at rest"
+            : "moving frames have lost more detail than a whole frame's exposure would take"};
   }
   std::sort(shares.begin(), shares.end());
   const std::size_t n = shares.size();
   const double spread = (shares[n * 84 / 100] - shares[n * 16 / 100]) / 2;
   const Estimate result{shares[n / 2], 1.25 * spread / std::sqrt(double(n))};
-  if (result.value < 0.04 || result.value < 2 * result.sigma) {
-    why = "frames in motion are as sharp as others: the exposure is too short to be told";
-    return std::nullopt;
+  if (result.value < kMinShare || result.value < kMinShareInErrors * result.sigma) {
+    return NotMeasured{
+        "frames in motion are as sharp as others: the exposure is too short to be told"};
   }
   return result;
 }

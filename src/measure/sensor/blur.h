@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -10,7 +9,7 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 
 namespace airtruth::calibration {
 
@@ -34,10 +33,10 @@ class BlurMeter {
   void add(const image::Picture& frame, const std::optional<Pixel>& moved);
   // Marks a cut: the next frame begins a shot and has no neighbour before it.
   void cut();
-  // Empty, with the reason in `why`, where too few moving frames have a neighbour at rest, where
-  // moving frames have lost more detail than a whole interval of exposure explains, and where the
-  // exposure is too short to measure.
-  std::optional<Estimate> share(std::string& why) const;
+  // Not measured where too few moving frames have a neighbour at rest, where moving frames have
+  // lost more detail than a whole interval of exposure explains, and where the exposure is too
+  // short to measure.
+  Measured<Estimate> share() const;
 
  private:
   struct Shot {

@@ -13,14 +13,28 @@
 namespace airtruth::calibration {
 namespace {
 
+// Side of a block, px.
 constexpr int kSide = 12;
+// Number of brightnesses, of equal width in coded luma.
 constexpr int kBins = 24;
 // Share of the blocks of one brightness that are taken as flat.
 constexpr double kFlatShare = 0.12;
 // Fewest flat blocks of one brightness.
-constexpr std::size_t kFewestBlocks = 12;
+constexpr std::size_t kMinBlocks = 12;
 // Variance of rounding to whole code values, squared code values.
 constexpr double kRounding = 1.0 / 12;
+// Code values at and beyond which luma counts as clipped.
+constexpr int kDarkestCode = 2, kBrightestCode = 250;
+// Upper bound of the weight of a point of the curve, blocks, so that the many blocks of sky do not
+// dominate the dark points.
+constexpr int kMaxBlocksOfWeight = 40;
+// Relative excess of a point over the curve from which on it counts as texture.
+constexpr double kTextureExcess = 0.04;
+// Bound of a squared relative residual, so that texture does not widen the error.
+constexpr double kMaxSquaredResidual = 0.02;
+// Below this variance in linear light the noise is 0; it corresponds to a hundredth of a code
+// value.
+constexpr double kMinVariance = 1e-9;
 
 struct Statistics {
   double mean = 0;
@@ -39,7 +53,7 @@ Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
       const int v = luma.row(y0 + y)[x0 + x];
-      result.clipped = result.clipped || v <= 2 || v >= 250;
+      result.clipped = result.clipped || v <= kDarkestCode || v >= kBrightestCode;
       sum += v;
       sum_x += v * (x - kHalf);
       sum_y += v * (y - kHalf);
@@ -86,6 +100,67 @@ double width_from_correlation(double correlation) {
   return high < 0.05 ? 0 : 0.5 * (low + high);
 }
 
+// A point of the noise curve in linear light: its light x, its variance y, and the number of
+// blocks.
+struct CurvePoint {
+  double x, y, blocks;
+};
+
+// The curve: variance in linear light = gain x + floor.
+struct NoiseCurve {
+  Estimate gain, floor;
+};
+
+// One weighted least-squares fit, whose parameters are not negative.
+struct LineFit {
+  double gain = 0, floor = 0;
+  // Sums of the weights and of weight x^2, and the determinant of the normal equations.
+  double sw = 0, sxx = 0, det = 0;
+};
+
+// The fit with the weights that follow from the fit `before`; nullptr for the first.
+LineFit line_fit(const std::vector<CurvePoint>& points, const LineFit* before) {
+  LineFit fit;
+  double sx = 0, sy = 0, sxy = 0;
+  for (const auto& [x, y, blocks] : points) {
+    const double expected = before == nullptr ? y : before->gain * x + before->floor;
+    // The error of a variance is proportional to the variance.
+    const double error = std::max(expected, kMinVariance);
+    const double above = before == nullptr ? 0 : (y - expected) / error;
+    const double trust = above > kTextureExcess ? std::pow(kTextureExcess / above, 3) : 1;
+    const double w = trust * blocks / (error * error);
+    fit.sw += w, sx += w * x, sy += w * y, fit.sxx += w * x * x, sxy += w * x * y;
+  }
+  fit.det = fit.sw * fit.sxx - sx * sx;
+  fit.gain = fit.det > 0 ? (fit.sw * sxy - sx * sy) / fit.det : 0;
+  fit.floor = fit.det > 0 ? (fit.sxx * sy - sx * sxy) / fit.det : sy / fit.sw;
+  if (fit.gain < 0) fit.gain = 0, fit.floor = sy / fit.sw;
+  if (fit.floor < 0) fit.floor = 0, fit.gain = sxy / fit.sxx;
+  return fit;
+}
+
+// Texture only increases the measured variance. Points that lie above the curve by more than the
+// others therefore lose weight in each round; points below the curve keep theirs.
+NoiseCurve noise_curve(const std::vector<CurvePoint>& points) {
+  constexpr int kRounds = 30;
+  LineFit fit = line_fit(points, nullptr);
+  for (int round = 1; round < kRounds; ++round) {
+    const LineFit before = fit;
+    fit = line_fit(points, &before);
+  }
+  double chi = 0;
+  for (const auto& [x, y, blocks] : points) {
+    const double e =
+        (y - fit.gain * x - fit.floor) / std::max(fit.gain * x + fit.floor, kMinVariance);
+    chi += blocks * std::min(e * e, kMaxSquaredResidual);
+  }
+  if (fit.gain < kMinVariance) fit.gain = 0;
+  if (fit.floor < kMinVariance) fit.floor = 0;
+  const double scale = chi / std::max<double>(1, double(points.size()) - 2);
+  return {{fit.gain, fit.det > 0 ? std::sqrt(scale * fit.sw / fit.det) : fit.gain},
+          {fit.floor, fit.det > 0 ? std::sqrt(scale * fit.sxx / fit.det) : fit.floor}};
+}
+
 }  // namespace
 
 void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
@@ -111,7 +186,6 @@ void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
     }
 }
 
-// The flattest blocks of each brightness.
 std::vector<NoiseMeter::Block> NoiseMeter::chosen() const {
   std::array<std::vector<Block>, kBins> bins;
   for (const Block& block : blocks_)
@@ -119,12 +193,12 @@ std::vector<NoiseMeter::Block> NoiseMeter::chosen() const {
       bins[static_cast<std::size_t>(block.luma * kBins)].push_back(block);
   std::vector<Block> result;
   for (std::vector<Block>& bin : bins) {
-    if (bin.size() < kFewestBlocks) continue;
+    if (bin.size() < kMinBlocks) continue;
     std::sort(bin.begin(), bin.end(), [](const Block& a, const Block& b) {
       return a.flatness < b.flatness;
     });
     const auto count =
-        std::max(kFewestBlocks / 2, static_cast<std::size_t>(kFlatShare * double(bin.size())));
+        std::max(kMinBlocks / 2, static_cast<std::size_t>(kFlatShare * double(bin.size())));
     result.insert(result.end(), bin.begin(), bin.begin() + static_cast<std::ptrdiff_t>(count));
   }
   return result;
@@ -149,85 +223,42 @@ std::vector<NoisePoint> NoiseMeter::points() const {
   return points;
 }
 
-std::optional<NoiseMeter::Result> NoiseMeter::result(std::string& why) const {
-  const std::vector<NoisePoint> curve = points();
-  if (curve.size() < 2) {
-    why = "the clip has flat parts of " + std::to_string(curve.size()) +
-          " brightnesses; a noise curve takes two";
-    return std::nullopt;
-  }
-  // The model is: variance in linear light = gain x + floor. The fit is weighted least squares, and
-  // neither parameter is negative.
-  struct Row {
-    double x, y, blocks;
-  };
+Measured<NoiseMeter::Result> NoiseMeter::result() const {
+  const std::vector<NoisePoint> measured = points();
+  if (measured.size() < 2)
+    return NotMeasured{"the clip has flat parts of " + std::to_string(measured.size()) +
+                       " brightnesses; a noise curve takes two"};
   const composite::Sensor unit{.noise_floor = 1, .tone = tone_};
-  std::vector<Row> rows;
-  for (const NoisePoint& p : curve) {
+  std::vector<CurvePoint> curve;
+  for (const NoisePoint& p : measured) {
     const double x = double(tone_.linear_from_coded_clamped(static_cast<float>(p.luma)));
     const double codes = double(composite::noise_sigma(
         static_cast<float>(p.luma), static_cast<float>(codes_per_unit_), unit));
     const double y = p.sigma_codes * p.sigma_codes / (codes * codes);
-    // Upper bound of the weight of a point, so that the many blocks of sky do not dominate the dark
-    // points.
-    constexpr int kEnough = 40;
-    rows.push_back({x, y, double(std::min(p.blocks, kEnough))});
+    curve.push_back({x, y, double(std::min(p.blocks, kMaxBlocksOfWeight))});
   }
-  // Texture only increases the measured variance. Points that lie above the curve by more than the
-  // others therefore lose weight in each round; points below the curve keep theirs.
-  double gain = 0, floor = 0, sw = 0, sxx = 0, det = 0, chi = 0;
-  for (int round = 0; round < 30; ++round) {
-    double sx = 0, sy = 0, sxy = 0;
-    sw = sxx = 0;
-    for (const auto& [x, y, blocks] : rows) {
-      const double expected = round == 0 ? y : gain * x + floor;
-      // The error of a variance is proportional to the variance.
-      const double error = std::max(expected, 1e-9);
-      const double above = round == 0 ? 0 : (y - expected) / error;
-      constexpr double kTextured = 0.04;
-      const double trust = above > kTextured ? std::pow(kTextured / above, 3) : 1;
-      const double w = trust * blocks / (error * error);
-      sw += w, sx += w * x, sy += w * y, sxx += w * x * x, sxy += w * x * y;
-    }
-    det = sw * sxx - sx * sx;
-    gain = det > 0 ? (sw * sxy - sx * sy) / det : 0;
-    floor = det > 0 ? (sxx * sy - sx * sxy) / det : sy / sw;
-    if (gain < 0) gain = 0, floor = sy / sw;
-    if (floor < 0) floor = 0, gain = sxy / sxx;
-    chi = 0;
-    for (const auto& [x, y, blocks] : rows) {
-      const double e = (y - gain * x - floor) / std::max(gain * x + floor, 1e-9);
-      chi += blocks * std::min(e * e, 0.02);
-    }
-  }
-  // Below this variance the noise is taken as 0; it corresponds to a hundredth of a code value.
-  constexpr double kNone = 1e-9;
-  if (gain < kNone) gain = 0;
-  if (floor < kNone) floor = 0;
-  const double scale = chi / std::max<double>(1, double(rows.size()) - 2);
-  Result result;
-  result.gain = {gain, det > 0 ? std::sqrt(scale * sw / det) : gain};
-  result.floor = {floor, det > 0 ? std::sqrt(scale * sxx / det) : floor};
+  const NoiseCurve fitted = noise_curve(curve);
+  return Result{fitted.gain, fitted.floor, correlation_px()};
+}
+
+Estimate NoiseMeter::correlation_px() const {
   std::vector<double> correlations;
   for (const Block& block : chosen())
     if (block.variance > 2 * kRounding)
       correlations.push_back(block.covariance / (block.variance - kRounding));
-  if (correlations.size() >= kFewestBlocks) {
-    std::sort(correlations.begin(), correlations.end());
-    const std::size_t n = correlations.size();
-    const double middle = correlations[n / 2];
-    const double spread = (correlations[n * 84 / 100] - correlations[n * 16 / 100]) / 2;
-    const double error = 1.25 * spread / std::sqrt(double(n));
-    const double width = width_from_correlation(middle);
-    const double off = std::max(std::abs(width_from_correlation(middle + error) - width),
-                                std::abs(width_from_correlation(middle - error) - width));
-    // If the correlation one error to either side gives the same width, the blocks do not determine
-    // the width.
-    result.correlation_px = {width, off > 0 ? off : std::max(1.0, width)};
-  } else {
-    result.correlation_px = {0, 1};
-  }
-  return result;
+  if (correlations.size() < kMinBlocks) return {0, 1};
+  std::sort(correlations.begin(), correlations.end());
+  const std::size_t n = correlations.size();
+  const double middle = correlations[n / 2];
+  const double spread = (correlations[n * 84 / 100] - correlations[n * 16 / 100]) / 2;
+  // The error of the median of Gaussian values is 1.25 times that of their mean.
+  const double error = 1.25 * spread / std::sqrt(double(n));
+  const double width = width_from_correlation(middle);
+  const double off = std::max(std::abs(width_from_correlation(middle + error) - width),
+                              std::abs(width_from_correlation(middle - error) - width));
+  // If the correlation one error to either side gives the same width, the blocks do not determine
+  // the width.
+  return {width, off > 0 ? off : std::max(1.0, width)};
 }
 
 }  // namespace airtruth::calibration

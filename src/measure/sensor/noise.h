@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 #include "measure/sensor/noise_point.h"
 
 namespace airtruth::calibration {
@@ -25,8 +24,8 @@ class NoiseMeter {
   struct Result {
     Estimate gain, floor, correlation_px;
   };
-  // Empty, with the reason in `why`, where there are too few flat blocks.
-  std::optional<Result> result(std::string& why) const;
+  // Not measured where there are flat blocks of fewer than two brightnesses.
+  Measured<Result> result() const;
   // The noise by brightness, to which result() fits the noise curve.
   std::vector<NoisePoint> points() const;
 
@@ -41,7 +40,11 @@ class NoiseMeter {
     // Variance in the frame that decides about flatness, squared code values.
     double flatness = 0;
   };
+  // The flattest blocks of each brightness.
   std::vector<Block> chosen() const;
+  // Standard deviation, px, of the Gaussian under which white noise has the blocks' correlation
+  // between neighbouring pixels; 0 +- 1 where too few blocks are noisier than rounding.
+  Estimate correlation_px() const;
 
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;

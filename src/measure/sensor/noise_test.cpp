@@ -60,9 +60,8 @@ TEST(NoiseMeter, MeasuresTheCurve) {
     const NoiseMeter meter = metered(lumas, truth);
     const std::vector<NoisePoint> points = meter.points();
     ASSERT_EQ(points.size(), lumas.size());
-    std::string why;
-    const auto fitted = meter.result(why);
-    ASSERT_TRUE(fitted) << why;
+    const auto fitted = meter.result();
+    ASSERT_TRUE(fitted) << fitted.why();
     composite::Sensor found = truth;
     found.noise_gain = fitted->gain.value;
     found.noise_floor = fitted->floor.value;
@@ -79,9 +78,8 @@ TEST(NoiseMeter, MeasuresTheCurve) {
 
 TEST(NoiseMeter, OneBrightnessIsNoCurve) {
   const NoiseMeter meter = metered({12.5 / 24}, {.noise_gain = 2e-4, .noise_floor = 1e-5});
-  std::string why;
-  EXPECT_FALSE(meter.result(why));
-  EXPECT_NE(why, "");
+  EXPECT_EQ(meter.result().why(),
+            "the clip has flat parts of 1 brightnesses; a noise curve takes two");
 }
 
 }  // namespace

@@ -16,6 +16,14 @@ namespace {
 // from the middle, averaged over some 5 frames). Frames that are copies of one another, and a
 // camera on a tripod, have a smaller shear, and do not show that the readout time is small.
 constexpr double kShearNoise = 5e-5;
+// Least number of frames of known motion. That is two seconds of video at 30 frames/s.
+constexpr std::size_t kMinFrames = 60;
+// Residual at which a frame has a quarter of its weight, in median residuals.
+constexpr double kScaleInMedians = 3;
+// Largest standard error, and largest magnitude, of a share of the frame interval that is returned.
+// A sensor cannot be read for longer than one interval; the rest allows for the error.
+constexpr double kMaxShareError = 0.15;
+constexpr double kMaxShare = 1.2;
 
 // A low-pass filter with binomial weights. It removes what is faster than a third of the frame
 // rate, where the differentiator is no longer exact. NaN if a neighbour is NaN.
@@ -80,21 +88,11 @@ void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
     }
 }
 
-}  // namespace
-
-std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
-                                      int width,
-                                      int height,
-                                      std::string& why) {
-  Pairs pairs;
-  for (const Steps& shot : shots) add_pairs(shot, {width / 2.0, height / 2.0}, pairs);
-  if (pairs.size() < 60) {
-    why = "the motion of too few frames is known";
-    return std::nullopt;
-  }
-  // A robust line through the origin: least squares with the weights of Geman and McClure.
+// A robust line through the origin: least squares with the weights of Geman and McClure (1985).
+Estimate line_through_origin(const Pairs& pairs) {
+  constexpr int kRounds = 12;
   double slope = 0, error = 0, scale = 1e9;
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     double sxx = 0, sxy = 0, rest = 0, n = 0;
     std::vector<double> off;
     for (const auto& [x, y] : pairs) {
@@ -107,17 +105,23 @@ std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
     if (!(sxx > 0)) break;
     slope = sxy / sxx;
     error = std::sqrt(std::max(rest / n, kShearNoise * kShearNoise) / sxx);
-    scale = 3 * std::max(median(std::move(off)), kShearNoise);
+    scale = kScaleInMedians * std::max(median(std::move(off)), kShearNoise);
   }
-  if (!(error > 0) || error > 0.15) {
-    why = "the picture's speed changes too little from frame to frame";
-    return std::nullopt;
-  }
-  if (std::abs(slope) > 1.2) {
-    why = "the picture's shear follows its speed by more than a whole frame would";
-    return std::nullopt;
-  }
-  return Estimate{slope, error};
+  return {slope, error};
+}
+
+}  // namespace
+
+Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height) {
+  Pairs pairs;
+  for (const Steps& shot : shots) add_pairs(shot, {width / 2.0, height / 2.0}, pairs);
+  if (pairs.size() < kMinFrames) return NotMeasured{"the motion of too few frames is known"};
+  const Estimate share = line_through_origin(pairs);
+  if (!(share.sigma > 0) || share.sigma > kMaxShareError)
+    return NotMeasured{"the picture's speed changes too little from frame to frame"};
+  if (std::abs(share.value) > kMaxShare)
+    return NotMeasured{"the picture's shear follows its speed by more than a whole frame would"};
+  return share;
 }
 
 }  // namespace airtruth::calibration

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "foundation/geometry/transform.h"
-#include "measure/measured/estimate.h"
+#include "measure/measured/measured.h"
 
 namespace airtruth::calibration {
 
@@ -18,12 +17,8 @@ using Steps = std::vector<std::optional<Homography>>;
 // read downwards. A rolling shutter shears and stretches the picture when the speed changes between
 // frames: between neighbouring frames the shear is readout / height times the change of the
 // horizontal speed, and the stretch is readout / height times the change of the vertical speed.
-// `shots` has the steps of each shot. Empty, with the reason in `why`, where too
-// few motions are known, where the speed changes too little, and where the shear is larger than a
-// readout over a whole frame would cause.
-std::optional<Estimate> readout_share(const std::vector<Steps>& shots,
-                                      int width,
-                                      int height,
-                                      std::string& why);
+// `shots` has the steps of each shot. Not measured where too few motions are known, where the speed
+// changes too little, and where the shear is larger than a readout over a whole frame would cause.
+Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height);
 
 }  // namespace airtruth::calibration
