@@ -105,6 +105,23 @@ void add_contrast(const cv::Mat& difference, const cv::Mat& silhouette, Looks& l
   }
 }
 
+// Saturation and histogram of the silhouette.
+void add_colour(const Patch& patch, Looks& looks) {
+  double count = 0;
+  for (int j = 0; j < patch.rgb.rows; ++j)
+    for (int i = 0; i < patch.rgb.cols; ++i) {
+      if (patch.silhouette.at<unsigned char>(j, i) == 0) continue;
+      const auto p = patch.rgb.at<cv::Vec3b>(j, i);
+      const auto [low, high] = std::minmax({p[0], p[1], p[2]});
+      looks.saturation += high > 0 ? double(high - low) / high : 0;
+      for (std::size_t c = 0; c < 3; ++c) looks.histogram[8 * c + p[static_cast<int>(c)] / 32] += 1;
+      count += 1;
+    }
+  if (count == 0) return;
+  looks.saturation /= count;
+  for (double& bin : looks.histogram) bin /= 3 * count;
+}
+
 }  // namespace
 
 Looks looks_of(const Patch& patch) {
@@ -131,20 +148,7 @@ Looks looks_of(const Patch& patch) {
   if (moments.m00 > 0)
     looks.centre_px = {patch.x + moments.m10 / moments.m00 + 0.5,
                        patch.y + moments.m01 / moments.m00 + 0.5};
-  double count = 0;
-  for (int j = 0; j < patch.rgb.rows; ++j)
-    for (int i = 0; i < patch.rgb.cols; ++i) {
-      if (patch.silhouette.at<unsigned char>(j, i) == 0) continue;
-      const auto p = patch.rgb.at<cv::Vec3b>(j, i);
-      const auto [low, high] = std::minmax({p[0], p[1], p[2]});
-      looks.saturation += high > 0 ? double(high - low) / high : 0;
-      for (std::size_t c = 0; c < 3; ++c) looks.histogram[8 * c + p[static_cast<int>(c)] / 32] += 1;
-      count += 1;
-    }
-  if (count > 0) {
-    looks.saturation /= count;
-    for (double& bin : looks.histogram) bin /= 3 * count;
-  }
+  add_colour(patch, looks);
   return looks;
 }
 
@@ -154,8 +158,11 @@ double distance(const std::array<double, 24>& a, const std::array<double, 24>& b
   return std::sqrt(std::max(0.0, 1 - overlap));
 }
 
-std::vector<float> features_of(const Patch& patch) {
-  // At one size, so that an aircraft's own size says nothing.
+namespace {
+
+// Histograms of gradient orientations, weighted by the gradient, in the inner and in the outer half
+// of the patch. The patch is scaled to one size, so that the size of the aircraft has no effect.
+std::vector<float> orientations_of(const Patch& patch) {
   constexpr int kSide = 48;
   constexpr int kOrientations = 8;
   cv::Mat grey, gx, gy, size, angle;
@@ -179,6 +186,28 @@ std::vector<float> features_of(const Patch& patch) {
       }
     for (const float h : histogram) features.push_back(h / total);
   }
+  return features;
+}
+
+// The spread of grey within the silhouette, and the sharpest dark and bright corner of the patch,
+// all relative to `contrast`.
+std::vector<float> shading_of(const Patch& patch, double contrast) {
+  cv::Scalar mean, deviation;
+  if (cv::countNonZero(patch.silhouette) > 0)
+    cv::meanStdDev(patch.grey, mean, deviation, patch.silhouette);
+  cv::Mat laplacian;
+  cv::Laplacian(patch.grey, laplacian, CV_32F);
+  double low, high;
+  cv::minMaxLoc(laplacian, &low, &high);
+  return {static_cast<float>(deviation[0] / contrast),
+          static_cast<float>(high / contrast),
+          static_cast<float>(-low / contrast)};
+}
+
+}  // namespace
+
+std::vector<float> features_of(const Patch& patch) {
+  std::vector<float> features = orientations_of(patch);
   const Looks looks = looks_of(patch);
   const double contrast = std::abs(looks.contrast) + 4;
   for (const double v : {looks.edge_width_px,
@@ -188,17 +217,7 @@ std::vector<float> features_of(const Patch& patch) {
                          std::log(looks.fine_share + 1e-6),
                          looks.saturation})
     features.push_back(static_cast<float>(v));
-  // How far grey strays inside the silhouette, and its steps' sharpest over its range.
-  cv::Scalar mean, deviation;
-  if (cv::countNonZero(patch.silhouette) > 0)
-    cv::meanStdDev(patch.grey, mean, deviation, patch.silhouette);
-  features.push_back(static_cast<float>(deviation[0] / contrast));
-  cv::Mat laplacian;
-  cv::Laplacian(patch.grey, laplacian, CV_32F);
-  double low, high;
-  cv::minMaxLoc(laplacian, &low, &high);
-  features.push_back(static_cast<float>(high / contrast));
-  features.push_back(static_cast<float>(-low / contrast));
+  for (const float v : shading_of(patch, contrast)) features.push_back(v);
   return features;
 }
 

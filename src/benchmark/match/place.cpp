@@ -78,6 +78,43 @@ Pixel side_of(const std::vector<Spot>& spots, const lens::ImageSize& size) {
   return best;
 }
 
+// The range along `direction`, in metres, at which the larger side of the aircraft's box is
+// `size_px`. `range_m` is a first guess.
+double range_of_size(const annotation::Sight& sight,
+                     const annotation::SilhouettePoints& silhouette,
+                     const Quaternion& world_from_aircraft,
+                     const Vector3& direction,
+                     double size_px,
+                     double range_m) {
+  for (int round = 0; round < 4; ++round) {
+    const auto box =
+        annotation::exact_box(sight, silhouette, {world_from_aircraft, range_m * direction}, 0).box;
+    if (!box) throw Error("the intruder cannot be drawn where it would be placed");
+    range_m *= std::max(box->width, box->height) / size_px;
+  }
+  return range_m;
+}
+
+// Continues the path a little beyond the last frame, so that the frame is part of it.
+void extend(Beside& path, double end_s) {
+  if (path.times_s.size() < 2)
+    throw Error("the real aircraft stands still in the picture; nothing can fly beside it");
+  const Vector3 last = path.waypoints_ned_m.back();
+  path.waypoints_ned_m.push_back(
+      last + (last - path.waypoints_ned_m[path.times_s.size() - 2]) * 1e-3 + Vector3(1e-6, 0, 0));
+  path.times_s.push_back(end_s);
+}
+
+// The direction in cam of the place beside a spot.
+Vector3 direction_beside(const Spot& spot, const Pixel& side, const lens::Lens& lens) {
+  const Pixel place = spot.centre + kAway * 2 * std::max(8.0, spot.size_px) * side;
+  const Pixel bounded(std::clamp(place.x(), 1.0, lens.size().width - 1.0),
+                      std::clamp(place.y(), 1.0, lens.size().height - 1.0));
+  const auto ray = lens.ray_from_pixel(bounded);
+  if (!ray) throw Error("the lens has no direction where the intruder would be placed");
+  return *ray;
+}
+
 }  // namespace
 
 Beside path_beside(const RealBoxes& boxes,
@@ -98,21 +135,11 @@ Beside path_beside(const RealBoxes& boxes,
   Beside path;
   double range_m = 0;
   for (const Spot& spot : spots) {
-    const Pixel place = spot.centre + kAway * 2 * std::max(8.0, spot.size_px) * side;
-    const Pixel bounded(std::clamp(place.x(), 1.0, lens.size().width - 1.0),
-                        std::clamp(place.y(), 1.0, lens.size().height - 1.0));
-    const auto ray = lens.ray_from_pixel(bounded);
-    if (!ray) throw Error("the lens has no direction where the intruder would be placed");
-    const Vector3 direction = world_from_cam.rotation * *ray;
+    const Vector3 direction = world_from_cam.rotation * direction_beside(spot, side, lens);
     if (range_m <= 0)
       range_m =
           lens.focal_px() * std::max(extents.length_m(), extents.span_m()) / (scale * spot.size_px);
-    for (int round = 0; round < 4; ++round) {
-      const auto box =
-          annotation::exact_box(sight, silhouette, {turned, range_m * direction}, 0).box;
-      if (!box) throw Error("the intruder cannot be drawn where it would be placed");
-      range_m *= std::max(box->width, box->height) / (scale * spot.size_px);
-    }
+    range_m = range_of_size(sight, silhouette, turned, direction, scale * spot.size_px, range_m);
     const Vector3 p = range_m * direction;
     // A path's points stand apart; where the real one stands still, so does ours.
     if (!path.waypoints_ned_m.empty() &&
@@ -121,13 +148,7 @@ Beside path_beside(const RealBoxes& boxes,
     path.waypoints_ned_m.push_back(p);
     path.times_s.push_back(double(spot.frame - spots.front().frame) / frame_rate_hz);
   }
-  if (path.times_s.size() < 2)
-    throw Error("the real aircraft stands still in the picture; nothing can fly beside it");
-  // The last frame is part of it, and a little more.
-  const Vector3 last = path.waypoints_ned_m.back();
-  path.waypoints_ned_m.push_back(
-      last + (last - path.waypoints_ned_m[path.times_s.size() - 2]) * 1e-3 + Vector3(1e-6, 0, 0));
-  path.times_s.push_back(double(spots.back().frame - spots.front().frame + 1) / frame_rate_hz);
+  extend(path, double(spots.back().frame - spots.front().frame + 1) / frame_rate_hz);
   return path;
 }
 

@@ -262,12 +262,38 @@ bool is_unlike(const TypeFit& fit, const std::vector<TypeFit>& others) {
   });
 }
 
-// A type with the best of its grid.
+// A type with the best attitudes of the coarse grid.
 struct Contender {
   std::string name;
   aircraft::Aircraft aircraft;
   std::vector<Candidate> coarse;
 };
+
+// The types whose coarse silhouettes fit best, at most kTypesClosedIn, best first.
+std::vector<Contender> contenders_among(const std::vector<std::string>& types,
+                                        const cv::Mat& mask,
+                                        const Warn& warn_to,
+                                        const std::stop_token& stop) {
+  aircraft::LoadOptions load;
+  load.stop = stop;
+  std::vector<Contender> contenders;
+  for (const std::string& type : types) {
+    try {
+      contenders.push_back({type, aircraft::load_aircraft(type, load, {}), {}});
+    } catch (const Error& error) {
+      warn(warn_to, type + " is not compared with the real aircraft: " + error.what());
+      continue;
+    }
+    Contender& last = contenders.back();
+    last.coarse = coarse_fits({mask}, Views(last.aircraft.mesh), stop);
+  }
+  if (contenders.empty()) throw Error("no aircraft can be loaded to compare the real one with");
+  std::stable_sort(contenders.begin(), contenders.end(), [](const auto& a, const auto& b) {
+    return total_of(a.coarse[0]) > total_of(b.coarse[0]);
+  });
+  contenders.resize(std::min(contenders.size(), kTypesClosedIn));
+  return contenders;
+}
 
 }  // namespace
 
@@ -296,26 +322,8 @@ std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
                                const std::vector<std::string>& types,
                                const Warn& warn_to,
                                const std::stop_token& stop) {
-  aircraft::LoadOptions load;
-  load.stop = stop;
-  std::vector<Contender> contenders;
-  for (const std::string& type : types) {
-    try {
-      contenders.push_back({type, aircraft::load_aircraft(type, load, {}), {}});
-    } catch (const Error& error) {
-      warn(warn_to, type + " is not compared with the real aircraft: " + error.what());
-      continue;
-    }
-    Contender& last = contenders.back();
-    last.coarse = coarse_fits({masks[0]}, Views(last.aircraft.mesh), stop);
-  }
-  if (contenders.empty()) throw Error("no aircraft can be loaded to compare the real one with");
-  std::stable_sort(contenders.begin(), contenders.end(), [](const auto& a, const auto& b) {
-    return total_of(a.coarse[0]) > total_of(b.coarse[0]);
-  });
-  contenders.resize(std::min(contenders.size(), kTypesClosedIn));
   std::vector<std::pair<double, TypeFit>> fits;
-  for (const Contender& one : contenders) {
+  for (const Contender& one : contenders_among(types, masks[0], warn_to, stop)) {
     std::vector<TypeFit> of_type;
     for (const Candidate& fit : closed_in(masks, Views(one.aircraft.mesh), one.coarse, stop)) {
       const TypeFit next{one.name, pose_of(fit)};

@@ -54,6 +54,19 @@ cv::Mat small_mask(const cv::Mat& mask) {
   return small > 127;
 }
 
+// Keeps the boxes of the shot that has most of them.
+void keep_best_shot(const fs::path& video, const Warn& warn_to, RealAircraft& found) {
+  const auto [first, end] = best_shot(found.boxes, found.cuts);
+  if (!found.cuts.empty())
+    warn(warn_to,
+         fmt::format("{}: the clip is cut at frame {}; only the shot from frame {} on is compared",
+                     video.string(),
+                     fmt::join(found.cuts, ", "),
+                     first));
+  found.boxes.erase(found.boxes.begin(), found.boxes.lower_bound(first));
+  found.boxes.erase(found.boxes.lower_bound(end), found.boxes.end());
+}
+
 }  // namespace
 
 RealBoxes without_jumps(const RealBoxes& boxes) {
@@ -89,15 +102,7 @@ RealAircraft find_real(const fs::path& video,
       found.masks.emplace(frame->index, small_mask(seen->mask));
     }
   }
-  const auto [first, end] = best_shot(found.boxes, found.cuts);
-  if (!found.cuts.empty())
-    warn(warn_to,
-         fmt::format("{}: the clip is cut at frame {}; only the shot from frame {} on is compared",
-                     video.string(),
-                     fmt::join(found.cuts, ", "),
-                     first));
-  found.boxes.erase(found.boxes.begin(), found.boxes.lower_bound(first));
-  found.boxes.erase(found.boxes.lower_bound(end), found.boxes.end());
+  keep_best_shot(video, warn_to, found);
   found.boxes = without_jumps(found.boxes);
   if (most_frames > 0 && !found.boxes.empty())
     found.boxes.erase(found.boxes.lower_bound(found.boxes.begin()->first + most_frames),
