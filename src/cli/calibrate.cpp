@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -51,15 +53,51 @@ std::string profile_lines() {
   return lines;
 }
 
+// All texts of one kind, such as the reasons for missing values, in the order of their keys.
+using Texts = std::map<std::string, std::string>;
+
+Texts texts(const calibration::Quantities& quantities, std::string calibration::Quantity::*kind) {
+  Texts result;
+  for (const calibration::QuantityKey& key : calibration::kQuantityKeys)
+    if (const std::string& text = quantities.*key.member.*kind; !text.empty())
+      result[key.name] = text;
+  return result;
+}
+
+// Reports what is not measured.
+void report_missing(const calibration::Calibration& found, Console& console) {
+  Texts missing = texts(found.quantities, &calibration::Quantity::missing);
+  if (!found.no_horizon.empty()) missing["horizon"] = found.no_horizon;
+  for (const auto& [key, why] : missing) console.warning(key + " cannot be had: " + why);
+  if (!found.horizon_note.empty()) console.warning("horizon is " + found.horizon_note);
+  const std::string& note = found.quantities.extinction.note;
+  if (!note.empty()) console.warning("air.extinction_per_km is " + note);
+}
+
 // Reports which values do not come from the clip alone, and which are doubtful.
 void report_sources(const calibration::Calibration& found, Console& console) {
-  for (const auto& [key, source] : found.sources)
-    console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}",
-                               key,
-                               found.values.at(key)[0].value,
-                               found.values.at(key)[0].sigma,
-                               source));
-  for (const auto& [key, doubt] : found.doubts) console.warning(key + " is doubtful: " + doubt);
+  for (const auto& [key, source] : texts(found.quantities, &calibration::Quantity::source)) {
+    const calibration::Estimate& value = found.quantities.at(key).value();
+    console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}", key, value.value, value.sigma, source));
+  }
+  for (const auto& [key, doubt] : texts(found.quantities, &calibration::Quantity::doubt))
+    console.warning(key + " is doubtful: " + doubt);
+}
+
+// Reports how many quantities were measured, and how many of them on the clip alone.
+void report_count(const calibration::Calibration& found, const std::string& out, Console& console) {
+  std::size_t measured = 0, own = 0;
+  for (const calibration::QuantityKey& key : calibration::kQuantityKeys) {
+    const calibration::Quantity& quantity = found.quantities.*key.member;
+    measured += quantity.is_measured() ? 1 : 0;
+    own += quantity.is_measured() && quantity.source.empty() ? 1 : 0;
+  }
+  console.result(fmt::format("{}: {} values from {} frames, {} of them {}",
+                             out,
+                             measured,
+                             found.frames,
+                             own,
+                             found.clips > 1 ? "the clips' own" : "the clip's own"));
 }
 
 void calibrate(const CalibrateArguments& arguments, Context& context) {
@@ -96,17 +134,9 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
       calibration::with_profile(calibration::joined(std::move(measured)), profile);
   write_file(arguments.out, calibration::toml_from(found));
   if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
-  for (const auto& [key, why] : found.missing) console.warning(key + " cannot be had: " + why);
-  for (const char* key : {"horizon", "air.extinction_per_km"})
-    if (const auto note = found.notes.find(key); note != found.notes.end())
-      console.warning(note->first + " is " + note->second);
+  report_missing(found, console);
   report_sources(found, console);
-  console.result(fmt::format("{}: {} values from {} frames, {} of them {}",
-                             arguments.out,
-                             found.values.size(),
-                             found.frames,
-                             found.values.size() - found.sources.size(),
-                             clips.size() > 1 ? "the clips' own" : "the clip's own"));
+  report_count(found, arguments.out, console);
 }
 
 struct MaskArguments {

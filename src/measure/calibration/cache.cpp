@@ -17,22 +17,34 @@ using Json = nlohmann::ordered_json;
 
 // Version of the methods. It must be increased whenever the values of a calibration change.
 constexpr int kCalibrationVersion = 6;
+// Keys of texts that belong to no quantity alone.
+constexpr const char* kHorizon = "horizon";
+constexpr const char* kReadoutDirection = "shutter.readout";
 
 Json json_of(const Calibration& c) {
-  Json values = Json::object();
-  for (const auto& [key, estimates] : c.values) {
+  Json values = Json::object(), missing = Json::object(), notes = Json::object();
+  const auto add = [](Json& object, const char* key, const std::string& text) {
+    if (!text.empty()) object[key] = text;
+  };
+  for (const QuantityKey& key : kQuantityKeys) {
+    const Quantity& quantity = c.quantities.*key.member;
     Json list = Json::array();
-    for (const Estimate& e : estimates) list.push_back({e.value, e.sigma});
-    values[key] = list;
+    for (const Estimate& e : quantity.values) list.push_back({e.value, e.sigma});
+    if (!list.empty()) values[key.name] = list;
+    add(missing, key.name, quantity.missing);
+    add(notes, key.name, quantity.note);
   }
+  add(missing, kHorizon, c.no_horizon);
+  add(notes, kHorizon, c.horizon_note);
+  add(notes, kReadoutDirection, c.readout_direction);
   return {{"width", c.width},
           {"height", c.height},
           {"frames", c.frames},
           {"frame_rate_hz", c.frame_rate_hz},
           {"lens", c.lens},
           {"values", values},
-          {"missing", c.missing},
-          {"notes", c.notes},
+          {"missing", missing},
+          {"notes", notes},
           {"yaw_from_first_deg", c.yaw_from_first_deg}};
 }
 
@@ -43,11 +55,17 @@ Calibration calibration_from(const Json& json) {
   c.frames = json.at("frames");
   c.frame_rate_hz = json.at("frame_rate_hz");
   c.lens = json.at("lens").get<std::string>();
-  for (const auto& [key, list] : json.at("values").items())
-    for (const Json& estimate : list)
-      c.values[key].push_back({estimate.at(0).get<double>(), estimate.at(1).get<double>()});
-  c.missing = json.at("missing").get<std::map<std::string, std::string>>();
-  c.notes = json.at("notes").get<std::map<std::string, std::string>>();
+  const Json &values = json.at("values"), &missing = json.at("missing"), &notes = json.at("notes");
+  for (const QuantityKey& key : kQuantityKeys) {
+    Quantity& quantity = c.quantities.*key.member;
+    for (const Json& estimate : values.value(key.name, Json::array()))
+      quantity.values.push_back({estimate.at(0).get<double>(), estimate.at(1).get<double>()});
+    quantity.missing = missing.value(key.name, "");
+    quantity.note = notes.value(key.name, "");
+  }
+  c.no_horizon = missing.value(kHorizon, "");
+  c.horizon_note = notes.value(kHorizon, "");
+  c.readout_direction = notes.value(kReadoutDirection, "");
   c.yaw_from_first_deg = json.at("yaw_from_first_deg").get<std::vector<double>>();
   return c;
 }

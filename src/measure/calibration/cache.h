@@ -27,8 +27,8 @@ struct CacheKey {
 };
 
 // Reads a calibration from the cache in `folder`. The result has the picture size, the number of
-// frames, `values`, `missing`, `notes` and `yaw_from_first_deg`. Empty if the cache has no valid
-// file for the key.
+// frames, the quantities with their notes, and `yaw_from_first_deg`. Empty if the cache has no
+// valid file for the key.
 std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key);
 // Writes a calibration into the cache in `folder`.
 void store(const fs::path& folder, const CacheKey& key, const Calibration& calibration);

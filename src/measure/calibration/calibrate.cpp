@@ -141,73 +141,74 @@ class Session {
     steps_.emplace_back();
   }
 
-  void put(const std::string& key, const std::vector<Estimate>& values) {
-    result_.values[key] = values;
+  Quantities& quantities() { return result_.quantities; }
+
+  // Stores an answer of a meter.
+  static void put(Quantity& quantity, const Measured<Estimate>& measured) {
+    if (measured)
+      quantity.values = {*measured};
+    else
+      quantity.missing = measured.why();
   }
-  void lack(const std::string& key, const std::string& why) { result_.missing[key] = why; }
+  static void put(Quantity& quantity, const Measured<ColourEstimate>& measured) {
+    if (measured)
+      quantity.values.assign(measured->begin(), measured->end());
+    else
+      quantity.missing = measured.why();
+  }
+  // The quantity that is the member `part` of a meter's answer.
+  template <typename Whole>
+  static void put(Quantity& quantity, const Measured<Whole>& measured, Estimate Whole::*part) {
+    put(quantity,
+        measured ? Measured<Estimate>((*measured).*part)
+                 : Measured<Estimate>(NotMeasured{measured.why()}));
+  }
 
   void take_noise() {
     result_.noise = noise_.points();
     const auto found = noise_.result();
-    if (found) {
-      put("sensor.noise_gain", {found->gain});
-      put("sensor.noise_floor", {found->floor});
-      put("sensor.noise_correlation_px", {found->correlation_px});
-    } else {
-      for (const char* key :
-           {"sensor.noise_gain", "sensor.noise_floor", "sensor.noise_correlation_px"})
-        lack(key, found.why());
-    }
+    put(quantities().noise_gain, found, &NoiseMeter::Result::gain);
+    put(quantities().noise_floor, found, &NoiseMeter::Result::floor);
+    put(quantities().noise_correlation, found, &NoiseMeter::Result::correlation_px);
   }
 
   // Measures the step of the H.264 quantiser, which doubles when the quantisation parameter rises
   // by 6 (ITU-T H.264, 8.5.9).
   void take_codec() {
     if (quantisers_.empty()) {
-      lack("sensor.codec_step",
-           "the decoder of '" + reader_.info().codec + "' does not tell its quantiser");
+      quantities().codec_step.missing =
+          "the decoder of '" + reader_.info().codec + "' does not tell its quantiser";
       return;
     }
     std::vector<double> steps;
     for (const double q : quantisers_) steps.push_back(0.625 * std::pow(2.0, q / 6));
     std::sort(steps.begin(), steps.end());
     const std::size_t n = steps.size();
-    put("sensor.codec_step", {{steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}});
+    quantities().codec_step.values = {
+        {steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}};
   }
 
-  // The step of the quantiser in code values; 0 if it is not known.
+  // 0 if it is not known.
   double codec_step() const {
-    const auto found = result_.values.find("sensor.codec_step");
-    return found == result_.values.end() ? 0 : found->second[0].value;
+    const Quantity& step = result_.quantities.codec_step;
+    return step.is_measured() ? step.value().value : 0;
   }
 
   void take_edges() {
     const auto found = edges_.result(codec_step());
-    if (found) {
-      put("optics.point_spread_px", {found->point_spread_px});
-      put("optics.sharpening", {found->sharpening});
-      put("optics.sharpening_px", {found->sharpening_px});
-      result_.edge = edges_.profile();
-      result_.notes["optics.point_spread_px"] =
-          fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
-                      result_.edge.spread_px,
-                      result_.edge.edges);
-      take_chroma(*found);
-    } else {
-      for (const char* key : {"optics.point_spread_px",
-                              "optics.sharpening",
-                              "optics.sharpening_px",
-                              "sensor.chroma_spread_px"})
-        lack(key, found.why());
+    put(quantities().point_spread, found, &StepResponse::point_spread_px);
+    put(quantities().sharpening, found, &StepResponse::sharpening);
+    put(quantities().sharpening_radius, found, &StepResponse::sharpening_px);
+    if (!found) {
+      quantities().chroma_spread.missing = found.why();
+      return;
     }
-  }
-
-  void take_chroma(const StepResponse& response) {
-    const auto found = edges_.chroma(response, codec_step());
-    if (found)
-      put("sensor.chroma_spread_px", {*found});
-    else
-      lack("sensor.chroma_spread_px", found.why());
+    result_.edge = edges_.profile();
+    quantities().point_spread.note =
+        fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
+                    result_.edge.spread_px,
+                    result_.edge.edges);
+    put(quantities().chroma_spread, edges_.chroma(*found, codec_step()));
   }
 
   // A share of the frame interval as a time.
@@ -219,21 +220,17 @@ class Session {
   }
 
   void take_shutter() {
-    const auto exposure_s = in_seconds(blur_.share());
-    if (exposure_s)
-      put("shutter.exposure_s", {*exposure_s});
-    else
-      lack("shutter.exposure_s", exposure_s.why());
-    const auto readout_s = in_seconds(readout_share(steps_, result_.width, result_.height));
-    if (!readout_s) {
-      lack("shutter.readout_s", readout_s.why());
+    put(quantities().exposure, in_seconds(blur_.share()));
+    const auto downwards_s = in_seconds(readout_share(steps_, result_.width, result_.height));
+    if (!downwards_s) {
+      quantities().readout.missing = downwards_s.why();
       return;
     }
-    const Estimate& downwards_s = *readout_s;
-    result_.downwards_s = downwards_s;
-    put("shutter.readout_s",
-        {{rolls(downwards_s) ? std::abs(downwards_s.value) : 0, downwards_s.sigma}});
-    result_.notes["shutter.readout"] = rolls(downwards_s) && downwards_s.value < 0 ? "up" : "down";
+    result_.downwards_s = *downwards_s;
+    const bool is_rolling = rolls(*downwards_s);
+    quantities().readout.values = {
+        {is_rolling ? std::abs(downwards_s->value) : 0, downwards_s->sigma}};
+    result_.readout_direction = is_rolling && downwards_s->value < 0 ? "up" : "down";
   }
 
   void take_sky() {
@@ -264,10 +261,7 @@ class Session {
         air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
     }
     const Air measured = air.air(options_.stop);
-    if (measured.airlight)
-      put("air.airlight", {measured.airlight->begin(), measured.airlight->end()});
-    else
-      lack("air.airlight", measured.airlight.why());
+    put(quantities().airlight, measured.airlight);
     take_extinction(measured);
     take_sun(air, first_from_level.has_value());
     if (first_from_level) take_yaw(*first_from_level);
@@ -304,7 +298,7 @@ class Session {
 
   void take_extinction(const Air& air) {
     if (air.extinction_per_km) {
-      put("air.extinction_per_km", {air.extinction_per_km->begin(), air.extinction_per_km->end()});
+      put(quantities().extinction, air.extinction_per_km);
       return;
     }
     // An extinction that is not measured is not applied: air that may be clear is rendered clear.
@@ -315,8 +309,8 @@ class Session {
     if (air.visibility_km && *air.visibility_km < kClearKm) {
       const double per_km = kKoschmieder / *air.visibility_km;
       const Estimate hazy{per_km, per_km};
-      put("air.extinction_per_km", {hazy, hazy, hazy});
-      result_.notes["air.extinction_per_km"] = fmt::format(
+      quantities().extinction.values = {hazy, hazy, hazy};
+      quantities().extinction.note = fmt::format(
           "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
           "less{}: {}",
           *air.visibility_km,
@@ -327,11 +321,10 @@ class Session {
       return;
     }
     const Estimate clear{0, kKoschmieder / kClearKm};
-    put("air.extinction_per_km", {clear, clear, clear});
-    result_.notes["air.extinction_per_km"] =
-        fmt::format("not measured, and drawn as clear air{}: {}",
-                    air.visibility_km ? ", as the horizon looks" : "",
-                    air.extinction_per_km.why());
+    quantities().extinction.values = {clear, clear, clear};
+    quantities().extinction.note = fmt::format("not measured, and drawn as clear air{}: {}",
+                                               air.visibility_km ? ", as the horizon looks" : "",
+                                               air.extinction_per_km.why());
   }
 
   void take_sun(const AirMeter& air, bool level_known) {
@@ -340,13 +333,8 @@ class Session {
       if (!level_known) return NotMeasured{"no horizon is seen that says where level is"};
       return air.sun();
     }();
-    if (sun) {
-      put("light.sun_azimuth_deg", {sun->azimuth_deg});
-      put("light.sun_elevation_deg", {sun->elevation_deg});
-    } else {
-      lack("light.sun_azimuth_deg", sun.why());
-      lack("light.sun_elevation_deg", sun.why());
-    }
+    put(quantities().sun_azimuth, sun, &Sun::azimuth_deg);
+    put(quantities().sun_elevation, sun, &Sun::elevation_deg);
   }
 
   // The horizons that are accepted. If most frames show a sky whose boundary is not a sharp line,
@@ -363,19 +351,19 @@ class Session {
       if (!found.back()->is_sharp()) found.back().reset();
     }
     if (sharp == 0 && parted == 0) {
-      lack("horizon",
-           fmt::format("in none of {} frames do a sky and a ground part", sampled_.size()));
+      result_.no_horizon =
+          fmt::format("in none of {} frames do a sky and a ground part", sampled_.size());
     } else if (sharp < parted) {
-      lack("horizon",
-           fmt::format("a line that is sharp from side to side parts sky and ground in {} of {} "
-                       "frames; in {} they part without one, as at a coast, hills, haze or "
-                       "clouds: no pitch, roll or sky is taken from it",
-                       sharp,
-                       sampled_.size(),
-                       parted));
+      result_.no_horizon = fmt::format(
+          "a line that is sharp from side to side parts sky and ground in {} of {} frames; in {} "
+          "they part without one, as at a coast, hills, haze or clouds: no pitch, roll or sky is "
+          "taken from it",
+          sharp,
+          sampled_.size(),
+          parted);
       for (auto& horizon : found) horizon.reset();
     } else if (parted > 0) {
-      result_.notes["horizon"] = fmt::format(
+      result_.horizon_note = fmt::format(
           "measured in {} of {} frames; in {} sky and ground part without a line that "
           "is sharp from side to side, and these are left out",
           sharp,

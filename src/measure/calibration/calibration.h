@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -18,6 +17,7 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 #include "measure/air/frame_horizon.h"
+#include "measure/calibration/quantities.h"
 #include "measure/measured/measured.h"
 #include "measure/optics/edge_profile.h"
 #include "measure/sensor/noise_point.h"
@@ -64,20 +64,14 @@ struct Calibration {
   std::string lens;
   // The tone curve of the options.
   image::ToneCurve tone;
-  // The measured values by their key in a scene file: "sensor.noise_gain" has one estimate,
-  // "air.extinction_per_km" has three (red, green, blue).
-  std::map<std::string, std::vector<Estimate>> values;
+  Quantities quantities;
   // The readout time of the frame in seconds with its sign, positive downwards. It is kept whether
   // or not it differs significantly from 0, since join.h combines the signed values of clips.
   std::optional<Estimate> downwards_s;
-  // By key: the reason why the value is not measured.
-  std::map<std::string, std::string> missing;
-  // By key: a remark about the value.
-  std::map<std::string, std::string> notes;
-  // By key: the origin of a value that does not come from this clip alone (profile.h).
-  std::map<std::string, std::string> sources;
-  // By key: a measurement that contradicts the value by more than the errors allow.
-  std::map<std::string, std::string> doubts;
+  // The direction in which the rows are read: "down" or "up"; empty if no readout is measured.
+  std::string readout_direction;
+  // If not every frame gives a horizon: the reason why none does, or a remark about the others.
+  std::string no_horizon, horizon_note;
   // For each frame, the heading of the camera relative to that in the first frame, degrees. A
   // sequence that begins at a later frame turns the azimuth of the sun by it. Empty without a lens
   // or a horizon; it ends at the first cut.
@@ -90,7 +84,7 @@ struct Calibration {
 };
 
 // Measures the clip in one pass over its frames. Throws Error if the file is not a video. What a
-// clip is too short or too still to show is in `missing`.
+// clip is too short or too still to show is not measured (quantities.h).
 Calibration calibrate(const fs::path& video, const Options& options);
 
 // Whether a readout time differs significantly from 0 and so shows a rolling shutter: its magnitude

@@ -32,8 +32,8 @@ TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
     // The curve as a whole: gain and floor trade against one another where little is dark.
     for (const NoisePoint& p : c.noise) {
       composite::Sensor fitted = what.sensor;
-      fitted.noise_gain = c.values.at("sensor.noise_gain")[0].value;
-      fitted.noise_floor = c.values.at("sensor.noise_floor")[0].value;
+      fitted.noise_gain = c.quantities.at("sensor.noise_gain").value().value;
+      fitted.noise_floor = c.quantities.at("sensor.noise_floor").value().value;
       const double truth =
           double(composite::noise_sigma(static_cast<float>(p.luma), 219, what.sensor));
       const double found = double(composite::noise_sigma(static_cast<float>(p.luma), 219, fitted));
@@ -96,9 +96,9 @@ TEST(Calibrate, MeasuresWhatBecomesOfEdgesOverTheGroundAlone) {
     clip.write(synthetic::Flight(o), what);
     const Calibration c = calibrate(clip.path(), {});
     const StepResponse truth{{put_in.spread_px, 0}, {put_in.amount, 0}, {put_in.radius_px, 0}};
-    const StepResponse found{c.values.at("optics.point_spread_px")[0],
-                             c.values.at("optics.sharpening")[0],
-                             c.values.at("optics.sharpening_px")[0]};
+    const StepResponse found{c.quantities.at("optics.point_spread_px").value(),
+                             c.quantities.at("optics.sharpening").value(),
+                             c.quantities.at("optics.sharpening_px").value()};
     const double truth_px = edge_spread_px(truth, 0.4, 0.6, {});
     const double found_px = edge_spread_px(found, 0.4, 0.6, {});
     std::printf("edge %.2f px (%.2f); spread %.3f (%.2f), sharpening %.3f (%.2f), %.2f px (%.2f)\n",
@@ -145,7 +145,7 @@ TEST(Calibrate, ReadsTheCodecsStep) {
     clip.write(
         o, [&](int k) { return flight.frame(k); }, video::Format::kMp4, quality);
     const Calibration c = calibrate(clip.path(), {});
-    return c.values.at("sensor.codec_step")[0].value;
+    return c.quantities.at("sensor.codec_step").value().value;
   };
   // Six of x264's quality steps are a doubling of the quantiser's.
   EXPECT_NEAR(step_at(30) / step_at(24), 2, 0.2);
@@ -218,7 +218,7 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
   });
   const Calibration c = calibrate(clip.path(), {});
   expect_within(c, "shutter.readout_s", 0.75 / 30, 0.1);
-  EXPECT_EQ(c.notes.at("shutter.readout"), "down");
+  EXPECT_EQ(c.readout_direction, "down");
 }
 
 }  // namespace

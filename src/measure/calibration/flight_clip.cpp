@@ -180,9 +180,8 @@ synthetic::FlightOptions ideal(std::uint64_t seed) {
 }
 
 void expect_within(const Calibration& c, const std::string& key, double truth, double share) {
-  ASSERT_TRUE(c.values.contains(key))
-      << key << ": " << (c.missing.contains(key) ? c.missing.at(key) : "");
-  const double value = c.values.at(key)[0].value;
+  ASSERT_TRUE(c.quantities.at(key).is_measured()) << key << ": " << c.quantities.at(key).missing;
+  const double value = c.quantities.at(key).value().value;
   std::printf("%s: %.4g, put in %.4g\n", key.c_str(), value, truth);
   EXPECT_NEAR(value, truth, share * truth) << key;
 }

@@ -9,12 +9,9 @@
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "picture/video/reader.h"
-#include "world/scene/camera_keys.h"
 
 namespace airtruth::calibration {
 namespace {
-
-constexpr const char* kReadoutKey = "shutter.readout_s";
 
 struct Mean {
   double value = 0, weights = 0, chi_square = 0;
@@ -91,42 +88,46 @@ std::string contradiction(const std::vector<ClipValue>& all, double middle) {
       words_of(*most));
 }
 
-// The values of the clips that have the key; the readout time of an upward readout is negative.
+// The values of the clips that have the quantity; the readout time of an upward readout is
+// negative.
 std::vector<ClipValue> values_by_clip(const std::vector<Calibration>& clips,
-                                      const std::string& key) {
+                                      Quantity Quantities::*member) {
   std::vector<ClipValue> all;
   for (const Calibration& clip : clips) {
-    const auto found = clip.values.find(key);
-    if (found == clip.values.end()) continue;
-    all.push_back({key == kReadoutKey && clip.downwards_s ? *clip.downwards_s : found->second[0],
-                   clip.video.filename().string()});
+    const Quantity& quantity = clip.quantities.*member;
+    if (!quantity.is_measured()) continue;
+    const bool is_signed = member == &Quantities::readout && clip.downwards_s;
+    all.push_back(
+        {is_signed ? *clip.downwards_s : quantity.value(), clip.video.filename().string()});
   }
   return all;
 }
 
-void put_joined(Calibration& result, const std::string& key, Estimate value) {
-  if (key == kReadoutKey) {
+void put_joined(Calibration& result, Quantity Quantities::*member, Estimate value) {
+  if (member == &Quantities::readout) {
     result.downwards_s = value;
-    result.notes["shutter.readout"] = value.value < 0 ? "up" : "down";
+    result.readout_direction = value.value < 0 ? "up" : "down";
     value.value = rolls(value) ? std::abs(value.value) : 0;
   }
-  result.values[key] = {value};
+  (result.quantities.*member).values = {value};
 }
 
-void join_key(Calibration& result, const std::vector<Calibration>& clips, const std::string& key) {
-  const std::vector<ClipValue> all = values_by_clip(clips, key);
+void join_quantity(Calibration& result,
+                   const std::vector<Calibration>& clips,
+                   Quantity Quantities::*member) {
+  Quantity& quantity = result.quantities.*member;
+  const std::vector<ClipValue> all = values_by_clip(clips, member);
   if (all.empty()) {
-    const auto why = clips[0].missing.find(key);
-    result.missing[key] = fmt::format(
-        "in none of {} clips: {}", clips.size(), why == clips[0].missing.end() ? "" : why->second);
+    quantity.missing =
+        fmt::format("in none of {} clips: {}", clips.size(), (clips[0].quantities.*member).missing);
     return;
   }
   std::vector<Estimate> values;
   for (const ClipValue& one : all) values.push_back(one.value);
   const Pooled together = pooled(values);
-  put_joined(result, key, together.value);
-  result.notes[key] = fmt::format("by {} of {} clips", all.size(), clips.size());
-  if (!together.agree) result.doubts[key] = contradiction(all, together.value.value);
+  put_joined(result, member, together.value);
+  quantity.note = fmt::format("by {} of {} clips", all.size(), clips.size());
+  if (!together.agree) quantity.doubt = contradiction(all, together.value.value);
 }
 
 }  // namespace
@@ -187,12 +188,11 @@ Calibration joined(std::vector<Calibration> clips) {
     names += (names.empty() ? "" : ", ") + clip.video.filename().string();
   }
   result.video = names;
-  for (const scene::CameraKey& key : scene::kCameraKeys) {
-    const std::string name = key.name;
-    if (name.starts_with("air."))
-      result.missing[name] = "it is of one flight; measure that clip by itself";
-    else
-      join_key(result, clips, name);
+  for (const QuantityKey& key : kQuantityKeys) {
+    if (key.table() == "air")
+      (result.quantities.*key.member).missing = "it is of one flight; measure that clip by itself";
+    else if (key.table() != "light")
+      join_quantity(result, clips, key.member);
   }
   return result;
 }

@@ -28,8 +28,8 @@ Pooled pooled(std::vector<Estimate> all);
 void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn& warn);
 
 // Combines the values that belong to the camera: optics, sensor and shutter. Air and light belong
-// to one flight and are left out. Values on which clips contradict one another have an entry in
-// `doubts`.
+// to one flight and are left out. Values on which clips contradict one another have a
+// `doubt`.
 Calibration joined(std::vector<Calibration> clips);
 
 }  // namespace airtruth::calibration

@@ -64,13 +64,13 @@ Calibration clip(double spread_px, double downwards_s, double readout_error_s) {
   Calibration c;
   c.video = "/somewhere/clip.mp4";
   c.width = 64, c.height = 48, c.frames = 100;
-  c.values["optics.point_spread_px"] = {{spread_px, 0.1}};
+  c.quantities.at("optics.point_spread_px").values = {{spread_px, 0.1}};
   c.downwards_s = Estimate{downwards_s, readout_error_s};
-  c.values["shutter.readout_s"] = {
+  c.quantities.at("shutter.readout_s").values = {
       {rolls(*c.downwards_s) ? std::abs(downwards_s) : 0, readout_error_s}};
-  c.notes["shutter.readout"] = downwards_s < 0 ? "up" : "down";
-  c.values["air.airlight"] = {{0.5, 0.1}, {0.5, 0.1}, {0.5, 0.1}};
-  c.missing["shutter.exposure_s"] = "too still";
+  c.readout_direction = downwards_s < 0 ? "up" : "down";
+  c.quantities.at("air.airlight").values = {{0.5, 0.1}, {0.5, 0.1}, {0.5, 0.1}};
+  c.quantities.at("shutter.exposure_s").missing = "too still";
   return c;
 }
 
@@ -85,21 +85,23 @@ TEST(Join, KeepsWhatIsTheCamerasAndLeavesOutWhatIsTheFlights) {
   const Calibration both = joined(clips_of(clip(0.5, 0.02, 0.001), clip(0.6, 0.0205, 0.001)));
   EXPECT_EQ(both.clips, 2);
   EXPECT_EQ(both.frames, 200);
-  EXPECT_NEAR(both.values.at("optics.point_spread_px")[0].value, 0.55, 1e-12);
-  EXPECT_NEAR(both.values.at("shutter.readout_s")[0].value, 0.02025, 1e-12);
-  EXPECT_EQ(both.notes.at("shutter.readout"), "down");
-  EXPECT_FALSE(both.values.contains("air.airlight"));
-  EXPECT_EQ(both.missing.at("shutter.exposure_s"), "in none of 2 clips: too still");
-  EXPECT_TRUE(both.doubts.empty());
+  EXPECT_NEAR(both.quantities.at("optics.point_spread_px").value().value, 0.55, 1e-12);
+  EXPECT_NEAR(both.quantities.at("shutter.readout_s").value().value, 0.02025, 1e-12);
+  EXPECT_EQ(both.readout_direction, "down");
+  EXPECT_FALSE(both.quantities.at("air.airlight").is_measured());
+  EXPECT_EQ(both.quantities.at("shutter.exposure_s").missing, "in none of 2 clips: too still");
+  for (const QuantityKey& key : kQuantityKeys)
+    EXPECT_EQ((both.quantities.*key.member).doubt, "") << key.name;
 }
 
 // One clip reads from the top and the other from the bottom: neither is accepted, with a message.
 TEST(Join, ReadoutsOfBothWaysContradictOneAnother) {
   const Calibration both = joined(clips_of(clip(0.5, 0.01, 0.001), clip(0.5, -0.01, 0.001)));
-  const Estimate readout = both.values.at("shutter.readout_s")[0];
+  const Estimate readout = both.quantities.at("shutter.readout_s").value();
   EXPECT_EQ(readout.value, 0);
   EXPECT_GT(readout.sigma, 0.01);
-  EXPECT_NE(both.doubts.at("shutter.readout_s").find("contradict one another"), std::string::npos);
+  EXPECT_NE(both.quantities.at("shutter.readout_s").doubt.find("contradict one another"),
+            std::string::npos);
 }
 
 }  // namespace

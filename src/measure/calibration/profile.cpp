@@ -57,19 +57,19 @@ std::string with_error(const Estimate& e) {
 }
 
 Estimate signed_readout(const Calibration& c) {
-  Estimate readout = c.values.at(kReadout)[0];
-  const auto way = c.notes.find("shutter.readout");
-  if (way != c.notes.end() && way->second == "up") readout.value = -readout.value;
+  Estimate readout = c.quantities.readout.value();
+  if (c.readout_direction == "up") readout.value = -readout.value;
   return readout;
 }
 
 void put(Calibration& c, const std::string& key, Estimate value) {
   if (key == kReadout) {
-    c.notes["shutter.readout"] = value.value < 0 ? "up" : "down";
+    c.readout_direction = value.value < 0 ? "up" : "down";
     value.value = std::abs(value.value);
   }
-  c.values[key] = {value};
-  c.missing.erase(key);
+  Quantity& quantity = c.quantities.at(key);
+  quantity.values = {value};
+  quantity.missing.clear();
 }
 
 // The share of the clip's own value in its combination with the profile.
@@ -81,23 +81,24 @@ double own_share(const Estimate& own, const Estimate& prior) {
 }
 
 void join(Calibration& c, const std::string& key, const Estimate& prior, const std::string& whose) {
-  if (!c.values.contains(key)) {
-    c.sources[key] = "of " + whose + "; the clip does not tell it";
+  Quantity& quantity = c.quantities.at(key);
+  if (!quantity.is_measured()) {
+    quantity.source = "of " + whose + "; the clip does not tell it";
     put(c, key, prior);
     return;
   }
-  const Estimate own = key == kReadout ? signed_readout(c) : c.values.at(key)[0];
+  const Estimate own = key == kReadout ? signed_readout(c) : quantity.value();
   const double share = own_share(own, prior);
   if (share == 1) return;
   put(c, key, combined(own, prior));
   if (share < kOwnShare)
-    c.sources[key] =
+    quantity.source =
         share > 1 - kOwnShare
             ? fmt::format("of the clip, {}, and {}, {}", with_error(own), whose, with_error(prior))
             : fmt::format("of {}; the clip's {} says next to nothing", whose, with_error(own));
   const double off = std::abs(own.value - prior.value);
   if (off > kDoubted * std::hypot(own.sigma, prior.sigma))
-    c.doubts[key] =
+    quantity.doubt =
         fmt::format("the clip has {}, {} {}", with_error(own), whose, with_error(prior));
 }
 

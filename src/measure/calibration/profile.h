@@ -29,7 +29,7 @@ struct CameraProfile {
   int height = 0;
   // The number of measured clips.
   int clips = 0;
-  // Values and errors by the keys of Calibration::values. An error is that of one further clip of
+  // Values and errors by the keys of quantities.h. An error is that of one further clip of
   // the camera, so it includes the differences between clips. The readout time is negative if the
   // sensor is read upwards.
   std::map<std::string, Estimate> values;
@@ -60,7 +60,7 @@ CameraProfile parse_camera_profile(std::string_view text, const std::string& nam
 // holds for one picture size.
 void check_size(const CameraProfile& profile, int width, int height, const Where& where = {});
 
-// Combines a calibration with a profile. The `sources` of the result tell the origin of the
+// Combines a calibration with a profile. The `source` of a quantity states the origin of the
 // combined values. Throws as check_size() does.
 Calibration with_profile(Calibration measured, const CameraProfile& profile);
 

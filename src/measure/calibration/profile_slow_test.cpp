@@ -36,19 +36,19 @@ TEST(CalibrateWithProfile, AFlightOfSkyAloneHasTheProfileAndSaysSo) {
   Clip clip;
   clip.write(part, [&](int k) { return sky_of(flight, k); });
   Calibration own = calibrate(clip.path(), {});
-  EXPECT_TRUE(own.missing.contains("optics.point_spread_px"));
+  EXPECT_NE(own.quantities.at("optics.point_spread_px").missing, "");
   CameraProfile profile;
   profile.name = "one";
   profile.values["optics.point_spread_px"] = {0.44, 0.05};
   profile.values["optics.sharpening"] = {0.2, 0.1};
   const Calibration c = with_profile(std::move(own), profile);
-  EXPECT_EQ(c.values.at("optics.point_spread_px")[0].value, 0.44);
-  EXPECT_EQ(c.values.at("optics.sharpening")[0].value, 0.2);
-  EXPECT_EQ(c.sources.at("optics.point_spread_px"),
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").value().value, 0.44);
+  EXPECT_EQ(c.quantities.at("optics.sharpening").value().value, 0.2);
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
             "of the profile one; the clip does not tell it");
-  EXPECT_FALSE(c.sources.contains("sensor.noise_floor"));
+  EXPECT_EQ(c.quantities.at("sensor.noise_floor").source, "");
   const Calibration usual = with_profile(calibrate(clip.path(), {}), usual_camera());
-  EXPECT_EQ(usual.values.at("optics.point_spread_px")[0].value,
+  EXPECT_EQ(usual.quantities.point_spread.value().value,
             usual_camera().values.at("optics.point_spread_px").value);
   EXPECT_NE(toml_from(usual).find("of the median over"), std::string::npos);
 }
@@ -79,9 +79,9 @@ TEST(CalibrateWithProfile, ManySightsOfOneSoftEdgeGiveWayToTheProfile) {
     return picture;
   });
   const Calibration own = calibrate(clip.path(), {});
-  ASSERT_TRUE(own.values.contains("optics.point_spread_px"))
-      << own.missing.at("optics.point_spread_px");
-  const Estimate seen = own.values.at("optics.point_spread_px")[0];
+  ASSERT_TRUE(own.quantities.at("optics.point_spread_px").is_measured())
+      << own.quantities.at("optics.point_spread_px").missing;
+  const Estimate seen = own.quantities.at("optics.point_spread_px").value();
   std::printf(
       "one soft object: %.3f +- %.3f px, %d edges\n", seen.value, seen.sigma, own.edge.edges);
   EXPECT_GT(seen.value, 0.9 * kSoft);
@@ -133,10 +133,10 @@ TEST(CalibrateWithProfile, ACutIsSeenAndASplicedClipTellsWhatItsPartsDo) {
                           "sensor.noise_floor",
                           "sensor.noise_correlation_px",
                           "shutter.readout_s"}) {
-    ASSERT_TRUE(both.values.contains(key) && c.values.contains(key)) << key;
+    ASSERT_TRUE(both.quantities.at(key).is_measured() && c.quantities.at(key).is_measured()) << key;
     const bool is_readout = std::string(key) == "shutter.readout_s";
-    const Estimate a = is_readout ? *c.downwards_s : c.values.at(key)[0];
-    const Estimate b = is_readout ? *both.downwards_s : both.values.at(key)[0];
+    const Estimate a = is_readout ? *c.downwards_s : c.quantities.at(key).value();
+    const Estimate b = is_readout ? *both.downwards_s : both.quantities.at(key).value();
     std::printf("%s: %.4g +- %.2g spliced, %.4g +- %.2g of the parts\n",
                 key,
                 a.value,
@@ -175,7 +175,7 @@ TEST(CalibrateWithProfile, JoinedClipsAgreeWithOneLongClip) {
                           "sensor.noise_gain",
                           "sensor.noise_floor",
                           "sensor.noise_correlation_px"}) {
-    const Estimate a = whole.values.at(key)[0], b = both.values.at(key)[0];
+    const Estimate a = whole.quantities.at(key).value(), b = both.quantities.at(key).value();
     std::printf("%s: %.4g +- %.2g whole, %.4g +- %.2g of halves\n",
                 key,
                 a.value,

@@ -96,30 +96,32 @@ TEST(CameraProfile, ClipAndProfileAreCombinedByInverseVariance) {
 
 TEST(CameraProfile, SaysWhoseAValueIs) {
   Calibration c = clip_of(64, 48);
-  c.missing["shutter.readout_s"] = "too still";
-  c.missing["air.airlight"] = "no sky";
-  c.values["optics.point_spread_px"] = {{0.8, 1.0}};
+  c.quantities.at("shutter.readout_s").missing = "too still";
+  c.quantities.at("air.airlight").missing = "no sky";
+  c.quantities.at("optics.point_spread_px").values = {{0.8, 1.0}};
   c = with_profile(std::move(c), small_camera());
-  EXPECT_NEAR(c.values.at("optics.point_spread_px")[0].value, 0.404, 0.001);
-  EXPECT_EQ(c.sources.at("optics.point_spread_px"),
+  EXPECT_NEAR(c.quantities.at("optics.point_spread_px").value().value, 0.404, 0.001);
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
             "of the profile small; the clip's 0.8 +- 1 says next to nothing");
-  EXPECT_EQ(c.values.at("shutter.readout_s")[0].value, 0.02);
+  EXPECT_EQ(c.quantities.at("shutter.readout_s").value().value, 0.02);
   EXPECT_EQ(model_of(c).readout, "up");
-  EXPECT_EQ(c.sources.at("shutter.readout_s"), "of the profile small; the clip does not tell it");
-  EXPECT_FALSE(c.missing.contains("shutter.readout_s"));
-  EXPECT_TRUE(c.missing.contains("air.airlight"));
-  EXPECT_TRUE(c.doubts.empty());
+  EXPECT_EQ(c.quantities.at("shutter.readout_s").source,
+            "of the profile small; the clip does not tell it");
+  EXPECT_EQ(c.quantities.at("shutter.readout_s").missing, "");
+  EXPECT_NE(c.quantities.at("air.airlight").missing, "");
+  for (const QuantityKey& key : kQuantityKeys)
+    EXPECT_EQ((c.quantities.*key.member).doubt, "") << key.name;
   const std::string file = toml_from(c);
   EXPECT_NE(file.find("of the profile small; the clip's 0.8"), std::string::npos) << file;
 }
 
 TEST(CameraProfile, ASureClipKeepsItsOwnAndWhatContradictsItIsNamed) {
   Calibration c = clip_of(64, 48);
-  c.values["optics.point_spread_px"] = {{0.9, 0.01}};
+  c.quantities.at("optics.point_spread_px").values = {{0.9, 0.01}};
   c = with_profile(std::move(c), small_camera());
-  EXPECT_NEAR(c.values.at("optics.point_spread_px")[0].value, 0.895, 0.001);
-  EXPECT_FALSE(c.sources.contains("optics.point_spread_px"));
-  EXPECT_TRUE(c.doubts.contains("optics.point_spread_px"));
+  EXPECT_NEAR(c.quantities.at("optics.point_spread_px").value().value, 0.895, 0.001);
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").source, "");
+  EXPECT_NE(c.quantities.at("optics.point_spread_px").doubt, "");
   EXPECT_NE(toml_from(c).find("; the clip's own\n"), std::string::npos);
 }
 

@@ -39,12 +39,12 @@ TEST(Calibrate, FindsTheSun) {
     o.own_aircraft = false;
     o.frame_count = 24;
     const Calibration c = calibrate_flight(o, {});
-    ASSERT_TRUE(c.values.contains("light.sun_azimuth_deg"))
-        << c.missing.at("light.sun_azimuth_deg");
-    const double off =
-        degrees(std::acos(-synthetic::sun_in_world(c.values.at("light.sun_azimuth_deg")[0].value,
-                                                   c.values.at("light.sun_elevation_deg")[0].value)
-                               .dot(-synthetic::sun_in_world(azimuth, elevation))));
+    ASSERT_TRUE(c.quantities.at("light.sun_azimuth_deg").is_measured())
+        << c.quantities.at("light.sun_azimuth_deg").missing;
+    const double off = degrees(
+        std::acos(-synthetic::sun_in_world(c.quantities.at("light.sun_azimuth_deg").value().value,
+                                           c.quantities.at("light.sun_elevation_deg").value().value)
+                       .dot(-synthetic::sun_in_world(azimuth, elevation))));
     std::printf("sun off by %.1f degrees\n", off);
     EXPECT_LT(off, 10);
   }
@@ -73,23 +73,24 @@ TEST(Calibrate, MeasuresTheAir) {
     Options options;
     options.altitude_m = o.altitude_m;
     const Calibration c = calibrate_flight(o, options);
-    EXPECT_FALSE(c.notes.contains("air.extinction_per_km")) << c.notes.at("air.extinction_per_km");
+    EXPECT_EQ(c.quantities.at("air.extinction_per_km").note, "")
+        << c.quantities.at("air.extinction_per_km").note;
     expect_within(c, "air.extinction_per_km", extinction_per_km, 0.1);
     // The sky at the horizon, over the azimuths that the lens sees.
     const synthetic::Sky sky(synthetic::sun_in_world(o.sun_azimuth_deg, o.sun_elevation_deg));
-    synthetic::Light airlight = synthetic::Light::Zero();
+    synthetic::LinearRgb airlight = synthetic::LinearRgb::Zero();
     for (int degree = -60; degree <= 60; degree += 10)
       airlight += sky.haze({std::cos(radians(degree)), std::sin(radians(degree)), 0}) / 13;
     for (std::size_t channel = 0; channel < 3; ++channel) {
-      const double found = c.values.at("air.airlight")[channel].value;
-      const double extinction = c.values.at("air.extinction_per_km")[channel].value;
+      const double found = c.quantities.at("air.airlight").values[channel].value;
+      const double extinction = c.quantities.at("air.extinction_per_km").values[channel].value;
       const double truth = double(airlight[static_cast<int>(channel)]);
       std::printf("channel %zu: airlight %.3f, put in %.3f; extinction %.3f +- %.3f\n",
                   channel,
                   found,
                   truth,
                   extinction,
-                  c.values.at("air.extinction_per_km")[channel].sigma);
+                  c.quantities.at("air.extinction_per_km").values[channel].sigma);
       EXPECT_NEAR(found, truth, 0.1 * truth) << channel;
       EXPECT_NEAR(extinction, extinction_per_km, 0.1 * extinction_per_km) << channel;
     }

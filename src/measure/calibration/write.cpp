@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <map>
+#include <string_view>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -15,10 +15,9 @@ namespace {
 std::string shown(double value) { return fmt::format("{:.4g}", value); }
 
 // The origin of the value in words.
-std::string source_words(const Calibration& c, const std::string& key) {
-  const auto source = c.sources.find(key);
-  return source == c.sources.end() ? (c.clips > 1 ? "the clips' own" : "the clip's own")
-                                   : source->second;
+std::string source_words(const Calibration& c, const Quantity& quantity) {
+  if (!quantity.source.empty()) return quantity.source;
+  return c.clips > 1 ? "the clips' own" : "the clip's own";
 }
 
 std::string array_of(const std::vector<Estimate>& values, bool errors) {
@@ -28,41 +27,15 @@ std::string array_of(const std::vector<Estimate>& values, bool errors) {
   return values.size() == 1 ? text : "[" + text + "]";
 }
 
-struct Key {
-  const char* table;
-  const char* key;
-  const char* words;
-};
-
-constexpr std::array<Key, 14> kKeys = {{
-    {"shutter", "exposure_s", "seconds that a row is exposed"},
-    {"shutter", "readout_s", "seconds from the first row to the last; 0: no sign of any"},
-    {"air", "extinction_per_km", "red, green, blue"},
-    {"air", "airlight", "linear red, green, blue of the sky just above the horizon"},
-    {"optics", "point_spread_px", "standard deviation, with the codec's softness in it"},
-    {"optics", "sharpening", "amount of the unsharp mask"},
-    {"optics", "sharpening_px", "and its standard deviation"},
-    {"sensor", "noise_gain", "variance of linear light is gain x light ..."},
-    {"sensor", "noise_floor", "... + floor"},
-    {"sensor", "noise_correlation_px", "white noise under a Gaussian of this width"},
-    {"sensor", "chroma_spread_px", "standard deviation that chroma has beyond luma's"},
-    {"sensor", "codec_step", "of the quantiser, in code values"},
-    {"light", "sun_azimuth_deg", "from north, if the heading given was the camera's"},
-    {"light", "sun_elevation_deg", "above the horizon"},
-}};
-
 // If not every frame gives a horizon: the reason.
 std::string horizon_line(const Calibration& c) {
-  if (const auto why = c.missing.find("horizon"); why != c.missing.end())
-    return "# horizon: not to be had: " + why->second + "\n";
-  if (const auto note = c.notes.find("horizon"); note != c.notes.end())
-    return "# horizon: " + note->second + "\n";
+  if (!c.no_horizon.empty()) return "# horizon: not to be had: " + c.no_horizon + "\n";
+  if (!c.horizon_note.empty()) return "# horizon: " + c.horizon_note + "\n";
   return "";
 }
 
-}  // namespace
-
-std::string toml_from(const Calibration& c) {
+// The table [clip] with the comments above it.
+std::string head_of(const Calibration& c) {
   std::string text =
       "# Measured by airtruth calibrate. Values stand for [realism] file = \"...\" of a scene.\n";
   std::string quoted;
@@ -75,30 +48,38 @@ std::string toml_from(const Calibration& c) {
                       c.frames);
   if (!c.lens.empty()) text += fmt::format("lens = \"{}\"\n", c.lens);
   if (c.tone.gamma != 0) text += fmt::format("gamma = {}\n", c.tone.gamma);
-  text += horizon_line(c);
-  std::string table;
-  for (const Key& key : kKeys) {
-    const std::string name = std::string(key.table) + "." + key.key;
-    const auto value = c.values.find(name);
-    const auto missing = c.missing.find(name);
-    if (value == c.values.end() && missing == c.missing.end()) continue;
-    if (table != key.table) text += fmt::format("\n[{}]\n", table = key.table);
-    if (value == c.values.end()) {
-      text += fmt::format("# {}: not to be had: {}\n", key.key, missing->second);
-      continue;
-    }
-    if (const auto note = c.notes.find(name); note != c.notes.end())
-      text += "# " + note->second + "\n";
-    if (const auto doubt = c.doubts.find(name); doubt != c.doubts.end())
-      text += "# doubtful: " + doubt->second + "\n";
-    text += fmt::format("{} = {}  # +- {}; {}; {}\n",
-                        key.key,
-                        array_of(value->second, false),
-                        array_of(value->second, true),
-                        key.words,
-                        source_words(c, name));
-    if (name == "shutter.readout_s" && value->second[0].value > 0)
-      text += fmt::format("readout = \"{}\"\n", c.notes.at("shutter.readout"));
+  return text + horizon_line(c);
+}
+
+// The lines of one quantity.
+std::string lines_of(const Calibration& c, const QuantityKey& key) {
+  const Quantity& quantity = c.quantities.*key.member;
+  if (!quantity.is_measured())
+    return fmt::format("# {}: not to be had: {}\n", key.key(), quantity.missing);
+  std::string text;
+  if (!quantity.note.empty()) text += "# " + quantity.note + "\n";
+  if (!quantity.doubt.empty()) text += "# doubtful: " + quantity.doubt + "\n";
+  text += fmt::format("{} = {}  # +- {}; {}; {}\n",
+                      key.key(),
+                      array_of(quantity.values, false),
+                      array_of(quantity.values, true),
+                      key.words,
+                      source_words(c, quantity));
+  if (key.member == &Quantities::readout && quantity.value().value > 0)
+    text += fmt::format("readout = \"{}\"\n", c.readout_direction);
+  return text;
+}
+
+}  // namespace
+
+std::string toml_from(const Calibration& c) {
+  std::string text = head_of(c);
+  std::string_view table;
+  for (const QuantityKey& key : kQuantityKeys) {
+    const Quantity& quantity = c.quantities.*key.member;
+    if (!quantity.is_measured() && quantity.missing.empty()) continue;
+    if (table != key.table()) text += fmt::format("\n[{}]\n", table = key.table());
+    text += lines_of(c, key);
   }
   return text;
 }
@@ -107,16 +88,15 @@ scene::CameraModel model_of(const Calibration& c) {
   scene::CameraModel model;
   scene::for_each_camera_key(
       [&](const char* key, auto& member) {
-        const auto found = c.values.find(key);
-        if (found == c.values.end()) return;
-        const std::vector<Estimate>& values = found->second;
+        const std::vector<Estimate>& values = c.quantities.at(key).values;
+        if (values.empty()) return;
         if constexpr (std::is_same_v<decltype(member), std::optional<double>&>)
           member = values[0].value;
         else
           member = {values[0].value, values[1].value, values[2].value};
       },
       model);
-  if (model.readout_s) model.readout = c.notes.at("shutter.readout");
+  if (model.readout_s) model.readout = c.readout_direction;
   return model;
 }
 

@@ -83,8 +83,8 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
       first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
   const auto camera = camera_path(scene.camera).at(0);
   const double heading_deg = camera ? yaw_pitch_roll(camera->world_from_body).yaw_deg : 0;
-  const double azimuth_deg = std::remainder(
-      found.values.at("light.sun_azimuth_deg")[0].value + heading_deg - turned_deg, 360);
+  const double azimuth_deg =
+      std::remainder(found.quantities.sun_azimuth.value().value + heading_deg - turned_deg, 360);
   return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
 }
 
@@ -179,7 +179,7 @@ void take_measured(scene::Scene& scene,
                    const StatedScene& stated,
                    calibration::Calibration measured,
                    const Warn& to_warn) {
-  const std::map<std::string, std::string> untold = measured.missing;  // not measured on the clip
+  const calibration::Quantities of_clip = measured.quantities;
   const calibration::Calibration found = with_camera(std::move(measured), stated.realism);
   const scene::CameraModel from_clip = calibration::model_of(found);
   scene::for_each_camera_key(
@@ -187,29 +187,29 @@ void take_measured(scene::Scene& scene,
         const auto& wanted = stated.to_measure;
         if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
         value = seen;
-        if (value && (stated.realism.profile || !untold.contains(key))) return;
-        std::string what = fmt::format("{} cannot be measured: {}", key, untold.at(key));
-        const auto horizon = untold.find("horizon");
-        if (key == std::string_view("air.airlight") && horizon != untold.end())
-          what += " (" + horizon->second + ")";
+        if (value && (stated.realism.profile || of_clip.at(key).missing.empty())) return;
+        std::string what = fmt::format("{} cannot be measured: {}", key, of_clip.at(key).missing);
+        if (key == std::string_view("air.airlight") && !found.no_horizon.empty())
+          what += " (" + found.no_horizon + ")";
         if (!stated.realism.fallback && !may_be_missing(key, stated.realism))
           throw Error(
               what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
                               "= true to take what cameras have in the median"
                             : "; state it, or set fallback = true in [realism] to leave it out"),
               stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
-        warn(to_warn, what + (value ? "; it is " + found.sources.at(key) : "; it is left out"));
+        warn(to_warn,
+             what + (value ? "; it is " + found.quantities.at(key).source : "; it is left out"));
       },
       scene.camera_model,
       from_clip);
   if (stated.realism.profile)
     for (const std::string& key : stated.to_measure)
-      if (const auto doubt = found.doubts.find(key); doubt != found.doubts.end())
-        warn(to_warn, key + " is doubtful: " + doubt->second);
+      if (const std::string& doubt = found.quantities.at(key).doubt; !doubt.empty())
+        warn(to_warn, key + " is doubtful: " + doubt);
   if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
-  if (stated.sun_is_known || !found.values.contains("light.sun_azimuth_deg")) return;
+  if (stated.sun_is_known || !found.quantities.sun_azimuth.is_measured()) return;
   scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
-  scene.light.sun_elevation_deg = found.values.at("light.sun_elevation_deg")[0].value;
+  scene.light.sun_elevation_deg = found.quantities.sun_elevation.value().value;
 }
 
 // The requested keys that neither the scene nor its camera file states.

@@ -61,9 +61,9 @@ class Resolve : public testing::Test {
 // from north: the sun, 100 degrees to the right of the clip's first frame, stands at 80 degrees.
 TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   calibration::Calibration found;
-  found.values["sensor.codec_step"] = {{7, 1}};
-  found.values["light.sun_azimuth_deg"] = {{100, 1}};
-  found.values["light.sun_elevation_deg"] = {{40, 1}};
+  found.quantities.at("sensor.codec_step").values = {{7, 1}};
+  found.quantities.at("light.sun_azimuth_deg").values = {{100, 1}};
+  found.quantities.at("light.sun_elevation_deg").values = {{40, 1}};
   found.yaw_from_first_deg = {0, 15, 30, 45};
   keep(found);
   scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = 10;
@@ -82,7 +82,7 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
 // All scenes over a clip use the same calibration, whatever part of the clip they use.
 TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
   calibration::Calibration found;
-  found.values["sensor.codec_step"] = {{1.0 / 3, 1}};
+  found.quantities.at("sensor.codec_step").values = {{1.0 / 3, 1}};
   keep(found);
   EXPECT_TRUE(needs_calibration());
   for (const std::int64_t first : {0, 5, 100})
@@ -109,7 +109,7 @@ std::string said_by(const std::function<void()>& what) {
 TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
   calibration::Calibration found;
   found.width = info_.width, found.height = info_.height;
-  found.missing["optics.point_spread_px"] = "no edges";
+  found.quantities.at("optics.point_spread_px").missing = "no edges";
   keep(found);
   scene_.camera_model.automatic = {"optics.point_spread_px"};
   EXPECT_NE(said_by([&] { resolve(); }).find("cannot be measured: no edges; state it, name"),
@@ -134,7 +134,7 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   constexpr const char* kKey = "sensor.chroma_spread_px";
   calibration::Calibration found;
   found.width = info_.width, found.height = info_.height;
-  found.missing[kKey] = "no colour";
+  found.quantities.at(kKey).missing = "no colour";
   keep(found);
   scene_.camera_model.automatic = {kKey};
   std::vector<std::string> warnings;
@@ -156,11 +156,11 @@ TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   found.width = info_.width, found.height = info_.height;
   scene::for_each_camera_key(
       [&](const std::string& key, const auto&) {
-        found.values[key].assign(key.starts_with("air.") ? 3 : 1, {0.1, 0.01});
+        found.quantities.at(key).values.assign(key.starts_with("air.") ? 3 : 1, {0.1, 0.01});
       },
       scene_.camera_model);
-  found.notes["shutter.readout"] = "down";
-  found.values[kKey] = {{7, 1}};
+  found.readout_direction = "down";
+  found.quantities.at(kKey).values = {{7, 1}};
   keep(found);
   scene_.camera_model.automatic.clear();
   scene_.realism.automatic = true;
@@ -169,8 +169,8 @@ TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   options_.warn = [&](const std::string& text) { warnings.push_back(text); };
   EXPECT_EQ(resolve().camera_model.codec_step, 7);
   EXPECT_TRUE(warnings.empty());
-  found.values.erase(kKey);
-  found.missing[kKey] = "no quantiser";
+  found.quantities.at(kKey).values.clear();
+  found.quantities.at(kKey).missing = "no quantiser";
   keep(found);
   EXPECT_FALSE(resolve().camera_model.codec_step);
   ASSERT_EQ(warnings.size(), 1u);
