@@ -148,7 +148,7 @@ std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSamp
 
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 motion::Estimator estimator,
-                                                std::stop_token stop,
+                                                const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen) {
   std::vector<motion::FrameMotion> result;
   while (const auto frame = reader.next()) {

@@ -103,7 +103,7 @@ std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSamp
 // Calls `seen` after each frame. Throws Interrupted on stop.
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 motion::Estimator estimator,
-                                                std::stop_token stop,
+                                                const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen);
 
 }  // namespace airtruth::sequence
