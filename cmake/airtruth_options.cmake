@@ -14,6 +14,10 @@ target_compile_options(airtruth_options INTERFACE
   # The same sums everywhere: no fused multiply-add that one compiler contracts and another does not.
   -ffp-contract=off)
 target_link_libraries(airtruth_options INTERFACE fmt::fmt)
+# The public headers (include/airtruth) mark what the libraries export; everything else stays private.
+configure_file(${PROJECT_SOURCE_DIR}/include/airtruth/version.h.in ${PROJECT_BINARY_DIR}/include/airtruth/version.h @ONLY)
+target_include_directories(airtruth_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
+target_compile_options(airtruth_options INTERFACE -fvisibility=hidden -fvisibility-inlines-hidden)
 if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
 endif()

@@ -88,6 +88,24 @@ TEST(Layers, IncludesGoStrictlyDownward) {
   EXPECT_GT(checked, 1000);
 }
 
+// What a user of the library includes brings nothing else along.
+TEST(Layers, PublicHeadersIncludeOnlyEachOtherAndTheStandardLibrary) {
+  const fs::path folder = fs::path(AIRTRUTH_SOURCE_DIR) / "include" / "airtruth";
+  const std::regex include(R"re(^\s*#\s*include\s+(.*))re");
+  const std::regex allowed(R"re(<(airtruth/[a-z_]+\.h|[a-z_]+)>)re");
+  int checked = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      std::smatch match;
+      if (!std::regex_search(line, match, include)) continue;
+      ++checked;
+      EXPECT_TRUE(std::regex_match(match[1].str(), allowed)) << entry.path() << ": " << line;
+    }
+  }
+  EXPECT_GT(checked, 30);
+}
+
 // OpenSceneGraph chooses a plugin, which may run code, by a file's name: it draws, and reads
 // nothing.
 TEST(Layers, NoSourceReadsFilesThroughOpenSceneGraph) {

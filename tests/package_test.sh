@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs airtruth into an empty folder and uses it as a stranger would: builds the example against the library, asks every
+# Installs airtruth into an empty folder and uses it as a stranger would: compiles every header by itself, looks at what the
+# libraries export and need, builds the examples against them and compares what they print with the program's own files, asks every
 # command for help, renders every manual page, completes words. Then the same of the Debian package, unpacked.
 set -euo pipefail
 build=$1
@@ -10,11 +11,110 @@ trap 'rm -rf "$place"' EXIT
 
 fail() { echo "package_test: $*" >&2; exit 1; }
 
-build_example() { # build_example PREFIX
-  cmake -S "$source/examples/cpp" -B "$place/build" -G Ninja -DCMAKE_PREFIX_PATH="$1" >"$place/configure.log" ||
-    { cat "$place/configure.log"; exit 1; }
+check_examples() { # check_examples PREFIX: built against the package, they print what the program's own files hold
+  cmake -S "$source/examples/cpp" -B "$place/build" -G Ninja -DCMAKE_PREFIX_PATH="$1" \
+    -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Werror" >"$place/configure.log" || { cat "$place/configure.log"; exit 1; }
   cmake --build "$place/build" >"$place/build.log" || { cat "$place/build.log"; exit 1; }
-  "$place/build/range" | grep -q ' m  .* px for 11 m' || fail "the example does not run"
+  env -u AIRTRUTH_MODEL_READER XDG_CACHE_HOME="$place/cache" \
+    python3 "$source/tests/library_examples_test.py" "$1/bin/airtruth" "$place/build" || fail "the examples are wrong"
+}
+
+check_documented_build() { # check_documented_build PREFIX: the lines of docs/library.md build a program
+  rm -rf "$place/mine"
+  mkdir "$place/mine"
+  awk '/^## Build/ { on = 1 } on && /^    / { sub(/^    /, ""); print; seen = 1 } seen && /^$/ { exit }' \
+    "$source/docs/library.md" >"$place/mine/CMakeLists.txt"
+  cat >"$place/mine/mine.cpp" <<'END'
+#include <airtruth/metrics.h>
+int main() { return airtruth::evaluation::overlap({100, 100, 20, 10}, {105, 100, 20, 10}) == 0.6 ? 0 : 1; }
+END
+  { cmake -S "$place/mine" -B "$place/mine/build" -G Ninja -DCMAKE_PREFIX_PATH="$1" && cmake --build "$place/mine/build"; } \
+    >"$place/mine.log" 2>&1 || { cat "$place/mine.log"; fail "the lines of docs/library.md do not build"; }
+  "$place/mine/build/mine" || fail "the program of docs/library.md gives a wrong overlap"
+}
+
+# find_package(airtruth) with these words finds exactly these targets; "fails" where it must not find the package.
+expect_targets() { # expect_targets PREFIX WORDS TARGETS
+  rm -rf "$place/find"
+  mkdir "$place/find"
+  cat >"$place/find/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.25)
+project(find LANGUAGES CXX)
+find_package(airtruth $2)
+foreach(target IN ITEMS evaluation airtruth)
+  if(TARGET airtruth::\${target})
+    message(STATUS "target \${target}")
+  endif()
+endforeach()
+END
+  local got
+  got=$(cmake -S "$place/find" -B "$place/find/build" -G Ninja -DCMAKE_PREFIX_PATH="$1" 2>/dev/null || echo "target fails")
+  got=$(sed -n 's/.*target //p' <<<"$got" | paste -sd' ')
+  [ "$got" = "$3" ] || fail "find_package(airtruth $2) gives '$got'; expected '$3'"
+}
+
+check_components() { # check_components PREFIX
+  expect_targets "$1" "REQUIRED" "evaluation airtruth"
+  expect_targets "$1" "REQUIRED COMPONENTS evaluation" "evaluation"
+  expect_targets "$1" "REQUIRED COMPONENTS airtruth" "airtruth"
+  expect_targets "$1" "REQUIRED COMPONENTS no_such" "fails"
+  expect_targets "$1" "$version REQUIRED COMPONENTS evaluation" "evaluation"
+  # Before 1.0 another minor version may differ in everything.
+  expect_targets "$1" "99.0 REQUIRED" "fails"
+  expect_targets "$1" "${version%%.*}.0.1 REQUIRED" "fails"
+}
+
+# The component evaluation alone: its library is found and its examples' headers are there, and nothing of the rest.
+check_evaluation_alone() {
+  local light=$place/light
+  cmake --install "$build" --component evaluation --prefix "$light" >"$place/light.log"
+  expect_targets "$light" "REQUIRED" "evaluation"
+  expect_targets "$light" "REQUIRED COMPONENTS evaluation" "evaluation"
+  expect_targets "$light" "REQUIRED COMPONENTS airtruth" "fails"
+  if [ -e "$light/bin" ] || [ -e "$light/include/airtruth/renderer.h" ]; then fail "the component evaluation installs more"; fi
+  local header
+  for header in "$light"/include/airtruth/*.h; do
+    echo "#include <airtruth/$(basename "$header")>" | g++ -std=c++20 -fsyntax-only -Werror -I "$light/include" -x c++ - ||
+      fail "$header does not compile without the other component"
+  done
+}
+
+# The public headers and nothing else are installed, and each compiles by itself with the standard library alone.
+check_headers() { # check_headers PREFIX
+  (cd "$1/include" && find . -type f | sort) >"$place/headers"
+  { (cd "$source/include" && find . -name '*.h'); echo ./airtruth/version.h; } | sort >"$place/wanted"
+  diff "$place/wanted" "$place/headers" || fail "include/ holds other files than the public headers"
+  local header
+  while read -r header; do
+    echo "#include <${header#./}>" | g++ -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I "$1/include" -x c++ - ||
+      fail "$header does not compile by itself"
+  done <"$place/headers"
+  grep -rhE '^ *# *include' "$1/include" | grep -vE '<(airtruth/)?[a-z_]+(\.h)?>$' && fail "a public header includes something private"
+  grep -q "kVersion = \"$version\"" "$1/include/airtruth/version.h" || fail "version.h has another version"
+}
+
+# Every exported function is declared in a public header, and so is every class whose functions are.
+check_exports() { # check_exports LIBRARY
+  nm -DC --defined-only "$1" | sed 's/^[0-9a-f]* . //' >"$place/exports"
+  [ "$(wc -l <"$place/exports")" -gt 20 ] || fail "$1 exports next to nothing"
+  local name
+  while read -r name; do
+    grep -rqwF -e "$name" "$place/usr/include" || fail "$1 exports $name, which no public header declares"
+  done < <(sed -E 's/^(typeinfo|vtable|typeinfo name) for //; s/\[abi:[^]]*\]//g; s/\(.*//; s/.*:://; s/^~//' "$place/exports" | sort -u)
+  grep -vE '^((typeinfo|vtable|typeinfo name) for )?airtruth::' "$place/exports" && fail "$1 exports names of others"
+  return 0
+}
+
+check_libraries() { # check_libraries PREFIX
+  local library folder needed
+  local -r soversion=$(sed -E 's/^0\.([0-9]+).*/0.\1/; t; s/\..*//' <<<"$version")
+  folder=$(dirname "$(find "$1" -name libairtruth.so)")
+  for library in "$folder/libairtruth.so" "$folder/libairtruth-evaluation.so"; do
+    check_exports "$library"
+    readelf -d "$library" | grep -q "SONAME.*\[$(basename "$library").$soversion\]" || fail "$library has another SONAME than $soversion"
+  done
+  needed=$(ldd "$folder/libairtruth-evaluation.so" | grep -iE 'osg|openthreads|embree|opencv|libav|libsw|png|jpeg|libE?GL|tbb|assimp' || true)
+  [ -z "$needed" ] || fail "libairtruth-evaluation.so needs $needed"
 }
 
 commands_below() { # commands_below PROGRAM [GROUP]: the names that its help lists
@@ -110,7 +210,12 @@ check_model_reader() { # check_model_reader PREFIX: a model file is read by the 
 
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
-build_example "$place/usr"
+check_headers "$place/usr"
+check_libraries "$place/usr"
+check_components "$place/usr"
+check_documented_build "$place/usr"
+check_evaluation_alone
+check_examples "$place/usr"
 check_model_reader "$place/usr"
 check_help_and_pages "$place/usr"
 check_completion "$place/usr"
@@ -137,4 +242,4 @@ if command -v lintian >/dev/null; then
   lintian --allow-root --fail-on error,warning "$package" 2>"$place/lintian.log" || fail "lintian has errors"
   looked="lintian finds neither error nor warning"
 fi
-echo "installed, found by find_package, built, run; $(wc -l <"$place/packaged") files packaged; $looked"
+echo "installed, found by find_package, examples built and checked; $(wc -l <"$place/packaged") files packaged; $looked"

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/version.h>
 #include <malloc.h>
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/suggest.h"
-#include "foundation/base/version.h"
 
 namespace {
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
-
-#include "foundation/base/version.h"
 
 namespace airtruth::cli {
 namespace {

@@ -9,7 +9,9 @@
 #include <cstring>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -232,6 +234,18 @@ RawModel serve(Reader& reader, DiskFiles& files) {
   throw Error("asks for more than " + std::to_string(kMaxQuestions) + " files");
 }
 
+// Where the helper lies if a shared library holds this code, in PREFIX/lib or, as on Debian,
+// PREFIX/lib/x86_64-linux-gnu. Empty for a program, whose name need not be a path.
+std::vector<fs::path> beside_library() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&model_reader_program), &info) == 0) return {};
+  const fs::path library = info.dli_fname;
+  if (!library.is_absolute()) return {};
+  const fs::path folder = library.parent_path().lexically_normal();
+  const fs::path place = fs::path("libexec") / "airtruth" / kReaderName;
+  return {folder.parent_path() / place, folder.parent_path().parent_path() / place};
+}
+
 bool is_program(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
@@ -248,9 +262,11 @@ fs::path model_reader_program() {
   }
   std::error_code ignored;
   const fs::path own = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& candidate : {own / kReaderName,
-                                    own.parent_path() / "libexec" / "airtruth" / kReaderName,
-                                    fs::path(AIRTRUTH_LIBEXEC_FOLDER) / kReaderName})
+  std::vector<fs::path> candidates = beside_library();
+  candidates.insert(candidates.begin(),
+                    {own / kReaderName, own.parent_path() / "libexec" / "airtruth" / kReaderName});
+  candidates.push_back(fs::path(AIRTRUTH_LIBEXEC_FOLDER) / kReaderName);
+  for (const fs::path& candidate : candidates)
     if (is_program(candidate)) return candidate;
   throw Error(std::string("the program ") + kReaderName +
               ", which reads model files, is not installed; install airtruth whole, or set "

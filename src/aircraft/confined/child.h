@@ -20,7 +20,8 @@ constexpr double kReaderSeconds = 20;  // wall time after which the child is end
 RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions& options);
 
 // The program of the child: $AIRTRUTH_MODEL_READER, else airtruth-model-reader beside this program,
-// in ../libexec/airtruth from it, or where it was configured to be installed. Error: it is nowhere.
+// in ../libexec/airtruth from it, in PREFIX/libexec/airtruth for libairtruth.so in PREFIX/lib, or
+// where it was configured to be installed. Error: it is nowhere.
 fs::path model_reader_program();
 
 }  // namespace airtruth::aircraft

@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include <airtruth/statistics.h>
+#include <airtruth/vot.h>
+
 #include "benchmark/experiment/truth.h"
 #include "foundation/base/log.h"
 #include "truth/evaluation/metrics.h"
 #include "truth/evaluation/outcome.h"
-#include "truth/evaluation/statistics.h"
-#include "truth/evaluation/vot.h"
 
 namespace airtruth::experiment {
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <set>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "benchmark/experiment/tables.h"
 #include "foundation/base/base64.h"
 #include "foundation/base/files.h"
-#include "foundation/base/version.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,6 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
-#include "foundation/base/version.h"
 #include "truth/evaluation/metrics.h"
 #include "truth/exchange/exchange.h"
 

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/version.h"
 
 namespace airtruth::experiment {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "truth/evaluation/vot.h"
-#include "truth/exchange/labels.h"
+#include <airtruth/labels.h>
+#include <airtruth/vot.h>
 
 // Trackers' results as files (docs/evaluation.md). A folder holds one tracker's:
 //   SEQUENCE.txt                              one pass, a line "x,y,w,h" a frame

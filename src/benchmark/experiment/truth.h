@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/labels.h>
+#include <airtruth/vot.h>
+
 #include "camera/lens/lens.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/log.h"
-#include "truth/evaluation/vot.h"
-#include "truth/exchange/labels.h"
 
 namespace airtruth::experiment {
 

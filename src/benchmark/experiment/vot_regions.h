@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "truth/evaluation/vot.h"
+#include <airtruth/vot.h>
+
 #include "truth/exchange/text.h"
 
 // Regions in the formats of VOT's toolkit: text with one region per line and, since version 0.5,

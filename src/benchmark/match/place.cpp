@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "foundation/base/error.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {
@@ -80,15 +80,15 @@ Pixel side_of(const std::vector<Spot>& spots, const lens::ImageSize& size) {
 
 // The range along `direction`, in metres, at which the larger side of the aircraft's box is
 // `size_px`. `range_m` is a first guess.
-double range_of_size(const annotation::Sight& sight,
-                     const annotation::SilhouettePoints& silhouette,
+double range_of_size(const projection::Sight& sight,
+                     const projection::SilhouettePoints& silhouette,
                      const Quaternion& world_from_aircraft,
                      const Vector3& direction,
                      double size_px,
                      double range_m) {
   for (int round = 0; round < 4; ++round) {
     const auto box =
-        annotation::exact_box(sight, silhouette, {world_from_aircraft, range_m * direction}, 0).box;
+        projection::exact_box(sight, silhouette, {world_from_aircraft, range_m * direction}, 0).box;
     if (!box) throw Error("the intruder cannot be drawn where it would be placed");
     range_m *= std::max(box->width, box->height) / size_px;
   }
@@ -127,10 +127,10 @@ Beside path_beside(const RealBoxes& boxes,
   const Pixel side = side_of(spots, lens.size());
   if (side.isZero())
     throw Error("there is no room in the picture beside the real aircraft at its own size");
-  const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
   const Quaternion turned = world_from_body(attitude);
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
-  const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
+  const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
   const aircraft::Extents extents = aircraft::extents(mesh);
   Beside path;
   double range_m = 0;

@@ -11,7 +11,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "picture/render/renderer.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {
@@ -70,8 +70,8 @@ class Views {
         cam_from_aircraft({azimuth_deg, elevation_deg, 0}).conjugate();
     const Vector3 centre = 0.5 * (extents_.low_in_body + extents_.high_in_body);
     const Rigid pose{world_from_cam, centre - range_m * (world_from_cam * Vector3::UnitZ())};
-    const annotation::Sight sight{&lens, pose.inverse(), Homography::Identity()};
-    const auto box = annotation::exact_box(sight, silhouette_, {}, 0).box;
+    const projection::Sight sight{&lens, pose.inverse(), Homography::Identity()};
+    const auto box = projection::exact_box(sight, silhouette_, {}, 0).box;
     const render::View view{&lens, pose, Homography::Identity(), kViewPx, kViewPx};
     const image::Layer layer = render::render(view, {}, {{&model_, {}, 0}}, {box}, {.quality = 1});
     cv::Mat result(kViewPx, kViewPx, CV_32F, cv::Scalar(0));
@@ -84,7 +84,7 @@ class Views {
 
  private:
   render::Model model_;
-  annotation::SilhouettePoints silhouette_;
+  projection::SilhouettePoints silhouette_;
   aircraft::Extents extents_;
 };
 

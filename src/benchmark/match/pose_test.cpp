@@ -11,7 +11,7 @@
 #include "foundation/image/colour.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {
@@ -26,9 +26,9 @@ cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude
                         {kWidth, kHeight});
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const Rigid world_from_aircraft{world_from_body(attitude), Vector3(range_m, 0, 0)};
-  const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const annotation::SilhouettePoints points{&mesh, aircraft::silhouette_points(mesh)};
-  const auto box = annotation::exact_box(sight, points, world_from_aircraft, 0).box;
+  const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
+  const projection::SilhouettePoints points{&mesh, aircraft::silhouette_points(mesh)};
+  const auto box = projection::exact_box(sight, points, world_from_aircraft, 0).box;
   const render::Model model(mesh);
   render::Light light;
   light.sun = light.sky = light.ground = {0.1f, 0.1f, 0.1f};

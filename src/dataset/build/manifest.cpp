@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/build/manifest.h"
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/version.h"
 #include "foundation/json/json_object.h"
 
 namespace airtruth::dataset {

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -127,12 +127,12 @@ class Sizer {
                                   double first_guess_m) const {
     constexpr double kWithinShare = 1e-5;
     constexpr int kMostRounds = 60;
-    const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
+    const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
     double range_m = first_guess_m;
     for (int round = 0; round < kMostRounds; ++round) {
       const Vector3 at = raised(camera_.position_in_world + range_m * direction);
       const auto exact =
-          annotation::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);
+          projection::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);
       if (!exact.box || exact.partly_unseen) {
         // A part of the aircraft is behind the camera or beyond the lens's field.
         range_m *= 2;
@@ -156,7 +156,7 @@ class Sizer {
   }
 
   lens::Lens lens_;
-  annotation::Sight sight_;
+  projection::Sight sight_;
   trajectory::State camera_;
   double meets_s_ = 0;
 };

@@ -3,15 +3,16 @@
 
 #include <set>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
-#include "foundation/base/version.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
+#include "picture/video/still.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -116,8 +117,13 @@ ImportSummary import_set(const fs::path& source,
   if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
     throw Error("exists and is not empty; expected a new folder", {out.string()});
   check_output_folder(out);
+  exchange::ReadOptions read = options.read;
+  read.size_of_picture = [](const fs::path& file) {
+    const image::Rgb8 picture = video::read_still(file);
+    return std::pair(picture.width, picture.height);
+  };
   std::vector<exchange::Clip> clips =
-      exchange::read_clips(options.format, source, options.read, options.warn);
+      exchange::read_clips(options.format, source, read, options.warn);
   std::set<std::string> taken;
   for (exchange::Clip& clip : clips) {
     auto video = options.videos.find(clip.name);

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/labels.h>
+
+#include "dataset/sequences/labels_of_truth.h"
 #include "foundation/base/log.h"
-#include "truth/exchange/labels.h"
 
 namespace airtruth::dataset {
 
@@ -21,20 +23,6 @@ struct ClipFacts {
   std::vector<std::string> categories;
   std::int64_t frames = 0;
 };
-
-// Selects the box of truth.jsonl that becomes a label's box (docs/formats/truth.md).
-enum class Boxes {
-  // covered_box_px bounds the pixels that the aircraft itself covers. It is the box for training.
-  // exact_box_px, cut at the frame's edges, is the box that geometry gives, in fractions of a
-  // pixel.
-  // visible_box_px bounds the pixels that changed, with the codec's ripple.
-  kCovered,
-  kExact,
-  kVisible,
-};
-const char* name(Boxes boxes);  // "covered", "exact", "visible"
-// Throws Error for any other name.
-Boxes boxes_from_name(const std::string& name);
 
 // The labelled clips of a folder. The folder is a data set that `dataset build` made, complete or
 // not; the output of `dataset import`; or one or more sequences that `render` made.
@@ -78,9 +66,5 @@ class LabelledSet {
   std::vector<std::string> names_;
   std::int64_t missing_ = 0;
 };
-
-// The type of an aircraft of the list ("738/738-Ryanair" gives "738"), or the name of a model file
-// without its extension.
-std::string category_of(const std::string& aircraft);
 
 }  // namespace airtruth::dataset

@@ -5,11 +5,11 @@
 #include <array>
 #include <functional>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
 
 #include "aircraft/wrapper/reader.h"
 #include "dataset/catalogue/folder.h"
-#include "foundation/base/version.h"
 
 namespace airtruth::dataset {
 namespace {

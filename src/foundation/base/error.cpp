@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/error.h"
 
+#include <stdexcept>
+
 namespace airtruth {
 namespace {
 
@@ -22,6 +24,11 @@ std::string to_string(const Where& where) {
 
 Error::Error(std::string_view message, Where where)
     : std::runtime_error(with_place(message, where)), message_(message), where_(std::move(where)) {}
+
+Error::~Error() = default;
+
+Interrupted::Interrupted() : std::runtime_error("interrupted") {}
+Interrupted::~Interrupted() = default;
 
 void check(bool condition, std::string_view what) {
   if (!condition) throw std::logic_error("internal error: " + std::string(what));

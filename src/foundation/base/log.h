@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <string>
+
+#include <airtruth/error.h>
 
 namespace airtruth {
 
-// The library never prints: it passes one-line warnings to its caller through this function. An
-// empty function discards them.
-using Warn = std::function<void(const std::string& message)>;
-
+// Passes a warning to the caller, where it has a function for warnings (Warn).
 inline void warn(const Warn& to, const std::string& message) {
   if (to) to(message);
 }

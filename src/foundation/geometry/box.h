@@ -5,39 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include <airtruth/box.h>
+
 #include "foundation/geometry/transform.h"
 
 namespace airtruth {
-
-// An axis-parallel box in floating pixel coordinates (docs/conventions.md). It covers
-// [x, x + width) and [y, y + height).
-struct Box {
-  double x = 0;
-  double y = 0;
-  double width = 0;
-  double height = 0;
-
-  double right() const { return x + width; }
-  double bottom() const { return y + height; }
-  double area() const { return width * height; }
-  bool operator==(const Box&) const = default;
-};
-
-// A box of whole pixels: the columns x to x + width - 1 and the rows y to y + height - 1. It is
-// never empty.
-struct PixelBox {
-  int x = 0;
-  int y = 0;
-  int width = 0;
-  int height = 0;
-
-  int right() const { return x + width; }
-  int bottom() const { return y + height; }
-  bool contains(int px, int py) const {
-    return px >= x && py >= y && px < right() && py < bottom();
-  }
-  bool operator==(const PixelBox&) const = default;
-};
 
 // The whole pixels that a box touches. Its edges are clamped to +-1,000,000 pixels, which is far
 // outside any picture.

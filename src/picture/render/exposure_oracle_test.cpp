@@ -12,7 +12,7 @@
 #include "picture/composite/cover.h"
 #include "picture/composite/spread.h"
 #include "picture/render/renderer.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 // Compares the renderer, with motion blur and rolling shutter, with brute force: each pixel has 64
 // x 64 places and 256 times. For each place the lens gives the ray, and each triangle is
@@ -228,15 +228,15 @@ Scene scene_of(const Setting& setting,
   Twist body = setting.body;
   body.velocity_mps *= std::max(1.0, range_m / 300);
   scene.instance = {&model, {airtruth::world_from_body({70, 8, 20}), place}, 0, body};
-  const annotation::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
-  const annotation::Sight sight{&setting.lens,
+  const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const projection::Sight sight{&setting.lens,
                                 scene.view.world_from_cam.inverse(),
                                 Homography::Identity(),
                                 setting.shutter,
                                 setting.camera,
                                 setting.frame_from_nominal_per_s};
   scene.exact =
-      annotation::exact_box(sight, silhouette, scene.instance.world_from_body, 0, body).box;
+      projection::exact_box(sight, silhouette, scene.instance.world_from_body, 0, body).box;
   scene.search = {
       scene.exact->x - 1.5, scene.exact->y - 1.5, scene.exact->width + 3, scene.exact->height + 3};
   return scene;

@@ -6,7 +6,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "picture/render/renderer.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::render {
 namespace {
@@ -258,10 +258,10 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
   const aircraft::Extents extents = aircraft::extents(stand.aircraft.mesh);
   const double range_m = 2000 * std::max(extents.length_m(), extents.span_m()) / size_px;
   const Rigid world_from_body{airtruth::world_from_body(attitude), Vector3(range_m, 0.3, -0.2)};
-  const annotation::Sight sight{&lens, view.world_from_cam.inverse(), Homography::Identity()};
-  const annotation::SilhouettePoints silhouette{&stand.aircraft.mesh,
+  const projection::Sight sight{&lens, view.world_from_cam.inverse(), Homography::Identity()};
+  const projection::SilhouettePoints silhouette{&stand.aircraft.mesh,
                                                 aircraft::silhouette_points(stand.aircraft.mesh)};
-  Box box = *annotation::exact_box(sight, silhouette, world_from_body, 0).box;
+  Box box = *projection::exact_box(sight, silhouette, world_from_body, 0).box;
   box = {box.x - 1.5, box.y - 1.5, box.width + 3, box.height + 3};
   const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};
   const image::Layer fast = render(view, white(), one, {box}, {.quality = 3});

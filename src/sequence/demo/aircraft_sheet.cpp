@@ -9,7 +9,7 @@
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "show/report/tiles.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -57,10 +57,10 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
   const Quaternion eye = world_from_body({degrees(azimuth) + 180, -pose.elevation_deg, 0});
   const Rigid world_from_cam =
       Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
-  const annotation::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const annotation::SilhouettePoints silhouette{&aircraft.mesh,
+  const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
+  const projection::SilhouettePoints silhouette{&aircraft.mesh,
                                                 aircraft::silhouette_points(aircraft.mesh)};
-  const auto box = annotation::exact_box(sight, silhouette, {}, 0).box;
+  const auto box = projection::exact_box(sight, silhouette, {}, 0).box;
   render::Light light;
   light.to_sun_in_world = render::to_sun(degrees(azimuth) + 35, 45);
   light.sun = {0.62f, 0.6f, 0.56f};

@@ -14,7 +14,7 @@
 #include "picture/render/renderer.h"
 #include "sequence/evision/evision_motion.h"
 #include "truth/annotation/evision.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 #include "world/trajectory/path.h"
 
 namespace airtruth::sequence {
@@ -78,7 +78,7 @@ trajectory::Path path_through(const std::vector<Position>& positions, bool bank)
 // An aircraft, ready to be projected and to be rendered.
 struct Model {
   aircraft::Aircraft aircraft;
-  annotation::SilhouettePoints silhouette;
+  projection::SilhouettePoints silhouette;
   render::Model rays;
 
   Model(const std::string& name, double scale, const Warn& warn)
@@ -122,8 +122,8 @@ Rigid looking_north() { return {cam_from_body(), Vector3::Zero()}; }
 
 // Of the projected outline, not clipped; empty where it has none.
 std::optional<Box> outline_box(const Model& model, const Frame& frame) {
-  const annotation::Sight sight{&pinhole(), looking_north(), frame.frame_from_nominal};
-  return annotation::exact_box(sight, model.silhouette, frame.from_camera, frame.time_s).box;
+  const projection::Sight sight{&pinhole(), looking_north(), frame.frame_from_nominal};
+  return projection::exact_box(sight, model.silhouette, frame.from_camera, frame.time_s).box;
 }
 
 // The pixels that a colour key selects: those of which at least a third is covered, or else the one

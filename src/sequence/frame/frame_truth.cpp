@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "truth/annotation/bearing.h"
+#include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -28,12 +28,12 @@ void add_bearings(annotation::Intruder& truth,
                   const Moment& moment,
                   const trajectory::State& state,
                   const Vector3& offset_in_world) {
-  const annotation::Bearing nominal = annotation::bearing_of(
+  const projection::Bearing nominal = projection::bearing_of(
       cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
   truth.nominal_azimuth_deg = nominal.azimuth_deg;
   truth.nominal_elevation_deg = nominal.elevation_deg;
   const auto seen =
-      annotation::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
+      projection::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
   if (!seen) return;
   truth.azimuth_deg = seen->azimuth_deg;
   truth.elevation_deg = seen->elevation_deg;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <airtruth/labels.h>
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
@@ -16,7 +17,6 @@
 #include "sequence/frame/paint.h"
 #include "sequence/setup/world.h"
 #include "show/report/pictures.h"
-#include "truth/exchange/labels.h"
 
 namespace airtruth::sequence {
 namespace {

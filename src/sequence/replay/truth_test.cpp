@@ -19,8 +19,8 @@
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/bearing.h"
 #include "truth/annotation/evision.h"
+#include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -152,15 +152,15 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
                   1e-9);
       const int k = static_cast<int>(frame.frame);
       const Vector3 nominal = cam_from_body() * offset.normalized();
-      const annotation::Bearing truth =
-          annotation::bearing_of(cam_from_world(k) * (cam_from_world(0).conjugate() * nominal));
+      const projection::Bearing truth =
+          projection::bearing_of(cam_from_world(k) * (cam_from_world(0).conjugate() * nominal));
       constexpr double kMeasuredDeg = 0.35;  // half a pixel of this small picture
       EXPECT_NEAR(*one.azimuth_deg, truth.azimuth_deg, kMeasuredDeg);
       EXPECT_NEAR(*one.elevation_deg, truth.elevation_deg, kMeasuredDeg);
       moved_deg = std::max(moved_deg, std::abs(*one.azimuth_deg - *one.nominal_azimuth_deg));
       // Through the lens alone the bearing is the pixel where the intruder is.
       const auto pixel =
-          lens.pixel_from_cam(annotation::direction_of({*one.azimuth_deg, *one.elevation_deg}));
+          lens.pixel_from_cam(projection::direction_of({*one.azimuth_deg, *one.elevation_deg}));
       ASSERT_TRUE(pixel);
       const Box& exact = *one.exact_box_px;
       EXPECT_LT(std::abs(pixel->x() - (exact.x + exact.width / 2)), 0.5 * exact.width);

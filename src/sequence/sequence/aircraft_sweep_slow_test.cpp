@@ -7,7 +7,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "picture/render/renderer.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -30,7 +30,7 @@ struct Boxes {
 
 Boxes boxes_of(const aircraft::Aircraft& aircraft,
                const render::Model& model,
-               const annotation::SilhouettePoints& silhouette,
+               const projection::SilhouettePoints& silhouette,
                double size_px) {
   const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
   const double largest_m = std::max({extents.length_m(), extents.span_m(), extents.height_m()});
@@ -41,7 +41,7 @@ Boxes boxes_of(const aircraft::Aircraft& aircraft,
   const Rigid pose{world_from_body, at};
   const Rigid cam_from_world{cam_from_body(), Vector3::Zero()};
   Boxes boxes;
-  boxes.exact = *annotation::exact_box({&pinhole(), cam_from_world}, silhouette, pose, 0.3).box;
+  boxes.exact = *projection::exact_box({&pinhole(), cam_from_world}, silhouette, pose, 0.3).box;
   const Box& e = boxes.exact;
   const render::View view{
       &pinhole(), cam_from_world.inverse(), Homography::Identity(), kSide, kSide};
@@ -81,7 +81,7 @@ TEST(EveryAircraft, HasItsTwoBoxesTogetherNearAndFar) {
     kinds.insert(kind);
     const aircraft::Aircraft aircraft = aircraft::load_aircraft(entry.name);
     const render::Model model(aircraft.mesh);
-    const annotation::SilhouettePoints silhouette{&aircraft.mesh,
+    const projection::SilhouettePoints silhouette{&aircraft.mesh,
                                                   aircraft::silhouette_points(aircraft.mesh)};
     for (const double size_px : {8.0, 60.0, 300.0}) {
       const Boxes boxes = boxes_of(aircraft, model, silhouette, size_px);

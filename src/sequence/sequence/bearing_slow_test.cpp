@@ -12,7 +12,7 @@
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/bearing.h"
+#include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -51,9 +51,9 @@ TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
       const annotation::Intruder& one = frame.intruders[0];
       if (!one.centroid_px || one.cut_by_frame > 0) continue;
       ASSERT_TRUE(one.azimuth_deg && one.nominal_azimuth_deg);
-      const Vector3 seen = annotation::direction_of({*one.azimuth_deg, *one.elevation_deg});
+      const Vector3 seen = projection::direction_of({*one.azimuth_deg, *one.elevation_deg});
       const Vector3 nominal =
-          annotation::direction_of({*one.nominal_azimuth_deg, *one.nominal_elevation_deg});
+          projection::direction_of({*one.nominal_azimuth_deg, *one.nominal_elevation_deg});
       seen_px.push_back((*lens.pixel_from_cam(seen) - *one.centroid_px).norm());
       const auto ray = lens.ray_from_pixel(*one.centroid_px);
       nominal_deg.push_back(degrees(std::acos(std::clamp(ray->dot(nominal), -1.0, 1.0))));

@@ -5,11 +5,11 @@
 #include <cerrno>
 #include <cstring>
 
+#include <airtruth/version.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/version.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 

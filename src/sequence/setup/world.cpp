@@ -94,7 +94,7 @@ Box grown(const Box& box, double margin) {
 // Returns the whole frame, for an aircraft so near that a part of it has no pixel.
 Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
 
-std::optional<Box> search_box(const annotation::ExactBox& exact, const lens::ImageSize& size) {
+std::optional<Box> search_box(const projection::ExactBox& exact, const lens::ImageSize& size) {
   if (!exact.box) return std::nullopt;
   const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
   if (!meets_frame(box, size)) return std::nullopt;
@@ -147,7 +147,7 @@ World load_world(const scene::Scene& scene,
     const trajectory::Path path = path_of(intruder);
     const Type& type = at_place(
         intruder.where, [&]() -> const Type& { return types.type_of(intruder, path, warn, stop); });
-    annotation::SilhouettePoints silhouette{&type.aircraft->mesh,
+    projection::SilhouettePoints silhouette{&type.aircraft->mesh,
                                             aircraft::silhouette_points(type.aircraft->mesh)};
     world.actors.push_back(
         {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
@@ -220,9 +220,9 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
                })};
     moment.twists.push_back(twist);
     moment.boxes.push_back(
-        state ? annotation::exact_box(
+        state ? projection::exact_box(
                     moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
-              : annotation::ExactBox{});
+              : projection::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }
   return moment;

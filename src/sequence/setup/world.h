@@ -14,8 +14,8 @@
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "picture/video/reader.h"
-#include "truth/annotation/exact_box.h"
 #include "truth/annotation/truth.h"
+#include "truth/projection/exact_box.h"
 #include "world/scene/scene.h"
 #include "world/trajectory/path.h"
 
@@ -28,7 +28,7 @@ struct Actor {
   trajectory::Path path;
   std::shared_ptr<const aircraft::Aircraft> type;
   std::shared_ptr<const render::Model> model;
-  annotation::SilhouettePoints silhouette;
+  projection::SilhouettePoints silhouette;
 };
 
 struct World {
@@ -64,12 +64,12 @@ struct Moment {
   std::int64_t frame = 0;
   double time_s = 0;
   trajectory::State camera;
-  annotation::Sight sight;
+  projection::Sight sight;
   // By actor; empty: the actor is not in the world at this time.
   std::vector<std::optional<trajectory::State>> states;
   // By actor: its motion after this moment.
   std::vector<Twist> twists;
-  std::vector<annotation::ExactBox> boxes;
+  std::vector<projection::ExactBox> boxes;
   // By actor: the box in which its pixels are searched (its box with a margin); empty: it is not
   // in view.
   std::vector<std::optional<Box>> search;

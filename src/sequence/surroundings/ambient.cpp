@@ -46,7 +46,7 @@ float brightness(const Rgb& linear) {
 }
 
 // Direction of a pixel of the frame in world axes; empty where the lens has no direction.
-std::optional<Vector3> direction_of(const annotation::Sight& sight,
+std::optional<Vector3> direction_of(const projection::Sight& sight,
                                     const Homography& nominal_from_frame,
                                     int x,
                                     int y) {
@@ -61,7 +61,7 @@ std::optional<Vector3> direction_of(const annotation::Sight& sight,
 std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
-                             const annotation::Sight& sight,
+                             const projection::Sight& sight,
                              const Skies& skies,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
@@ -271,7 +271,7 @@ AmbientEstimator::AmbientEstimator(const scene::Light& light,
       skies_(skies(to_sun_in_world(light))) {}
 
 Ambient AmbientEstimator::next(const image::Picture& picture,
-                               const annotation::Sight& sight,
+                               const projection::Sight& sight,
                                const std::optional<PixelBox>& near,
                                bool begins_shot) {
   const bool all_stated =

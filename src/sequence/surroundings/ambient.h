@@ -9,7 +9,7 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 #include "sequence/surroundings/sky.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 #include "world/scene/scene.h"
 
 // Estimates the light that falls on the intruder from the background, where the scene does not
@@ -55,7 +55,7 @@ class AmbientEstimator {
   // `begins_shot` is true where the light differs from the previous frame's; the result is then not
   // smoothed across the two.
   Ambient next(const image::Picture& picture,
-               const annotation::Sight& sight,
+               const projection::Sight& sight,
                const std::optional<PixelBox>& near,
                bool begins_shot = false);
 

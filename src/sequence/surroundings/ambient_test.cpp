@@ -24,7 +24,7 @@ std::uint8_t to_code(float value) {
 struct ClearSky {
   lens::Lens lens{lens::Pinhole{{100, 100}, {kSkySize / 2.0, kSkySize / 2.0}},
                   {kSkySize, kSkySize}};
-  annotation::Sight sight;
+  projection::Sight sight;
   scene::Light light;
   image::Picture picture;
 
@@ -98,7 +98,7 @@ image::Picture grey_sky(int luma) {
 // smoothed light stays too bright, and starts anew at a cut.
 TEST(Ambient, ACutBeginsTheLightAnew) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(20, {96, 72});
-  annotation::Sight sight;
+  projection::Sight sight;
   sight.lens = &lens;
   sight.cam_from_world.rotation = cam_from_body();
   const auto after = [&](bool begins_shot) {

@@ -32,16 +32,6 @@ struct Outcome {
 // The truth of the first pair serves as its answer. `lens` may be null.
 std::vector<Outcome> outcomes(std::span<const FramePair> frames, const lens::Lens* lens);
 
-// A target is lost after kGrace frames with an overlap of at most kLostOverlap.
-constexpr int kGrace = 10;
-constexpr double kLostOverlap = 0.1;
-
-// The frame at which a tracker has lost its target: the first of 10 consecutive frames with the
-// target whose overlap is at most 0.1 (Kristan et al. 2020, "The eighth visual object tracking
-// VOT2020 challenge results", section 3.2). Fewer frames suffice where the sequence ends within
-// them. Empty where the target is never lost.
-std::optional<std::size_t> first_loss(std::span<const FramePair> frames);
-
 // Mean values of the outcomes in one bin.
 struct Bin {
   // Inclusive.

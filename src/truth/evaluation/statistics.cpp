@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/evaluation/statistics.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <airtruth/statistics.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"

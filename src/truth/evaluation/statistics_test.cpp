@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/evaluation/statistics.h"
-
 #include <cmath>
 #include <vector>
 
+#include <airtruth/statistics.h>
 #include <gtest/gtest.h>
 
 #include "foundation/base/seed.h"

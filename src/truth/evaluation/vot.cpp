@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/evaluation/vot.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include <airtruth/vot.h>
 
 #include "foundation/base/error.h"
 #include "truth/evaluation/outcome.h"

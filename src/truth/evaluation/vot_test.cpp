@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/evaluation/vot.h"
-
 #include <cmath>
 
+#include <airtruth/vot.h>
 #include <gtest/gtest.h>
 
 #include "truth/evaluation/outcome.h"

@@ -10,6 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
+#include "foundation/geometry/box.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/python_json.h"
 #include "truth/exchange/text.h"

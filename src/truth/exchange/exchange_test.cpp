@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "truth/exchange/text.h"
 
 namespace airtruth::exchange {
@@ -209,6 +210,46 @@ TEST(RoundTrip, EveryFormatKeepsAllThatItCanHold) {
       if (HasFailure()) return;
     }
   }
+}
+
+// write_clips() names the classes and the parts itself and writes no pictures.
+TEST(RoundTrip, OfASetThatIsWrittenAtOnce) {
+  Clip clip;
+  clip.name = "s";
+  clip.width = 64;
+  clip.height = 48;
+  Label label;
+  label.category = "738";
+  label.box_px = {3, 4, 8, 5};
+  clip.frames = {{0, std::nullopt, {label}}, {1, std::nullopt, {label}}};
+  const Folder folder;
+  const Part parts[] = {{"train", {clip}}, {"val", {clip}}};
+  write_clips(Format::kCoco, folder.path() / "coco", parts);
+  const auto read = read_clips(Format::kCoco, folder.path() / "coco", {}, {});
+  ASSERT_EQ(read.size(), 2u);
+  for (const Clip& one : read) {
+    ASSERT_EQ(one.frames.size(), 2u);
+    EXPECT_EQ(one.frames[1].labels.at(0).box_px, label.box_px);
+    EXPECT_EQ(one.frames[1].labels.at(0).category, "738");
+  }
+  EXPECT_THROW(write_clips(Format::kCoco, folder.path() / "coco", parts), Error);
+  EXPECT_THROW(write_clips(Format::kCsv, folder.path() / "csv", parts), Error);
+}
+
+// The library for tracker authors decodes no pictures; a caller may state how to read their size.
+TEST(Yolo, TheSizeOfPicturesComesFromTheCaller) {
+  const Folder folder;
+  folder.file("labels/s_000000.txt", "0 0.5 0.5 0.25 0.5\n");
+  folder.file("images/s_000000.jpg", "no picture");
+  EXPECT_THROW(read_clips(Format::kYolo, folder.path(), {}, {}), Error);
+  ReadOptions options;
+  options.size_of_picture = [](const fs::path& file) {
+    EXPECT_EQ(file.filename(), "s_000000.jpg");
+    return std::pair(64, 48);
+  };
+  const auto clips = read_clips(Format::kYolo, folder.path(), options, {});
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_EQ(clips[0].frames.at(0).labels.at(0).box_px, (Box{24, 12, 16, 24}));
 }
 
 // An import contains only boxes and tracks. Columns that a format requires are written all the same

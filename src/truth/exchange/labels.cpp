@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/exchange/labels.h"
-
+#include <array>
+#include <cmath>
 #include <set>
 #include <string_view>
 
+#include <airtruth/labels.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

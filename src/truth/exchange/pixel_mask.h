@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/labels.h>
+
 #include "foundation/geometry/box.h"
-#include "truth/exchange/labels.h"
 
 // COCO's run lengths (Lin et al. 2014; cocodataset.org, "Data format"). Pixels are scanned down the
 // columns, starting at the left, and the runs outside and inside the object are counted

@@ -2,11 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <airtruth/vot.h>
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "truth/evaluation/vot.h"
+#include "foundation/geometry/box.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 
@@ -250,7 +251,7 @@ class SequenceReader {
     const fs::path pictures = format_ == Format::kOtb   ? folder_ / "img"
                               : format_ == Format::kVot ? folder_ / "color"
                                                         : folder_;
-    const auto size = options_.size ? options_.size : size_of_pictures(pictures);
+    const auto size = options_.size ? options_.size : size_of_pictures(pictures, options_);
     if (size) std::tie(clip_.width, clip_.height) = *size;
     if (size && !options_.size) clip_.media = pictures;
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {

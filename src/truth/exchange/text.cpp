@@ -10,7 +10,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "picture/video/still.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -134,12 +133,13 @@ void sort_frames(Clip& clip) {
       });
 }
 
-std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder) {
+std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
+                                                    const ReadOptions& options) {
+  if (!options.size_of_picture) return std::nullopt;
   for (const fs::path& file : entries(folder)) {
     const std::string extension = file.extension().string();
     if (extension != ".jpg" && extension != ".jpeg" && extension != ".png") continue;
-    const image::Rgb8 picture = video::read_still(file);
-    return std::pair(picture.width, picture.height);
+    return options.size_of_picture(file);
   }
   return std::nullopt;
 }

@@ -10,11 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include <airtruth/labels.h>
+
 #include "foundation/base/log.h"
-#include "truth/exchange/labels.h"
 
 // Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
+
+namespace fs = std::filesystem;
 
 // The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {
@@ -56,8 +59,10 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view extens
 // Sorts by frame number; by name, 10 would come before 2.
 void sort_frames(Clip& clip);
 
-// Width and height of the first picture in a folder; empty where there is no picture.
-std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder);
+// Width and height of the first picture in a folder; empty where there is no picture, or no
+// function that reads its size (ReadOptions::size_of_picture).
+std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
+                                                    const ReadOptions& options);
 
 // True for a box that has an area and touches the picture (of unknown size: any such box). The
 // readers omit other boxes with a warning.

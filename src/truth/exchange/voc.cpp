@@ -3,6 +3,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 #include "truth/exchange/xml_file.h"

@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 
@@ -157,7 +158,7 @@ class YoloReader {
     if (files.empty()) return;
     const fs::path pictures = root_ / "images" / part;
     auto size = options_.size;
-    if (!size) size = size_of_pictures(pictures);
+    if (!size) size = size_of_pictures(pictures, options_);
     if (!size)
       throw Error("holds no pictures, of whose size YOLO's boxes are shares; expected --size WxH",
                   {pictures.string()});

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/annotation/bearing.h"
+#include "truth/projection/bearing.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 namespace {
 
 // The time of the point's own row, by fixed-point iteration; 0 where no pixel shows the point.
@@ -54,4 +54,4 @@ std::optional<Bearing> seen_bearing(const Sight& sight,
   return ray ? std::optional(bearing_of(*ray)) : std::nullopt;
 }
 
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 
+#include <airtruth/export.h>
+
 // The uncertainty of means over sequences. The sample consists of sequences and not of frames,
 // because the frames of one sequence are strongly correlated.
 namespace airtruth::evaluation {
@@ -17,8 +19,8 @@ struct Interval {
 // The 95 % interval of the weighted mean of values by the percentile bootstrap (Efron 1979,
 // "Bootstrap methods: another look at the jackknife"): 10,000 draws with replacement from a fixed
 // seed. Empty `weights`: all are equal. The result is empty for fewer than two values.
-std::optional<Interval> bootstrap_mean(std::span<const double> values,
-                                       std::span<const double> weights = {});
+AIRTRUTH_API std::optional<Interval> bootstrap_mean(std::span<const double> values,
+                                                    std::span<const double> weights = {});
 
 // The comparison of two trackers on the same sequences.
 struct Paired {
@@ -32,10 +34,11 @@ struct Paired {
   // Numbers of sequences that a wins, loses and ties.
   std::int64_t wins = 0, losses = 0, ties = 0;
 };
-Paired paired(std::span<const double> a, std::span<const double> b);
+AIRTRUTH_API Paired paired(std::span<const double> a, std::span<const double> b);
 
 // Agreement of two rankings: Kendall's tau-b (Kendall 1945), 1 for the same order and -1 for the
 // reverse. Empty where one of them consists of ties alone or has fewer than two values.
-std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
+AIRTRUTH_API std::optional<double> kendall_tau(std::span<const double> a,
+                                               std::span<const double> b);
 
 }  // namespace airtruth::evaluation

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "foundation/geometry/transform.h"
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 
 // A direction in the camera's axes, in degrees: azimuth = atan2(x, z), right positive; elevation =
 // atan2(-y, hypot(x, z)), up positive. The optical axis has the bearing (0, 0).
@@ -29,4 +29,4 @@ std::optional<Bearing> seen_bearing(const Sight& sight,
                                     const Vector3& p_in_world,
                                     const Vector3& velocity_in_world_mps);
 
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

@@ -10,7 +10,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/within_frame.h"
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 
 // The projection of the world into one frame: the ray of docs/architecture.md in reverse, from
 // world to pixel.
@@ -57,4 +57,4 @@ ExactBox exact_box(const Sight& sight,
                    double time_s,
                    const Twist& body = {});
 
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 namespace {
 
 std::optional<Pixel> pixel_from_cam(const Sight& sight, const Vector3& p_in_cam) {
@@ -170,4 +170,4 @@ ExactBox exact_box(const Sight& sight,
   return result;
 }
 
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

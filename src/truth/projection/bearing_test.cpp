@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/annotation/bearing.h"
+#include "truth/projection/bearing.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 namespace {
 
 constexpr lens::ImageSize kBearingSize{1280, 960};
@@ -77,4 +77,4 @@ TEST(Bearing, WithARollingShutterIsOfThePointsOwnRow) {
 }
 
 }  // namespace
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "foundation/geometry/box.h"
+#include <airtruth/box.h>
+#include <airtruth/export.h>
 
 // The measures of the VOT challenges, computed as in the public toolkit (vot-toolkit 0.8):
 // accuracy, robustness and expected average overlap (EAO). They exist for two protocols: the one
@@ -38,12 +39,15 @@ struct VotTruth {
 // Overlap as the toolkit computes it: both boxes are rounded to whole pixels (halves to even) and
 // clipped to the picture, and their pixels are counted. Two boxes that both contain no pixel are
 // equal: 1.
-double pixel_overlap(const Box& a, const Box& b, int width, int height);
+AIRTRUTH_API double pixel_overlap(const Box& a, const Box& b, int width, int height);
 
 // Overlap of a frame from a start on (restarts: kBegun and the frames that follow), with the
 // toolkit's rule for empty regions: an answer where the target is absent, and no answer where it is
 // shown, have an overlap of 0; no answer where it is absent has 1.
-double frame_overlap(const VotFrame& frame, const std::optional<Box>& truth, int width, int height);
+AIRTRUTH_API double frame_overlap(const VotFrame& frame,
+                                  const std::optional<Box>& truth,
+                                  int width,
+                                  int height);
 
 struct Restart {
   // Mean overlap without the starts, the 9 frames after each, and the failures.
@@ -64,7 +68,8 @@ struct RestartRuns {
   VotTruth truth;
   std::vector<Trajectory> runs;
 };
-Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int> eao_range);
+AIRTRUTH_API Restart restart_score(std::span<const RestartRuns> sequences,
+                                   std::pair<int, int> eao_range);
 
 // A run from an anchor to the sequence's end or, backward, to its beginning.
 struct AnchorRun {
@@ -91,8 +96,8 @@ struct MultiStart {
 // within it, and it ends the curve at high - 1. EAO is the mean of the curve over [low, high - 1],
 // as far as the curve extends; beyond the longest run, where no run is active, the toolkit counts
 // zeros.
-MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
-                            std::pair<int, int> eao_range);
+AIRTRUTH_API MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
+                                         std::pair<int, int> eao_range);
 
 // The starting frames of a tracker: one every `step` frames, the first half forward, the second
 // half backward (the last frame replaces the next step). Each moves to the next frame with the
@@ -102,16 +107,16 @@ struct Anchor {
   bool is_backward = false;
   bool operator==(const Anchor&) const = default;
 };
-std::vector<Anchor> anchors_of(const VotTruth& truth, int step);
+AIRTRUTH_API std::vector<Anchor> anchors_of(const VotTruth& truth, int step);
 
 // The range of lengths over which EAO is averaged for a data set: the narrowest range that holds
 // half of a Gaussian kernel density of the sequences' lengths (Silverman's width, at least 1
 // frame), as in VOT2015. For no sequence the range is empty.
-std::pair<int, int> eao_range(std::span<const std::int64_t> lengths);
+AIRTRUTH_API std::pair<int, int> eao_range(std::span<const std::int64_t> lengths);
 
 // The range clipped to the extent of the curves of runs of at most `longest` frames. The curves end
 // at the index longest - 1; that of a multi-start run ends one before the range's end. The result
 // is at least two frames wide where there are so many.
-std::pair<int, int> within_curves(std::pair<int, int> range, std::int64_t longest);
+AIRTRUTH_API std::pair<int, int> within_curves(std::pair<int, int> range, std::int64_t longest);
 
 }  // namespace airtruth::evaluation

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truth/annotation/exact_box.h"
+#include "truth/projection/exact_box.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace airtruth::annotation {
+namespace airtruth::projection {
 namespace {
 
 using lens::ImageSize;
@@ -143,4 +143,4 @@ TEST(ExactBox, TurnsWithASpinningPart) {
 }
 
 }  // namespace
-}  // namespace airtruth::annotation
+}  // namespace airtruth::projection

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <airtruth/box.h>
+#include <airtruth/error.h>
+#include <airtruth/export.h>
+
+// Labelled video in the terms that annotation formats share (boxes, tracks and classes by frame),
+// and the formats themselves: COCO, YOLO, MOT, VOC, CVAT, AOT, OTB, GOT-10k, VOT. A field without
+// information is empty and never holds a placeholder number. docs/formats/exchange.md has the
+// folders, origins and sources of each format.
+//
+// Example: a MOTChallenge set becomes a COCO set.
+//   const Part train{"train", read_clips(Format::kMot, "mot", {}, {})};
+//   write_clips(Format::kCoco, "coco", {&train, 1});
+namespace airtruth::exchange {
+
+// The pixels of an object in a picture, as COCO's compressed run lengths (Lin et al. 2014;
+// cocodataset.org, "Data format").
+struct PixelMask {
+  int width = 0;  // of the picture
+  int height = 0;
+  std::string counts;
+  std::int64_t area_px = 0;
+  bool operator==(const PixelMask&) const = default;
+};
+
+// One object in one frame.
+struct Label {
+  // Number of the object's track, the same throughout a clip; from 1.
+  std::int64_t track = 1;
+  std::string category;
+  // The first pixel covers [0, 1); docs/conventions.md.
+  Box box_px;
+  // Visible share of the object, 0..1.
+  std::optional<double> visible;
+  // True where something else hides a part.
+  std::optional<bool> occluded;
+  // True where the frame's edge cuts a part off.
+  std::optional<bool> truncated;
+  std::optional<double> range_m;
+  std::optional<bool> above_horizon;
+  // The file labels.jsonl does not store it.
+  std::optional<PixelMask> mask;
+  bool operator==(const Label&) const = default;
+};
+
+// All labels of one frame.
+struct LabelledFrame {
+  // Number of the frame in the video.
+  std::int64_t frame = 0;
+  std::optional<double> time_s;
+  std::vector<Label> labels;
+  bool operator==(const LabelledFrame&) const = default;
+};
+
+// All labels of one video.
+struct Clip {
+  // A plain file name.
+  std::string name;
+  // A video, a folder or a pattern of numbered images; empty: none.
+  std::filesystem::path media;
+  // 0: unknown.
+  int width = 0;
+  int height = 0;
+  std::optional<double> frame_rate_hz;
+  // In order, including the frames without an object.
+  std::vector<LabelledFrame> frames;
+};
+
+// The text of labels.jsonl (docs/formats/labels.md): one line for the clip, then one for each
+// frame.
+AIRTRUTH_API std::string labels_jsonl(const Clip& clip);
+// Reads labels.jsonl. Errors carry file and line.
+AIRTRUTH_API Clip read_labels(const std::filesystem::path& file);
+
+// The track numbers of a clip, ascending.
+AIRTRUTH_API std::vector<std::int64_t> tracks_of(const Clip& clip);
+
+enum class Format {
+  kCoco,
+  kYolo,
+  kMot,
+  kVoc,
+  kCvat,
+  kAot,
+  kOtb,
+  kGot10k,
+  kVot,
+  // Read only: `airtruth render` writes it.
+  kEvision,
+  // Read only: "frame,x,y,w,h".
+  kCsv,
+};
+
+// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision" or "csv". For any
+// other name it throws an Error that offers the nearest.
+AIRTRUTH_API Format format_from_name(std::string_view name);
+AIRTRUTH_API const char* name(Format format);
+AIRTRUTH_API bool can_write(Format format);
+
+// True for OTB, GOT-10k and VOT, which store one object for each sequence. A sequence begins with
+// the first frame that shows the object whole (or shows it, where no frame does or the labels lack
+// that information) and ends with the last that shows it.
+AIRTRUTH_API bool is_single_object(Format format);
+
+// The clips that a format stores for one clip: the clip itself, or one clip for each of its tracks.
+// The sequences on which `airtruth track` and `airtruth evaluate` work are arranged(Format::kOtb).
+//
+// Example: a clip named "pass" with the tracks 1 and 2 has the sequences "pass-1" and "pass-2";
+// with one track, its sequence is named "pass".
+AIRTRUTH_API std::vector<Clip> arranged(Format format, const Clip& clip);
+
+struct ReadOptions {
+  // Width and height of the pictures, for sets whose labels and pictures do not state them.
+  std::optional<std::pair<int, int>> size;
+  // The category of objects where the format has none.
+  std::string category = "aircraft";
+  // CSV only: the coordinate of the first pixel, 0 or 1.
+  int origin_px = 0;
+  // Returns width and height of a JPEG or PNG file, for formats whose labels do not state them
+  // (YOLO, GOT-10k, OTB, VOT). Without this function and without `size`, the labels of YOLO cannot
+  // be read, and boxes of the others are not clipped.
+  std::function<std::pair<int, int>(const std::filesystem::path& picture)> size_of_picture = {};
+};
+
+// Reads every clip of a set. `source` is the folder that write_clips() or `airtruth dataset export`
+// filled, or one of the same form. For COCO, CVAT and AOT it may also be the annotation file; for
+// E-Vision it is an XML file or a folder of them; for CSV (`frame,x,y,w,h`) it is a file or a
+// folder. Frames without an object are present and empty. Throws Error with file and line, and
+// warns of what it left out.
+AIRTRUTH_API std::vector<Clip> read_clips(Format format,
+                                          const std::filesystem::path& source,
+                                          const ReadOptions& options,
+                                          const Warn& warn);
+
+// A part of a set, for example "train".
+struct Part {
+  std::string name;
+  std::vector<Clip> clips;
+};
+
+// Writes a set of labels, without pictures, into a new folder. Classes are the categories of the
+// labels, sorted. Throws Error where the folder exists and is not empty, for a format that can only
+// be read, and where a file cannot be written.
+AIRTRUTH_API void write_clips(Format format,
+                              const std::filesystem::path& folder,
+                              std::span<const Part> parts);
+
+}  // namespace airtruth::exchange

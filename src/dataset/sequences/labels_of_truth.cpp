@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/sequences/labels_of_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
+
+namespace airtruth::dataset {
+namespace {
+
+constexpr double kEarthRadiusM = 6'371'000;
+
+// The visible horizon lies below the horizontal by its dip, sqrt(2 h / R), at the height h.
+bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
+  const Vector3 way = position_ned_m - camera_ned_m;
+  const double elevation = std::atan2(-way.z(), std::hypot(way.x(), way.y()));
+  const double dip = std::sqrt(2 * std::max(0.0, -camera_ned_m.z()) / kEarthRadiusM);
+  return elevation > -dip;
+}
+
+std::optional<Box> box_of(const annotation::Intruder& intruder, Boxes boxes, const Box& frame) {
+  if (intruder.state != annotation::State::kVisible) return std::nullopt;
+  if (boxes != Boxes::kExact) {
+    const auto& box = boxes == Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
+    return box ? std::optional(
+                     Box{double(box->x), double(box->y), double(box->width), double(box->height)})
+               : std::nullopt;
+  }
+  if (!intruder.exact_box_px) return std::nullopt;
+  const Box& e = *intruder.exact_box_px;
+  const double x = std::max(e.x, 0.0), y = std::max(e.y, 0.0);
+  const Box cut{x, y, std::min(e.right(), frame.width) - x, std::min(e.bottom(), frame.height) - y};
+  return cut.width > 0 && cut.height > 0 ? std::optional(cut) : std::nullopt;
+}
+
+exchange::Label label_of(const annotation::Intruder& intruder,
+                         const annotation::Frame& frame,
+                         std::int64_t track,
+                         const Box& box) {
+  exchange::Label label;
+  label.track = track;
+  label.category = category_of(intruder.aircraft);
+  label.box_px = box;
+  const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_intruder;
+  label.visible = std::clamp(1 - hidden - intruder.cut_by_frame, 0.0, 1.0);
+  label.occluded = hidden > 0;
+  label.truncated = intruder.cut_by_frame > 0;
+  label.range_m = intruder.range_m;
+  if (intruder.position_ned_m)
+    label.above_horizon = is_above_horizon(*intruder.position_ned_m, frame.camera_position_ned_m);
+  return label;
+}
+
+}  // namespace
+
+const char* name(Boxes boxes) {
+  return boxes == Boxes::kCovered ? "covered" : boxes == Boxes::kExact ? "exact" : "visible";
+}
+
+Boxes boxes_from_name(const std::string& name) {
+  for (const Boxes boxes : {Boxes::kCovered, Boxes::kExact, Boxes::kVisible})
+    if (name == dataset::name(boxes)) return boxes;
+  throw Error("--boxes is '" + name + "'; expected covered, exact or visible");
+}
+
+std::string category_of(const std::string& aircraft) {
+  const std::filesystem::path path(aircraft);
+  if (path.has_extension()) return path.stem().string();
+  return aircraft.substr(0, aircraft.find('/'));
+}
+
+exchange::LabelledFrame labels_of(const annotation::Frame& truth,
+                                  Boxes boxes,
+                                  int width,
+                                  int height) {
+  const Box picture{0, 0, double(width), double(height)};
+  exchange::LabelledFrame frame{truth.frame, truth.time_s, {}};
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    const annotation::Intruder& intruder = truth.intruders[i];
+    if (const auto box = box_of(intruder, boxes, picture))
+      frame.labels.push_back(label_of(intruder, truth, static_cast<std::int64_t>(i) + 1, *box));
+  }
+  return frame;
+}
+
+}  // namespace airtruth::dataset

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "foundation/base/error.h"
+
+// The finished sequences of a folder: a data set that `dataset build` made, complete or not; the
+// output of `dataset import`; or one or more sequences that `render` made.
+namespace airtruth::dataset {
+
+namespace fs = std::filesystem;
+
+// The labels of an imported clip, in its folder; a rendered sequence has none.
+inline constexpr const char* kLabels = "labels.jsonl";
+
+struct SequenceFolders {
+  fs::path root;                   // the sequence NAME is root/NAME
+  std::vector<std::string> names;  // sorted; may be empty
+};
+
+// Throws Error where the path is no folder.
+SequenceFolders sequence_folders(const fs::path& folder);
+
+// The Error for a folder without sequences.
+Error no_sequence_in(const fs::path& folder);
+
+}  // namespace airtruth::dataset

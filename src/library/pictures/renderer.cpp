@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <airtruth/renderer.h>
+
+#include "library/pictures/public_picture.h"
+#include "library/records/lens_state.h"
+#include "library/records/truth_values.h"
+#include "sequence/sequence/frame_by_frame.h"
+#include "world/scene/scene.h"
+
+namespace airtruth {
+namespace {
+
+sequence::Options options_from(const RenderOptions& wanted) {
+  sequence::Options options;
+  options.threads = wanted.threads;
+  options.use_cache = wanted.use_cache;
+  options.cache = wanted.cache;
+  options.warn = wanted.warn;
+  options.stop = wanted.stop;
+  if (wanted.progress)
+    options.progress = [progress = wanted.progress](const sequence::Progress& now) {
+      progress(now.frames_done, now.frames_total);
+    };
+  return options;
+}
+
+}  // namespace
+
+struct Renderer::State {
+  sequence::FrameByFrame frames;
+};
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Renderer::Renderer(const std::filesystem::path& scene_file, const RenderOptions& options)
+    : Renderer(std::unique_ptr<State>(new State{
+          sequence::FrameByFrame(scene::read_scene(scene_file), options_from(options))})) {}
+
+Renderer Renderer::from_text(std::string_view scene,
+                             const std::filesystem::path& folder,
+                             const RenderOptions& options) {
+  return Renderer(std::unique_ptr<State>(new State{
+      sequence::FrameByFrame(scene::parse_scene(scene, folder / "scene"), options_from(options))}));
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+std::optional<RenderedFrame> Renderer::next() {
+  const auto made = state_->frames.next();
+  if (!made) return std::nullopt;
+  return RenderedFrame{public_picture(made->frame.picture), public_truth(made->truth)};
+}
+
+VideoInfo Renderer::info() const { return public_info(state_->frames.info()); }
+Lens Renderer::lens() const { return public_lens(state_->frames.lens()); }
+
+}  // namespace airtruth

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <airtruth/dataset.h>
+#include <nlohmann/json.hpp>
+
+#include "dataset/sequences/labels_of_truth.h"
+#include "dataset/sequences/sequence_folders.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "library/records/truth_values.h"
+#include "truth/annotation/truth.h"
+
+namespace airtruth {
+namespace {
+
+// The video beside the record: NAME.mp4, NAME.mkv or NAME.avi.
+fs::path video_in(const fs::path& folder, const std::string& name) {
+  for (const char* extension : {".mp4", ".mkv", ".avi"})
+    if (const fs::path video = folder / (name + extension); fs::exists(video)) return video;
+  throw Error("holds no video " + name + ".mp4, .mkv or .avi; the folder is not whole",
+              {folder.string()});
+}
+
+// The name that the record states; Error where it has no covered boxes and these are asked for.
+std::string name_in_record(const fs::path& folder, dataset::Boxes boxes) {
+  const fs::path file = folder / "sequence.json";
+  const auto record = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!record.is_object() || !record.contains("name") || !record["name"].is_string())
+    throw Error("is not a record of airtruth", {file.string()});
+  const auto name = record["name"].get<std::string>();
+  // A manipulated record must not name files outside its folder.
+  if (name.empty() || fs::path(name).filename() != name)
+    throw Error("name is '" + name.substr(0, 80) + "'; expected a plain file name",
+                {file.string()});
+  if (boxes == dataset::Boxes::kCovered && !record.contains("covered_alpha"))
+    throw Error(
+        "was made before truth had covered boxes (covered_box_px); expected the visible or the "
+        "exact boxes, or a sequence that is rendered again",
+        {folder.string()});
+  return name;
+}
+
+exchange::Clip labels_of(const Sequence& sequence,
+                         const annotation::Truth& truth,
+                         dataset::Boxes boxes) {
+  exchange::Clip clip;
+  clip.name = sequence.name;
+  clip.media = sequence.video;
+  clip.width = truth.lens.width;
+  clip.height = truth.lens.height;
+  for (const annotation::Frame& frame : truth.frames)
+    clip.frames.push_back(dataset::labels_of(frame, boxes, clip.width, clip.height));
+  return clip;
+}
+
+Sequence rendered(const fs::path& folder, dataset::Boxes boxes) {
+  Sequence sequence;
+  sequence.folder = folder;
+  sequence.name = name_in_record(folder, boxes);
+  sequence.video = video_in(folder, sequence.name);
+  const annotation::Truth truth = annotation::read_truth(folder / "truth.jsonl");
+  sequence.labels = labels_of(sequence, truth, boxes);
+  sequence.truth = public_truth(truth);
+  return sequence;
+}
+
+Sequence imported(const fs::path& folder) {
+  Sequence sequence;
+  sequence.folder = folder;
+  sequence.is_imported = true;
+  sequence.labels = exchange::read_labels(folder / dataset::kLabels);
+  sequence.name = sequence.labels.name;
+  sequence.video = sequence.labels.media;
+  return sequence;
+}
+
+}  // namespace
+
+struct DataSet::State {
+  dataset::SequenceFolders folders;
+};
+
+DataSet::DataSet(const std::filesystem::path& folder)
+    : state_(std::make_shared<const State>(State{dataset::sequence_folders(folder)})) {
+  if (names().empty()) throw dataset::no_sequence_in(folder);
+}
+
+const std::vector<std::string>& DataSet::names() const { return state_->folders.names; }
+
+Sequence DataSet::sequence(const std::string& name, dataset::Boxes boxes) const {
+  if (!std::binary_search(names().begin(), names().end(), name))
+    throw Error("holds no sequence '" + name + "'", {state_->folders.root.string()});
+  const fs::path folder = state_->folders.root / name;
+  return fs::exists(folder / dataset::kLabels) ? imported(folder) : rendered(folder, boxes);
+}
+
+}  // namespace airtruth

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/sequence/frame_maker.h"
+
+#include <algorithm>
+
+#include "foundation/base/files.h"
+#include "sequence/frame/frame_truth.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::sequence {
+namespace {
+
+lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
+
+video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
+  const std::int64_t left =
+      std::max<std::int64_t>(0, info.frame_count_estimate - background.first_frame);
+  info.frame_count_estimate = left;
+  if (background.frame_count)
+    info.frame_count_estimate =
+        left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
+  return info;
+}
+
+}  // namespace
+
+fs::path motion_cache(const Options& options) {
+  if (!options.use_cache) return {};
+  return options.cache.empty() ? cache_folder() / "motion" : options.cache;
+}
+
+video::Reader open_background(const scene::Scene& scene, const Options& options) {
+  video::ReaderOptions reader_options;
+  reader_options.first_frame = scene.background.first_frame;
+  reader_options.frame_count = scene.background.frame_count;
+  reader_options.threads = options.threads;
+  reader_options.with_cuts = true;
+  return video::Reader(scene.background.video, reader_options, options.warn);
+}
+
+// ---------------------------------------------------------------- before the first frame
+
+Setting::Setting(const StatedScene& stated,
+                 const lens::ImageSize& image_size,
+                 const Options& options)
+    : scene(stated.scene),
+      size(image_size),
+      mask(read_mask(scene, size)),
+      world(load_world(scene, size, options.warn, options.stop)),
+      painter(make_painter(
+          scene, world, own_aircraft(), {options.gpu, options.software_gl, options.stop})) {
+  scene.motion.model = motion_model(scene);
+  // sequence.json records the scale that is drawn, so that the same scene gives the same sizes
+  // whatever the table of published sizes becomes.
+  for (std::size_t i = 0; i < world.actors.size(); ++i)
+    if (const double scale = world.actors[i].type->catalogue_scale; scale != 1)
+      scene.intruders[i].catalogue_scale = scale;
+}
+
+FrameMaker::FrameMaker(const scene::Scene& scene, const Options& options)
+    : options_(options),
+      reader_(open_background(scene, options)),
+      stated_(stated(scene, reader_.info())),
+      setting_(stated_, size_of(reader_.info()), options),
+      info_(used_stream(reader_.info(), scene.background)) {
+  check_camera_path(setting_.world.camera, info_);
+}
+
+void FrameMaker::measure() {
+  stated_.scene = setting_.scene;
+  setting_.scene = resolved(stated_, setting_.size, setting_.own_aircraft(), options_);
+  check_codec(setting_.scene, reader_.info().colour);
+  setting_.world.shutter = shutter_of(setting_.scene.camera_model);
+
+  video_sha256_ = sha256_of_video(setting_.scene.background.video);
+  motion_.emplace(setting_.scene,
+                  setting_.world.lens,
+                  !setting_.world.shutter.is_instant(),
+                  video_sha256_,
+                  setting_.own_aircraft(),
+                  motion_cache(options_));
+  if (motion_->needs_pass()) {
+    motion_->measure(reader_, options_.stop, {});
+    reader_ = open_background(setting_.scene, options_);
+  }
+  ambient_.emplace(
+      setting_.scene.light, tone_of(setting_.scene.camera_model), setting_.own_aircraft());
+}
+
+// ---------------------------------------------------------------- the stages of one frame
+
+WorkPtr FrameMaker::decode() {
+  if (options_.stop.stop_requested()) return nullptr;
+  auto frame = reader_.next();
+  if (!frame) return nullptr;
+  auto work = std::make_shared<Work>();
+  work->frame = std::move(*frame);
+  return work;
+}
+
+void FrameMaker::locate(Work& work) {
+  work.moved = motion_->next(work.frame);
+  work.moment = moment_at(setting_.world, work.frame.index, work.frame.time_s, work.moved.shake);
+  work.ambient = ambient_->next(
+      work.frame.picture, work.moment.sight, search_bounds(work.moment), work.frame.begins_shot);
+}
+
+void FrameMaker::draw(Work& work) const {
+  work.painted = setting_.painter->draw(work.moment, work.ambient);
+}
+
+void FrameMaker::compose(Work& work) {
+  setting_.painter->compose(work.frame.picture, work.moment, work.ambient, work.painted);
+}
+
+void FrameMaker::describe(Work& work) const {
+  const bool has_motion = setting_.scene.motion.model != "none";
+  const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
+  work.truth =
+      frame_truth(setting_.world, work.frame, {state, work.moved.shake}, work.moment, work.painted);
+  if (setting_.scene.output.masks)
+    work.masks = mask_files(work.truth, work.painted.layer, setting_.own_aircraft(), setting_.size);
+  work.painted = {};
+}
+
+}  // namespace airtruth::sequence
