@@ -155,7 +155,7 @@ class SingleObjectWriter : public IndexedWriter {
       });
   }
 
-  // The starts of this program's own multi-start runs (truth/evaluation/vot.h).
+  // The starts of this program's own multi-start runs (<airtruth/vot.h>).
   static std::string anchors(const Clip& clip) {
     evaluation::VotTruth truth{{}, clip.width, clip.height};
     for (const LabelledFrame& frame : clip.frames)
