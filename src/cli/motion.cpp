@@ -17,6 +17,7 @@
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "sequence/setup/motion_source.h"
+#include "world/scene/choices.h"
 
 namespace airtruth::cli {
 namespace {
@@ -36,7 +37,7 @@ struct MotionArguments {
 
 // The lens for the model "rotation"; empty for "homography".
 std::optional<lens::Lens> lens_of(const MotionArguments& arguments, const lens::ImageSize& size) {
-  if (arguments.model == "homography") {
+  if (enum_named<scene::MotionModel>(arguments.model) == scene::MotionModel::kHomography) {
     if (!arguments.lens.empty())
       throw Error("--lens is for --model rotation; a homography knows no lens");
     return std::nullopt;
@@ -124,7 +125,7 @@ void measure(const MotionArguments& arguments, Context& context) {
       });
   const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<motion::GyroSample>();
   report_gyro(sequence::bridge_by_gyro(gyro, all), !gyro.empty(), console);
-  all = arguments.reference == "smoothed"
+  all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
             ? motion::smoothed(all, options)
             : motion::within_reach(std::move(all), info.width, info.height);
   write_file(arguments.out, motion::csv_from_motion(all));

@@ -59,7 +59,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.camera = {};
   scene.camera.position_ned_m = Vector3::Zero();
   scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg = camera_pitch_deg;
-  scene.motion.model = "none";
+  scene.motion.model = scene::MotionModel::kNone;
   scene.intruders.resize(1);
   scene::Intruder& intruder = scene.intruders[0];
   intruder.path_file.reset();
@@ -70,7 +70,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   intruder.yaw_deg = attitude.yaw_deg;
   intruder.pitch_deg = attitude.pitch_deg;
   intruder.roll_deg = attitude.roll_deg;
-  scene.output.video = "mkv";  // what is compared is not encoded once more
+  scene.output.video = scene::OutputVideo::kMkv;  // what is compared is not encoded once more
   return scene;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "camera/lens/model_kind.h"
 #include "camera/lens/models.h"
 #include "foundation/base/error.h"
 
@@ -98,10 +99,7 @@ double Lens::focal_px() const {
                     model_);
 }
 
-const char* Lens::name() const {
-  constexpr const char* kNames[] = {"pinhole", "brown_conrady", "fisheye"};
-  return kNames[model_.index()];
-}
+const char* Lens::name() const { return enum_name(static_cast<ModelKind>(model_.index())); }
 
 namespace {
 

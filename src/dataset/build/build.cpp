@@ -68,7 +68,7 @@ class Work {
       ++missing_;
       is_used_[item.background] = true;
       // A clip that begins at a random frame is measured from its own first frame, when it is made.
-      if (item.rule != nullptr && item.rule->starts_at_random) continue;
+      if (item.rule != nullptr && item.rule->start == ClipStart::kRandom) continue;
       auto& needed = needed_[item.background];
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);

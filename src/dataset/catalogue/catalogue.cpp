@@ -175,20 +175,16 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.output = scene::output_in(root);
   catalogue.slurm = slurm_in(root);
   for (const TableReader& table : root.tables("background",
-                                              {"name",
-                                               "video",
-                                               "flight",
-                                               "mask",
-                                               "first_frame",
-                                               "lens",
-                                               "camera",
-                                               "motion",
-                                               "light",
-                                               "shutter",
-                                               "air",
-                                               "optics",
-                                               "sensor",
-                                               "realism"}))
+                                              scene::with_camera_tables({"name",
+                                                                         "video",
+                                                                         "flight",
+                                                                         "mask",
+                                                                         "first_frame",
+                                                                         "lens",
+                                                                         "camera",
+                                                                         "motion",
+                                                                         "light"},
+                                                                        {"realism"})))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
     catalogue.aircraft.push_back(

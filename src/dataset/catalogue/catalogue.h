@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "foundation/base/enum_names.h"
 #include "world/scene/scene.h"
 #include "world/synthetic/flight.h"
 
@@ -92,6 +94,15 @@ struct DaytimeRange {
   int day_of_year = 172;
 };
 
+// The frame of the background at which a clip begins: the background's first_frame, or a random
+// frame at which the clip fits.
+enum class ClipStart { kFirst, kRandom };
+
+constexpr auto enum_names(ClipStart) {
+  return std::to_array<EnumName<ClipStart>>(
+      {{ClipStart::kFirst, "first"}, {ClipStart::kRandom, "random"}});
+}
+
 // A rule for random intruders that cross the view. At a moment within the clip, the meeting moment,
 // each intruder has the range and direction from the camera that the rule draws. It flies straight
 // or, with a bank, in a coordinated turn.
@@ -126,8 +137,7 @@ struct Drawn {
   std::int64_t fewest_intruders = 1, most_intruders = 1;
   // True: ids are intruder-1, intruder-2, ...; false: the id is "intruder".
   bool numbers_intruders = false;
-  // True: the clip begins at a random frame of the background at which it fits.
-  bool starts_at_random = false;
+  ClipStart start = ClipStart::kFirst;
 };
 
 using Rule = std::variant<Listed, Product, Drawn>;

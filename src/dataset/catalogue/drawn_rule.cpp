@@ -132,9 +132,8 @@ void read_intruders(const TableReader& table, Drawn& drawn) {
 // A clip may begin at a random frame only where the camera flies equally steadily at any time. A
 // camera path is tied to the frame at which it begins.
 void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& drawn) {
-  const auto start = table.choice("start", {"first", "random"});
-  drawn.starts_at_random = start == "random";
-  if (!drawn.starts_at_random) return;
+  drawn.start = table.choice<ClipStart>("start").value_or(drawn.start);
+  if (drawn.start != ClipStart::kRandom) return;
   for (const std::size_t i : drawn.backgrounds)
     if (catalogue.backgrounds[i].camera.path_file)
       table.fail("start",

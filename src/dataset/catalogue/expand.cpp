@@ -176,7 +176,7 @@ void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files)
   placed.first_frame = background.first_frame;
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   if (item.rule == nullptr) return;
-  if (item.rule->starts_at_random)
+  if (item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   if (files.frames > placed.first_frame)

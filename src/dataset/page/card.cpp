@@ -2,14 +2,16 @@
 #include "dataset/page/card.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
+#include <string>
+#include <string_view>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
 
 #include "aircraft/wrapper/reader.h"
 #include "dataset/catalogue/folder.h"
+#include "world/scene/camera_keys.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -21,37 +23,23 @@ std::size_t count_of(const Scenes& scenes, const std::function<bool(const Scene&
   return static_cast<std::size_t>(std::count_if(scenes.begin(), scenes.end(), has));
 }
 
-bool is_positive(const std::optional<double>& value) { return value && *value > 0; }
+// The effects of the camera and the air on an intruder, in the order of the scene's keys.
+std::vector<std::string_view> all_effects() {
+  std::vector<std::string_view> effects;
+  for (const scene::CameraKey& key : scene::kCameraModelKeys)
+    if (!key.effect.empty() &&
+        std::find(effects.begin(), effects.end(), key.effect) == effects.end())
+      effects.push_back(key.effect);
+  return effects;
+}
 
-struct Effect {
-  const char* name;
-  bool (*is_in)(const scene::CameraModel&);
-};
-
-const std::array<Effect, 9> kEffects = {{
-    {"motion blur of the exposure",
-     [](const scene::CameraModel& m) {
-       return is_positive(m.exposure_s) || is_positive(m.angle_deg);
-     }},
-    {"rolling shutter", [](const scene::CameraModel& m) { return is_positive(m.readout_s); }},
-    {"haze",
-     [](const scene::CameraModel& m) {
-       return m.extinction_per_km && std::any_of(m.extinction_per_km->begin(),
-                                                 m.extinction_per_km->end(),
-                                                 [](double e) { return e > 0; });
-     }},
-    {"point spread", [](const scene::CameraModel& m) { return is_positive(m.point_spread_px); }},
-    {"sharpening", [](const scene::CameraModel& m) { return is_positive(m.sharpening); }},
-    {"sensor noise",
-     [](const scene::CameraModel& m) {
-       return is_positive(m.noise_gain) || is_positive(m.noise_floor);
-     }},
-    {"soft chroma", [](const scene::CameraModel& m) { return is_positive(m.chroma_spread_px); }},
-    {"the codec's quantiser",
-     [](const scene::CameraModel& m) { return is_positive(m.codec_step); }},
-    {"a tone curve other than sRGB's",
-     [](const scene::CameraModel& m) { return m.gamma.has_value(); }},
-}};
+bool has_effect(const scene::CameraModel& model, std::string_view effect) {
+  return std::any_of(scene::kCameraModelKeys.begin(),
+                     scene::kCameraModelKeys.end(),
+                     [&](const scene::CameraKey& key) {
+                       return key.effect == effect && scene::is_above_zero(model, key);
+                     });
+}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -90,8 +78,10 @@ void add_catalogue(const Folder& folder, Card& card) {
 std::string rendering_text(const Scenes& scenes) {
   std::vector<std::string> kinds;
   for (const Scene& s : scenes) {
-    const std::string kind =
-        fmt::format("quality {}, {}, {}", s.render.quality, s.composite.method, s.output.video);
+    const std::string kind = fmt::format("quality {}, {}, {}",
+                                         s.render.quality,
+                                         enum_name(s.composite.method),
+                                         enum_name(s.output.video));
     if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
   }
   std::string text;
@@ -139,13 +129,13 @@ std::string labels_text(const std::vector<Portrait>& portraits, const Scenes& sc
 
 std::string camera_sentence(const std::vector<Scene>& scenes) {
   std::vector<std::string> with, without;
-  for (const Effect& effect : kEffects) {
+  for (const std::string_view effect : all_effects()) {
     const std::size_t count =
-        count_of(scenes, [&](const Scene& s) { return effect.is_in(s.camera_model); });
+        count_of(scenes, [&](const Scene& s) { return has_effect(s.camera_model, effect); });
     if (count > 0)
-      with.push_back(effect.name + share_of(count, scenes.size()));
+      with.push_back(std::string(effect) + share_of(count, scenes.size()));
     else
-      without.emplace_back(effect.name);
+      without.emplace_back(effect);
   }
   std::string text = with.empty() ? "none of what a camera and the air do" : joined(with);
   if (!without.empty()) text += ". Not on the intruder: " + joined(without);
@@ -154,17 +144,17 @@ std::string camera_sentence(const std::vector<Scene>& scenes) {
 
 std::string motion_sentence(const std::vector<Scene>& scenes) {
   const std::size_t all = scenes.size();
-  const auto by = [&](const char* model) {
+  const auto by = [&](scene::MotionModel model) {
     return count_of(scenes, [&](const Scene& s) { return s.motion.model == model; });
   };
   std::vector<std::string> parts;
-  if (const std::size_t n = by("rotation"); n > 0)
+  if (const std::size_t n = by(scene::MotionModel::kRotation); n > 0)
     parts.push_back("a rotation through the lens, measured in the video, exact for what is far" +
                     share_of(n, all));
-  if (const std::size_t n = by("homography"); n > 0)
+  if (const std::size_t n = by(scene::MotionModel::kHomography); n > 0)
     parts.push_back("a homography, measured in the video, exact for what is far through a pinhole" +
                     share_of(n, all));
-  if (const std::size_t n = by("none"); n > 0)
+  if (const std::size_t n = by(scene::MotionModel::kNone); n > 0)
     parts.push_back("none is looked for: the camera moves along its stated path alone" +
                     share_of(n, all));
   return fmt::format("{}", fmt::join(parts, "; "));

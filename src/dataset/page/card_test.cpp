@@ -6,14 +6,14 @@
 namespace airtruth::dataset {
 namespace {
 
-scene::Scene plain(const std::string& motion) {
+scene::Scene plain(scene::MotionModel motion) {
   scene::Scene scene;
   scene.motion.model = motion;
   return scene;
 }
 
 TEST(Card, SaysOfTheIntrudersLightWhatWasDone) {
-  const scene::Scene without = plain("homography");
+  const scene::Scene without = plain(scene::MotionModel::kHomography);
   EXPECT_EQ(
       camera_sentence({without}),
       "none of what a camera and the air do. Not on the intruder: motion blur of the exposure, "
@@ -44,10 +44,10 @@ TEST(Card, SaysOfTheIntrudersLightWhatWasDone) {
 }
 
 TEST(Card, SaysOfTheMotionWhatWasMeasured) {
-  EXPECT_EQ(motion_sentence({plain("rotation")}),
+  EXPECT_EQ(motion_sentence({plain(scene::MotionModel::kRotation)}),
             "a rotation through the lens, measured in the video, exact for what is far");
   EXPECT_EQ(
-      motion_sentence({plain("homography"), plain("none")}),
+      motion_sentence({plain(scene::MotionModel::kHomography), plain(scene::MotionModel::kNone)}),
       "a homography, measured in the video, exact for what is far through a pinhole (in 1 of 2 "
       "sequences); none is looked for: the camera moves along its stated path alone (in 1 of 2 "
       "sequences)");

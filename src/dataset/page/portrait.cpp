@@ -113,7 +113,7 @@ Portrait portrait_of(const LabelledSet& set,
         sequence::lens_of(scene.lens, {info.width, info.height}).horizontal_fov_deg();
     portrait.sun_azimuth_deg = scene.light.sun_azimuth_deg;
     portrait.sun_elevation_deg = scene.light.sun_elevation_deg;
-    portrait.motion_model = scene.motion.model;
+    portrait.motion_model = enum_name(scene.motion.model);
     portrait.scene = scene;
   }
   count(finished, portrait);

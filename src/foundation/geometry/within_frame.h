@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "foundation/base/enum_names.h"
 #include "foundation/geometry/transform.h"
 
 // The time within one frame: when each pixel is exposed, and how poses change meanwhile. A time
@@ -27,6 +29,13 @@ Rigid carried(const Rigid& world_from_x, const Twist& twist, double dt_s);
 
 // The direction in which the sensor reads its rows (columns).
 enum class Readout { kDown, kUp, kRight, kLeft };
+
+constexpr auto enum_names(Readout) {
+  return std::to_array<EnumName<Readout>>({{Readout::kDown, "down"},
+                                           {Readout::kUp, "up"},
+                                           {Readout::kRight, "right"},
+                                           {Readout::kLeft, "left"}});
+}
 
 struct Shutter {
   double exposure_s = 0;

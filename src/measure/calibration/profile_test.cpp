@@ -104,7 +104,7 @@ TEST(CameraProfile, SaysWhoseAValueIs) {
   EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
             "of the profile small; the clip's 0.8 +- 1 says next to nothing");
   EXPECT_EQ(c.quantities.at("shutter.readout_s").value().value, 0.02);
-  EXPECT_EQ(model_of(c).readout, "up");
+  EXPECT_EQ(model_of(c).readout, Readout::kUp);
   EXPECT_EQ(c.quantities.at("shutter.readout_s").source,
             "of the profile small; the clip does not tell it");
   EXPECT_EQ(c.quantities.at("shutter.readout_s").missing, "");

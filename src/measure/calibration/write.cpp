@@ -96,7 +96,7 @@ scene::CameraModel model_of(const Calibration& c) {
           member = {values[0].value, values[1].value, values[2].value};
       },
       model);
-  if (model.readout_s) model.readout = c.readout_direction;
+  if (model.readout_s) model.readout = enum_named<Readout>(c.readout_direction);
   return model;
 }
 

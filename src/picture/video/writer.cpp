@@ -362,20 +362,13 @@ void Writer::finish() {
   s.finished = true;
 }
 
-Format format_from_name(std::string_view name) {
-  static const std::vector<std::string> kNames = {"mp4", "mkv", "avi", "png"};
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (name == kNames[i]) return static_cast<Format>(i);
-  throw Error("'" + std::string(name) + "' is no video format; expected mp4, mkv, avi or png");
-}
-
 Format format_of_file(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension != ".mp4" && extension != ".mkv" && extension != ".avi")
-    throw Error("has " + (extension.empty() ? "no ending" : "the ending " + extension) +
-                    "; expected .mp4, .mkv or .avi",
-                {path.string()});
-  return format_from_name(extension.substr(1));
+  const std::string ending = path.extension().string();
+  for (const Format format : {Format::kMp4, Format::kMkv, Format::kAvi})
+    if (ending == extension(format)) return format;
+  throw Error("has " + (ending.empty() ? "no ending" : "the ending " + ending) +
+                  "; expected .mp4, .mkv or .avi",
+              {path.string()});
 }
 
 const char* extension(Format format) {

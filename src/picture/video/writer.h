@@ -14,8 +14,6 @@ namespace airtruth::video {
 // H.264 in mp4, FFV1 in mkv (lossless), MJPEG in avi, or numbered png.
 enum class Format { kMp4, kMkv, kAvi, kPng };
 
-// "mp4", "mkv", "avi" or "png"; for any other name it throws an Error that lists the four.
-Format format_from_name(std::string_view name);
 // The format of a file's ending. A missing or other ending is an Error that lists the endings.
 Format format_of_file(const std::filesystem::path& path);
 // For example ".mp4"; "" for png (a folder of 000000.png ...).

@@ -194,12 +194,13 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.shutter,
                           moment.sight.camera,
                           moment.sight.frame_from_nominal_per_s};
-  const render::Light light{
-      to_sun_in_world(scene.light),
-      ambient.sun,
-      ambient.sky(),
-      ambient.ground,
-      scene.composite.method == "chroma-key" ? std::nullopt : std::optional(ambient.surroundings)};
+  const render::Light light{to_sun_in_world(scene.light),
+                            ambient.sun,
+                            ambient.sky(),
+                            ambient.ground,
+                            scene.composite.method == scene::CompositeMethod::kChromaKey
+                                ? std::nullopt
+                                : std::optional(ambient.surroundings)};
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
@@ -216,7 +217,7 @@ image::Layer render_layer(const scene::Scene& scene,
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {
-  if (scene.composite.method != "chroma-key") return;
+  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
   if (!std::holds_alternative<lens::Pinhole>(lens.model()))
     throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole "
                             "alone; the lens is ") +
@@ -237,7 +238,7 @@ std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
                                       const World& world,
                                       const image::Mask* mask,
                                       const PainterOptions& options) {
-  if (scene.composite.method == "chroma-key")
+  if (scene.composite.method == scene::CompositeMethod::kChromaKey)
     return std::make_unique<ChromaKey>(scene, world, mask, options);
   return std::make_unique<Matte>(scene, world, mask, options.stop);
 }

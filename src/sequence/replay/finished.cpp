@@ -15,6 +15,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
 #include "sequence/frame/paint.h"
+#include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 #include "show/report/pictures.h"
 
@@ -117,7 +118,7 @@ Finished open_finished(const fs::path& folder) {
                 {record_file.string()});
   finished.has_covered_boxes = record.has("covered_alpha");
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
-  const auto format = video::format_from_name(finished.scene->output.video);
+  const auto format = format_of(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
@@ -179,7 +180,7 @@ image::Rgb8 inspect(const Finished& sequence,
   const World world = load_world(scene, {before.picture.width, before.picture.height}, {});
   const Moment moment = moment_at(world, truth.frame, truth.time_s, truth.shake);
   const image::Layer layer = render_layer(scene, world, moment, Ambient{});
-  const bool matte = scene.composite.method == "matte";
+  const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
   return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
                          truth,
                          area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),

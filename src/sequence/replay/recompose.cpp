@@ -127,7 +127,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   const image::Mask* mask_ptr = mask ? &*mask : nullptr;
   const auto painter = make_painter(scene, world, mask_ptr, {});
   AmbientEstimator ambient(scene.light, tone_of(scene.camera_model), mask_ptr);
-  const std::string& codec = scene.output.video;
+  const scene::OutputVideo format = scene.output.video;
   Recomposition result;
   const auto fault = [&](const annotation::Frame& truth, const std::string& what) {
     result.faults.push_back("frame " + std::to_string(truth.frame) + " " + what);
@@ -154,8 +154,9 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
     ++result.compared;
     for (const std::string& what : truth_faults(sequence, truth, again, painted.layer, mask_ptr))
       fault(truth, what);
-    if (codec == "png") continue;  // sRGB, rounded on the way
-    const std::string found = picture_fault(before->picture, after->picture, truth, codec == "mkv");
+    if (format == scene::OutputVideo::kPng) continue;  // sRGB, rounded on the way
+    const std::string found =
+        picture_fault(before->picture, after->picture, truth, format == scene::OutputVideo::kMkv);
     if (!found.empty()) fault(truth, found);
   }
   return result;

@@ -114,7 +114,7 @@ void FrameMaker::compose(Work& work) {
 }
 
 void FrameMaker::describe(Work& work) const {
-  const bool has_motion = setting_.scene.motion.model != "none";
+  const bool has_motion = setting_.scene.motion.model != scene::MotionModel::kNone;
   const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
   work.truth =
       frame_truth(setting_.world, work.frame, {state, work.moved.shake}, work.moment, work.painted);

@@ -79,7 +79,9 @@ class FrameMaker {
 
   // True where draw() and compose() belong to the thread that made this object: OpenGL's context
   // belongs to one thread.
-  bool is_of_one_thread() const { return setting_.scene.composite.method == "chroma-key"; }
+  bool is_of_one_thread() const {
+    return setting_.scene.composite.method == scene::CompositeMethod::kChromaKey;
+  }
   bool composes_in_order() const { return setting_.painter->is_in_order(); }
 
   const scene::Scene& scene() const { return setting_.scene; }

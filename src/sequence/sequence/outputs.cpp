@@ -12,13 +12,14 @@
 #include "foundation/base/files.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
+#include "sequence/setup/from_scene.h"
 
 namespace airtruth::sequence {
 namespace {
 
 video::WriterOptions writer_options(const scene::Output& output, int threads) {
   video::WriterOptions options;
-  options.format = video::format_from_name(output.video);
+  options.format = format_of(output.video);
   options.quality = output.quality;
   options.threads = threads;
   return options;
@@ -63,7 +64,7 @@ Outputs::Outputs(const fs::path& folder,
     : folder_(folder),
       scene_(scene),
       lens_(annotation::facts_of(lens)),
-      video_(folder / (scene.name + video::extension(video::format_from_name(scene.output.video)))),
+      video_(folder / (scene.name + video::extension(format_of(scene.output.video)))),
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),
       evision_(std::max<std::size_t>(1, scene.intruders.size())),

@@ -90,8 +90,10 @@ double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration
 
 // Many clips show no edges of colour, and a decoder may not report its quantiser. Where [realism]
 // auto asks for these, such a clip is measured in all other quantities.
-bool may_be_missing(std::string_view key, const scene::Realism& realism) {
-  return key == "sensor.chroma_spread_px" || (key == "sensor.codec_step" && realism.automatic);
+bool may_be_missing(std::string_view name, const scene::Realism& realism) {
+  const scene::IfUnmeasured rule = scene::camera_key(name)->if_unmeasured;
+  return rule == scene::IfUnmeasured::kLeftOut ||
+         (rule == scene::IfUnmeasured::kLeftOutWithAuto && realism.automatic);
 }
 
 bool is_named(const scene::Scene& scene, const std::string& key) {
@@ -123,12 +125,8 @@ bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
 // The chroma-key method cannot model a camera and its air; modelling a part of them would be worse
 // than none.
 void refuse_with_chroma_key(const scene::Scene& scene) {
-  if (scene.composite.method != "chroma-key") return;
-  scene::CameraModel model = scene.camera_model;
-  bool any = scene.realism.file || scene.realism.automatic || model.angle_deg || model.readout ||
-             model.gamma || !model.automatic.empty();
-  scene::for_each_camera_key([&](const char*, const auto& value) { any = any || value; }, model);
-  if (any)
+  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
+  if (scene.realism.file || scene.realism.automatic || scene::states_any_key(scene.camera_model))
     throw Error(
         "composite.method chroma-key is for the picture as it is, without [shutter], [air], "
         "[optics], "
@@ -255,7 +253,7 @@ scene::Scene resolved(const StatedScene& stated,
 }
 
 bool needs_calibration(const scene::Scene& scene) {
-  if (scene.composite.method == "chroma-key") return false;
+  if (scene.composite.method == scene::CompositeMethod::kChromaKey) return false;
   scene::Scene filled = scene;
   scene::CameraFile file;
   if (scene.realism.file) file = scene::read_camera_file(*scene.realism.file);

@@ -142,7 +142,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
 }
 
 void measure_ahead(const scene::Scene& scene, const Options& options) {
-  if (scene.motion.model == "none") return;
+  if (scene.motion.model == scene::MotionModel::kNone) return;
   video::Reader reader = open_background(scene, options);
   const auto mask = read_mask(scene, {reader.info().width, reader.info().height});
   const lens::Lens lens = lens_of(scene.lens, {reader.info().width, reader.info().height});

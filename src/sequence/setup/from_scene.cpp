@@ -16,15 +16,15 @@ std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
 
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
-    if (lens.model == "pinhole")
+    if (lens.model == lens::ModelKind::kPinhole)
       return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    if (lens.model == "fisheye")
+    if (lens.model == lens::ModelKind::kFisheye)
       return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
   }
   Pixel focal{0, 0};
   if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
   if (lens.vertical_fov_deg) {
-    const lens::Lens plain = lens.model == "fisheye"
+    const lens::Lens plain = lens.model == lens::ModelKind::kFisheye
                                  ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
                                  : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
     focal = {plain.focal_px(), plain.focal_px()};
@@ -32,8 +32,9 @@ lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   Pixel centre{size.width / 2.0, size.height / 2.0};
   if (lens.principal_point_px)
     centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
-  if (lens.model == "pinhole") return lens::Lens(lens::Pinhole{focal, centre}, size);
-  if (lens.model == "fisheye")
+  if (lens.model == lens::ModelKind::kPinhole)
+    return lens::Lens(lens::Pinhole{focal, centre}, size);
+  if (lens.model == lens::ModelKind::kFisheye)
     return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
   return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
 }
@@ -74,15 +75,26 @@ Shutter shutter_of(const scene::CameraModel& model) {
   check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
   shutter.exposure_s = model.exposure_s.value_or(0);
   shutter.readout_s = model.readout_s.value_or(0);
-  const std::string readout = model.readout.value_or("down");
-  shutter.readout = readout == "up"      ? Readout::kUp
-                    : readout == "right" ? Readout::kRight
-                    : readout == "left"  ? Readout::kLeft
-                                         : Readout::kDown;
+  shutter.readout = model.readout.value_or(Readout::kDown);
   return shutter;
 }
 
 image::ToneCurve tone_of(const scene::CameraModel& model) { return {model.gamma.value_or(0)}; }
+
+video::Format format_of(scene::OutputVideo video) {
+  switch (video) {
+    case scene::OutputVideo::kMp4:
+      return video::Format::kMp4;
+    case scene::OutputVideo::kMkv:
+      return video::Format::kMkv;
+    case scene::OutputVideo::kAvi:
+      return video::Format::kAvi;
+    case scene::OutputVideo::kPng:
+      return video::Format::kPng;
+  }
+  check(false, "an output format is one of four");
+  return video::Format::kMp4;
+}
 
 composite::Sensor sensor_of(const scene::CameraModel& model) {
   composite::Sensor sensor;

@@ -7,11 +7,12 @@
 #include "foundation/geometry/within_frame.h"
 #include "foundation/image/tone_curve.h"
 #include "picture/composite/sensor.h"
+#include "picture/video/writer.h"
 #include "world/scene/scene.h"
 #include "world/trajectory/path.h"
 
 // What the tables of a scene file mean to the modules that work with them: one function for each
-// table. A scene holds strings and optional numbers as its file states them; lens, composite and
+// table. A scene holds choices and optional numbers as its file states them; lens, composite and
 // trajectory take values of their own.
 namespace airtruth::sequence {
 
@@ -34,6 +35,9 @@ Shutter shutter_of(const scene::CameraModel& model);
 
 // [sensor] gamma: the curve from linear light to code values; sRGB's where gamma is not stated.
 image::ToneCurve tone_of(const scene::CameraModel& model);
+
+// [output] video: the format of the written file.
+video::Format format_of(scene::OutputVideo video);
 
 // [optics] and [sensor]: what the camera does to samples after the point spread. Quantities that
 // the model lacks are 0: no sharpening, no noise, no chroma spread.

@@ -34,15 +34,15 @@ std::string sha256_of_video(const fs::path& video) {
   return sha256_of(all);
 }
 
-std::string motion_model(const scene::Scene& scene) {
-  const bool paper = scene.composite.method == "chroma-key";
-  if (scene.motion.model == "rotation" && paper)
+scene::MotionModel motion_model(const scene::Scene& scene) {
+  const bool paper = scene.composite.method == scene::CompositeMethod::kChromaKey;
+  if (scene.motion.model == scene::MotionModel::kRotation && paper)
     throw Error(
         "motion.model rotation is not for composite.method chroma-key, which warps planes; "
         "expected model = \"homography\" or method = \"matte\"",
         scene.motion.where);
-  if (scene.motion.model != "auto") return scene.motion.model;
-  return paper ? "homography" : "rotation";
+  if (scene.motion.model != scene::MotionModel::kAuto) return scene.motion.model;
+  return paper ? scene::MotionModel::kHomography : scene::MotionModel::kRotation;
 }
 
 MotionSource::MotionSource(const scene::Scene& scene,
@@ -52,11 +52,11 @@ MotionSource::MotionSource(const scene::Scene& scene,
                            const image::Mask* mask,
                            const fs::path& cache)
     : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
-  const std::string model = motion_model(scene);
-  none_ = model == "none";
-  smoothed_ = !none_ && scene.motion.reference == "smoothed";
+  const scene::MotionModel model = motion_model(scene);
+  none_ = model == scene::MotionModel::kNone;
+  smoothed_ = !none_ && scene.motion.reference == scene::MotionReference::kSmoothed;
   needs_change_ = needs_change;
-  if (model == "rotation") lens_ = lens;
+  if (model == scene::MotionModel::kRotation) lens_ = lens;
   // The gyroscope's clock starts with the file.
   if (lens_ && scene.background.first_frame == 0) gyro_ = gyro_of(scene.background.video);
   if (!video_sha256.empty() && !none_) cache_ = cache;

@@ -31,7 +31,7 @@ std::string words_of(const lens::Lens& lens);
 
 class MotionSource {
  public:
-  // The model "none" gives the identity for every frame. `needs_change`: next() must know how the
+  // The model kNone gives the identity for every frame. `needs_change`: next() must know how the
   // shake continues within a frame. This needs the following frame, and therefore a preceding pass.
   MotionSource(const scene::Scene& scene,
                const lens::Lens& lens,
@@ -40,7 +40,7 @@ class MotionSource {
                const image::Mask* mask,
                const fs::path& cache);  // empty: none
 
-  // True where a preceding pass over the frames is required (reference "smoothed", a shutter or a
+  // True where a preceding pass over the frames is required (reference kSmoothed, a shutter or a
   // gyroscope, and no entry in the cache).
   bool needs_pass() const {
     return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
@@ -86,9 +86,9 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
-// The scene's motion model with "auto" resolved: "rotation", since a scene states its lens, but
-// "homography" for chroma-key, which is the paper's method.
-std::string motion_model(const scene::Scene& scene);
+// The scene's motion model with kAuto resolved: kRotation, since a scene states its lens, but
+// kHomography for kChromaKey, which is the paper's method.
+scene::MotionModel motion_model(const scene::Scene& scene);
 
 // Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
 std::vector<motion::GyroSample> gyro_of(const fs::path& video);

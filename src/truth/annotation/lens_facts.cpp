@@ -3,6 +3,8 @@
 
 #include <variant>
 
+#include "camera/lens/model_kind.h"
+
 namespace airtruth::annotation {
 
 LensFacts facts_of(const lens::Lens& lens) {
@@ -24,9 +26,10 @@ lens::Lens lens_of(const LensFacts& facts) {
   const Pixel focal(facts.focal_px[0], facts.focal_px[1]);
   const Pixel principal(facts.principal_point_px[0], facts.principal_point_px[1]);
   const lens::ImageSize size{facts.width, facts.height};
-  if (facts.model == "fisheye")
+  const auto kind = enum_named<lens::ModelKind>(facts.model);
+  if (kind == lens::ModelKind::kFisheye)
     return lens::Lens(lens::Fisheye{focal, principal, facts.distortion}, size);
-  if (facts.model == "brown_conrady")
+  if (kind == lens::ModelKind::kBrownConrady)
     return lens::Lens(lens::BrownConrady{focal, principal, facts.distortion}, size);
   return lens::Lens(lens::Pinhole{focal, principal}, size);
 }

@@ -41,25 +41,12 @@ Scene read_scene(const fs::path& file) { return parse_scene(read_file(file, kLar
 
 Scene parse_scene(std::string_view text, const fs::path& file) {
   const toml::table parsed = parsed_toml(text, file.string());
-  const TableReader root(parsed,
-                         "a scene",
-                         file.string(),
-                         {"name",
-                          "seed",
-                          "background",
-                          "lens",
-                          "camera",
-                          "motion",
-                          "light",
-                          "shutter",
-                          "air",
-                          "optics",
-                          "sensor",
-                          "realism",
-                          "intruder",
-                          "render",
-                          "composite",
-                          "output"});
+  const TableReader root(
+      parsed,
+      "a scene",
+      file.string(),
+      with_camera_tables({"name", "seed", "background", "lens", "camera", "motion", "light"},
+                         {"realism", "intruder", "render", "composite", "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -88,7 +75,7 @@ CameraFile parse_camera_file(std::string_view text, const fs::path& file) {
   const TableReader root(parsed,
                          "a camera file",
                          file.string(),
-                         {"clip", "shutter", "air", "optics", "sensor", "light", "uncertainty"});
+                         with_camera_tables({"clip"}, {"light", "uncertainty"}));
   CameraFile camera;
   const TableReader clip =
       root.table("clip", {"video", "width", "height", "frames", "lens", "gamma"});

@@ -2,10 +2,11 @@
 #include "world/scene/parse_intruder.h"
 
 #include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "aircraft/fleet/fleet.h"
 #include "aircraft/wrapper/reader.h"
 #include "world/scene/tables.h"
 
@@ -13,7 +14,7 @@ namespace airtruth::scene {
 namespace {
 
 void read_axes(const TableReader& table, Intruder& intruder) {
-  const TableReader::Keys axes = {"x", "-x", "y", "-y", "z", "-z"};
+  const std::vector<std::string> axes = {"x", "-x", "y", "-y", "z", "-z"};
   intruder.model_forward = table.choice("model_forward", axes);
   intruder.model_up = table.choice("model_up", axes);
   intruder.model_scale = table.number("model_scale", kModelScale);
@@ -94,8 +95,6 @@ Intruder intruder_from(const TableReader& table) {
 
 }  // namespace
 
-bool names_model_file(const std::string& aircraft) { return aircraft::is_model_file(aircraft); }
-
 std::vector<Intruder> intruders_from(const TableReader& root) {
   std::vector<Intruder> result;
   std::map<std::string, int> line_of_id;
@@ -132,7 +131,7 @@ std::string aircraft_in(const TableReader& table) {
   if (!name)
     throw Error("has no aircraft; expected a name (see `airtruth aircraft list`) or a model file",
                 table.where());
-  return names_model_file(*name) ? table.path("aircraft")->string() : *name;
+  return aircraft::is_model_file(*name) ? table.path("aircraft")->string() : *name;
 }
 
 }  // namespace airtruth::scene

@@ -12,8 +12,4 @@ namespace airtruth::scene {
 // intruder-2 and so on.
 std::vector<Intruder> intruders_from(const TableReader& root);
 
-// True where the text is the path of a model file (its ending says so); false where it is a name of
-// the catalogue.
-bool names_model_file(const std::string& aircraft);
-
 }  // namespace airtruth::scene

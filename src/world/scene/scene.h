@@ -9,8 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "camera/lens/model_kind.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/geometry/within_frame.h"
+#include "world/scene/choices.h"
 
 // A scene file as a value: what the user wrote, with types and ranges checked, and before any other
 // file is loaded. Each struct is a table of the file and each field is a key of the same name;
@@ -48,7 +51,7 @@ struct Background {
 
 // [lens]: a model with its parameters, or a calibration file.
 struct Lens {
-  std::string model = "pinhole";  // pinhole | brown_conrady | fisheye
+  lens::ModelKind model = lens::ModelKind::kPinhole;
   std::optional<double> vertical_fov_deg;
   std::optional<std::array<double, 2>> focal_px;
   std::optional<std::array<double, 2>> principal_point_px;
@@ -68,9 +71,8 @@ struct Camera {
 
 // [motion]: how the camera's shake is measured.
 struct Motion {
-  // "auto" means rotation, and homography for the compositing method chroma-key.
-  std::string model = "auto";             // auto | rotation | homography | none
-  std::string reference = "first_frame";  // first_frame | smoothed
+  MotionModel model = MotionModel::kAuto;
+  MotionReference reference = MotionReference::kFirstFrame;
   double smoothing_s = 1.0;
   Where where;
 };
@@ -97,15 +99,15 @@ struct Light {
 
 // The camera between the light of the scene and the stored sample; the tables [shutter], [air],
 // [optics] and [sensor]. An empty field is not stated. Scenes use this struct, and so does
-// camera.toml, which `airtruth calibrate` writes.
+// camera.toml, which `airtruth calibrate` writes. Every field has a row in camera_keys.h.
 struct CameraModel {
   // [shutter]
   std::optional<double> exposure_s;
   // Shutter angle; 360 degrees expose for a whole frame interval. Excludes exposure_s.
   std::optional<double> angle_deg;
   std::optional<double> readout_s;
-  // Direction in which the rows are read: down | up | right | left.
-  std::optional<std::string> readout;
+  // Direction in which the rows are read; empty: down.
+  std::optional<Readout> readout;
   // [air]
   // For red, green and blue.
   std::optional<std::array<double, 3>> extinction_per_km;
@@ -177,12 +179,12 @@ struct Render {
 
 // [composite]: how the rendered aircraft is put into the frame.
 struct Composite {
-  std::string method = "matte";  // matte | chroma-key
+  CompositeMethod method = CompositeMethod::kMatte;
 };
 
 // [output]: the files that are written.
 struct Output {
-  std::string video = "mp4";  // mp4 | mkv | avi | png
+  OutputVideo video = OutputVideo::kMp4;
   int quality = 18;
   // True: each intruder's alpha is written as well, frame by frame.
   bool masks = false;

@@ -63,7 +63,7 @@ TEST(Scene, EveryValueArrives) {
   EXPECT_EQ(scene.lens.vertical_fov_deg, 90.0);
   EXPECT_EQ(scene.camera.position_ned_m, Vector3(0, 0.5, -150));
   EXPECT_EQ(scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg, 2);
-  EXPECT_EQ(scene.motion.reference, "smoothed");
+  EXPECT_EQ(scene.motion.reference, MotionReference::kSmoothed);
   EXPECT_EQ(scene.light.sun_azimuth_deg, 120);
   ASSERT_EQ(scene.intruders.size(), 2u);
   EXPECT_EQ(scene.intruders[0].waypoints_ned_m.at(1), Vector3(760, -300, -355.25));
@@ -76,8 +76,8 @@ TEST(Scene, EveryValueArrives) {
 TEST(Scene, WhatIsNotSaidHasItsDefault) {
   const Scene scene = parse_scene(paper(), "a.toml");
   EXPECT_EQ(scene.intruders[1].id, "intruder-2");
-  EXPECT_EQ(scene.composite.method, "matte");
-  EXPECT_EQ(scene.output.video, "mp4");
+  EXPECT_EQ(scene.composite.method, CompositeMethod::kMatte);
+  EXPECT_EQ(scene.output.video, OutputVideo::kMp4);
   EXPECT_EQ(scene.output.quality, 18);
   EXPECT_EQ(scene.render.quality, 3);
   EXPECT_FALSE(scene.light.exposure);
@@ -113,7 +113,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   scene.light.sky_colour = {0.1, 1.0 / 3.0, 1e-17};
   scene.light.ground_albedo = 0.7;
   scene.lens = Lens{};
-  scene.lens.model = "brown_conrady";
+  scene.lens.model = lens::ModelKind::kBrownConrady;
   scene.lens.focal_px = {480.25, 1e6};
   scene.lens.principal_point_px = {-0.5, 1e-16};
   scene.lens.distortion = {-0.3, 0.1, 0.0, 1e-9, 5};

@@ -89,7 +89,7 @@ std::string shown(double number) { return fmt::format("{}", number); }
 TableReader::TableReader(const toml::table& table,
                          std::string title,
                          const std::string& file,
-                         Keys keys,
+                         const Keys& keys,
                          std::string path)
     : table_(&table),
       title_(std::move(title)),
@@ -246,15 +246,15 @@ std::optional<std::string> TableReader::file_name(std::string_view key) const {
   return name;
 }
 
-std::optional<std::string> TableReader::choice(std::string_view key, Keys choices) const {
+std::optional<std::string> TableReader::choice(std::string_view key,
+                                               const std::vector<std::string>& choices) const {
   const auto word = text(key);
   if (!word || std::find(choices.begin(), choices.end(), *word) != choices.end()) return word;
-  const std::vector<std::string> known(choices.begin(), choices.end());
-  const auto near = nearest_spelling(word->substr(0, 60), known);
+  const auto near = nearest_spelling(word->substr(0, 60), choices);
   fail_at(where(key),
           key,
           in_quotes(*word),
-          listed(known) + (near ? "; did you mean '" + *near + "'?" : ""));
+          listed(choices) + (near ? "; did you mean '" + *near + "'?" : ""));
 }
 
 std::optional<std::filesystem::path> TableReader::path(std::string_view key) const {
@@ -327,7 +327,7 @@ std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
   return result;
 }
 
-TableReader TableReader::table(std::string_view key, Keys keys) const {
+TableReader TableReader::table(std::string_view key, const Keys& keys) const {
   const toml::node* const value = node(key);
   const std::string title = fmt::format("[{}]", key);
   if (!value) return TableReader(kAbsent, title, file_, keys, path_of(key));
@@ -337,7 +337,7 @@ TableReader TableReader::table(std::string_view key, Keys keys) const {
   return TableReader(*value->as_table(), title, file_, keys, path_of(key));
 }
 
-std::vector<TableReader> TableReader::tables(std::string_view key, Keys keys) const {
+std::vector<TableReader> TableReader::tables(std::string_view key, const Keys& keys) const {
   const toml::node* const value = node(key);
   if (!value) return {};
   const std::string title = fmt::format("[[{}]]", key);
@@ -353,7 +353,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key, Keys keys) co
   return result;
 }
 
-void TableReader::exclude(std::string_view key, Keys others) const {
+void TableReader::exclude(std::string_view key, const Keys& others) const {
   if (!has(key)) return;
   for (const std::string_view other : others) {
     if (!has(other)) continue;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include <toml++/toml.h>
 
+#include "foundation/base/enum_names.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "world/scene/limits.h"
@@ -23,7 +23,7 @@ namespace airtruth::scene {
 
 class TableReader {
  public:
-  using Keys = std::initializer_list<std::string_view>;
+  using Keys = std::vector<std::string_view>;
 
   // Throws where the table holds a key that is not in `keys`. `title` is the table's name in
   // messages: "[lens]". `path` is the table's place in the file, as KeyLog uses it:
@@ -31,7 +31,7 @@ class TableReader {
   TableReader(const toml::table& table,
               std::string title,
               const std::string& file,
-              Keys keys,
+              const Keys& keys,
               std::string path = "");
 
   bool has(std::string_view key) const;
@@ -56,7 +56,14 @@ class TableReader {
   std::optional<std::vector<std::string>> texts(std::string_view key) const;
   // A string without a folder in it.
   std::optional<std::string> file_name(std::string_view key) const;
-  std::optional<std::string> choice(std::string_view key, Keys choices) const;
+  std::optional<std::string> choice(std::string_view key,
+                                    const std::vector<std::string>& choices) const;
+  // A word that names a value of the enum (foundation/base/enum_names.h).
+  template <typename Enum>
+  std::optional<Enum> choice(std::string_view key) const {
+    const auto word = choice(key, all_enum_names<Enum>());
+    return word ? enum_named<Enum>(*word) : std::nullopt;
+  }
   // A file path. A relative path is resolved against the folder of the scene file.
   std::optional<std::filesystem::path> path(std::string_view key) const;
   std::optional<std::vector<double>> numbers(std::string_view key, const Limits& each) const;
@@ -67,12 +74,12 @@ class TableReader {
   std::optional<std::vector<Vector3>> points(std::string_view key, const Limits& each) const;
 
   // The table at `key`; an empty table where it is absent.
-  TableReader table(std::string_view key, Keys keys) const;
+  TableReader table(std::string_view key, const Keys& keys) const;
   // The tables of the array [[key]].
-  std::vector<TableReader> tables(std::string_view key, Keys keys) const;
+  std::vector<TableReader> tables(std::string_view key, const Keys& keys) const;
 
   // Throws where the table holds both `key` and any of `others`.
-  void exclude(std::string_view key, Keys others) const;
+  void exclude(std::string_view key, const Keys& others) const;
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
   // The place of element i of the array at `key`.
   Where where(std::string_view key, std::size_t i) const;

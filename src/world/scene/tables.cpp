@@ -7,6 +7,7 @@
 
 #include "foundation/base/files.h"
 #include "foundation/base/line_of.h"
+#include "world/scene/camera_keys.h"
 #include "world/scene/toml_guard.h"
 
 namespace airtruth::scene {
@@ -20,15 +21,16 @@ std::optional<std::array<double, 2>> pair_from(const TableReader& table,
   return std::array<double, 2>{(*values)[0], (*values)[1]};
 }
 
-void check_distortion(const TableReader& table, const std::string& model, std::size_t count) {
-  if (model == "pinhole" && count > 0)
+void check_distortion(const TableReader& table, lens::ModelKind model, std::size_t count) {
+  if (model == lens::ModelKind::kPinhole && count > 0)
     table.fail("distortion",
                "distortion is not for a pinhole; expected model brown_conrady or fisheye, or no "
                "distortion");
-  if (model == "brown_conrady" && count != 0 && count != 4 && count != 5 && count != 8)
+  if (model == lens::ModelKind::kBrownConrady && count != 0 && count != 4 && count != 5 &&
+      count != 8)
     table.fail("distortion",
                fmt::format("distortion has {} numbers; brown_conrady takes 4, 5 or 8", count));
-  if (model == "fisheye" && count > 4)
+  if (model == lens::ModelKind::kFisheye && count > 4)
     table.fail("distortion",
                fmt::format("distortion has {} numbers; fisheye takes at most 4", count));
 }
@@ -73,9 +75,9 @@ Lens lens_in(const TableReader& parent) {
   table.exclude("vertical_fov_deg", {"focal_px"});
   lens.file = table.path("file");
   if (lens.file) return lens;
-  lens.model = table.choice("model", {"pinhole", "brown_conrady", "fisheye"}).value_or(lens.model);
-  lens.vertical_fov_deg =
-      table.number("vertical_fov_deg", lens.model == "fisheye" ? kFisheyeView : kPinholeView);
+  lens.model = table.choice<lens::ModelKind>("model").value_or(lens.model);
+  lens.vertical_fov_deg = table.number(
+      "vertical_fov_deg", lens.model == lens::ModelKind::kFisheye ? kFisheyeView : kPinholeView);
   lens.focal_px = pair_from(table, "focal_px", kFocal);
   lens.principal_point_px = pair_from(table, "principal_point_px", kPrincipalPoint);
   lens.distortion = table.numbers("distortion", kDistortion).value_or(std::vector<double>{});
@@ -105,81 +107,59 @@ Motion motion_in(const TableReader& parent) {
   const TableReader table = parent.table("motion", {"model", "reference", "smoothing_s"});
   Motion motion;
   motion.where = table.where();
-  motion.model =
-      table.choice("model", {"auto", "rotation", "homography", "none"}).value_or(motion.model);
-  motion.reference =
-      table.choice("reference", {"first_frame", "smoothed"}).value_or(motion.reference);
+  motion.model = table.choice<MotionModel>("model").value_or(motion.model);
+  motion.reference = table.choice<MotionReference>("reference").value_or(motion.reference);
   motion.smoothing_s = table.number("smoothing_s", kSmoothing).value_or(motion.smoothing_s);
   return motion;
 }
 
 namespace {
 
-// Reads keys that accept "auto" in place of a value, and lists the keys that hold it.
-class AutoReader {
- public:
-  AutoReader(const TableReader& table, std::string name, std::vector<std::string>& automatic)
-      : table_(table), name_(std::move(name)), automatic_(automatic) {}
+TableReader::Keys keys_of_table(std::string_view table) {
+  TableReader::Keys keys;
+  for (const CameraKey& key : kCameraModelKeys)
+    if (key.table() == table) keys.push_back(key.key());
+  return keys;
+}
 
-  std::optional<double> number(std::string_view key, const Limits& limits) {
-    return is_automatic(key) ? std::nullopt : table_.number(key, limits);
-  }
-  std::optional<std::array<double, 3>> three(std::string_view key, const Limits& each) {
-    return is_automatic(key) ? std::nullopt : three_from(table_, key, each);
-  }
+void read(const TableReader& table, const CameraKey& key, std::optional<double>& value) {
+  value = table.number(key.key(), key.limits);
+}
 
- private:
-  bool is_automatic(std::string_view key) {
-    if (!table_.says(key, "auto")) return false;
-    automatic_.push_back(name_ + "." + std::string(key));
-    return true;
-  }
+void read(const TableReader& table,
+          const CameraKey& key,
+          std::optional<std::array<double, 3>>& value) {
+  value = three_from(table, key.key(), key.limits);
+}
 
-  const TableReader& table_;
-  std::string name_;
-  std::vector<std::string>& automatic_;
-};
+void read(const TableReader& table, const CameraKey& key, std::optional<Readout>& value) {
+  value = table.choice<Readout>(key.key());
+}
 
 }  // namespace
 
 CameraModel camera_model_in(const TableReader& parent) {
   CameraModel model;
-  const TableReader shutter =
-      parent.table("shutter", {"exposure_s", "angle_deg", "readout_s", "readout"});
-  shutter.exclude("exposure_s", {"angle_deg"});
-  AutoReader in_shutter(shutter, "shutter", model.automatic);
-  model.exposure_s = in_shutter.number("exposure_s", kExposureTime);
-  model.angle_deg = shutter.number("angle_deg", kShutterAngle);
-  model.readout_s = in_shutter.number("readout_s", kExposureTime);
-  model.readout = shutter.choice("readout", {"down", "up", "right", "left"});
-
-  const TableReader air = parent.table("air", {"extinction_per_km", "airlight"});
-  AutoReader in_air(air, "air", model.automatic);
-  model.extinction_per_km = in_air.three("extinction_per_km", kExtinction);
-  model.airlight = in_air.three("airlight", kLinearLight);
-
-  const TableReader optics =
-      parent.table("optics", {"point_spread_px", "sharpening", "sharpening_px"});
-  AutoReader in_optics(optics, "optics", model.automatic);
-  model.point_spread_px = in_optics.number("point_spread_px", kSpread);
-  model.sharpening = in_optics.number("sharpening", kSharpening);
-  model.sharpening_px = in_optics.number("sharpening_px", kSpread);
-
-  const TableReader sensor = parent.table("sensor",
-                                          {"noise_gain",
-                                           "noise_floor",
-                                           "noise_correlation_px",
-                                           "chroma_spread_px",
-                                           "codec_step",
-                                           "gamma"});
-  AutoReader in_sensor(sensor, "sensor", model.automatic);
-  model.noise_gain = in_sensor.number("noise_gain", kVariance);
-  model.noise_floor = in_sensor.number("noise_floor", kVariance);
-  model.noise_correlation_px = in_sensor.number("noise_correlation_px", kSpread);
-  model.chroma_spread_px = in_sensor.number("chroma_spread_px", kSpread);
-  model.codec_step = in_sensor.number("codec_step", kCodecStep);
-  model.gamma = sensor.number("gamma", kGamma);
+  for (const std::string_view name : kCameraTables) {
+    const TableReader table = parent.table(name, keys_of_table(name));
+    for (const CameraKey& key : kCameraModelKeys)
+      if (key.table() == name && !key.excluded_by.empty())
+        table.exclude(key.excluded_by, {key.key()});
+    for (const CameraKey& key : kCameraModelKeys) {
+      if (key.table() != name) continue;
+      if (key.is_measured() && table.says(key.key(), kAutomaticWord))
+        model.automatic.emplace_back(key.name);
+      else
+        std::visit([&](auto member) { read(table, key, model.*member); }, key.member);
+    }
+  }
   return model;
+}
+
+TableReader::Keys with_camera_tables(TableReader::Keys before, const TableReader::Keys& after) {
+  before.insert(before.end(), kCameraTables.begin(), kCameraTables.end());
+  before.insert(before.end(), after.begin(), after.end());
+  return before;
 }
 
 Realism realism_in(const TableReader& parent) {
@@ -218,7 +198,7 @@ Light light_in(const TableReader& parent) {
 Output output_in(const TableReader& parent) {
   const TableReader table = parent.table("output", {"video", "quality", "masks"});
   Output output;
-  output.video = table.choice("video", {"mp4", "mkv", "avi", "png"}).value_or(output.video);
+  output.video = table.choice<OutputVideo>("video").value_or(output.video);
   output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
   output.masks = table.truth("masks").value_or(output.masks);
   return output;
@@ -234,7 +214,7 @@ Render render_in(const TableReader& parent) {
 Composite composite_in(const TableReader& parent) {
   const TableReader table = parent.table("composite", {"method"});
   Composite composite;
-  composite.method = table.choice("method", {"matte", "chroma-key"}).value_or(composite.method);
+  composite.method = table.choice<CompositeMethod>("method").value_or(composite.method);
   return composite;
 }
 

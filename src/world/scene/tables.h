@@ -29,6 +29,9 @@ Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);
 Composite composite_in(const TableReader& parent);
 
+// The keys of a table that holds the tables of a camera model: `before`, their names, `after`.
+TableReader::Keys with_camera_tables(TableReader::Keys before, const TableReader::Keys& after);
+
 // The key `aircraft` of a table: an unchanged name from the aircraft list, or the path of a model
 // file, resolved against the folder of the file that is read.
 std::string aircraft_in(const TableReader& table);

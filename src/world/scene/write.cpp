@@ -3,11 +3,14 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
-#include "world/scene/parse_intruder.h"
+#include "world/scene/camera_keys.h"
 #include "world/scene/scene.h"
 
 namespace airtruth::scene {
@@ -47,6 +50,9 @@ class Text {
   static std::string toml(const YawPitchRoll& a) {
     return fmt::format("[{}, {}, {}]", a.yaw_deg, a.pitch_deg, a.roll_deg);
   }
+  template <typename Enum>
+  requires std::is_enum_v<Enum>
+  static std::string toml(Enum value) { return toml(std::string(enum_name(value))); }
   static std::string toml(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
@@ -101,40 +107,23 @@ void add_light(Text& text, const Light& light) {
   text.add("ground_albedo", light.ground_albedo);
 }
 
-// Writes the stated value, or "auto".
-template <typename T>
-void add_or_auto(Text& text,
-                 const CameraModel& model,
-                 const std::string& table,
-                 const std::string& key,
-                 const std::optional<T>& value) {
+bool is_automatic(const CameraModel& model, const CameraKey& key) {
   const auto& automatic = model.automatic;
-  if (std::find(automatic.begin(), automatic.end(), table + "." + key) != automatic.end())
-    text.add(key, std::string("auto"));
-  else
-    text.add(key, value);
+  return std::find(automatic.begin(), automatic.end(), key.name) != automatic.end();
 }
 
+// Writes every table, also one without a stated key.
 void add_camera_model(Text& text, const CameraModel& model) {
-  text.heading("[shutter]");
-  add_or_auto(text, model, "shutter", "exposure_s", model.exposure_s);
-  text.add("angle_deg", model.angle_deg);
-  add_or_auto(text, model, "shutter", "readout_s", model.readout_s);
-  text.add("readout", model.readout);
-  text.heading("[air]");
-  add_or_auto(text, model, "air", "extinction_per_km", model.extinction_per_km);
-  add_or_auto(text, model, "air", "airlight", model.airlight);
-  text.heading("[optics]");
-  add_or_auto(text, model, "optics", "point_spread_px", model.point_spread_px);
-  add_or_auto(text, model, "optics", "sharpening", model.sharpening);
-  add_or_auto(text, model, "optics", "sharpening_px", model.sharpening_px);
-  text.heading("[sensor]");
-  add_or_auto(text, model, "sensor", "noise_gain", model.noise_gain);
-  add_or_auto(text, model, "sensor", "noise_floor", model.noise_floor);
-  add_or_auto(text, model, "sensor", "noise_correlation_px", model.noise_correlation_px);
-  add_or_auto(text, model, "sensor", "chroma_spread_px", model.chroma_spread_px);
-  add_or_auto(text, model, "sensor", "codec_step", model.codec_step);
-  text.add("gamma", model.gamma);
+  for (const std::string_view table : kCameraTables) {
+    text.heading(fmt::format("[{}]", table));
+    for (const CameraKey& key : kCameraModelKeys) {
+      if (key.table() != table) continue;
+      if (is_automatic(model, key))
+        text.add(key.key(), std::string(kAutomaticWord));
+      else
+        std::visit([&](auto member) { text.add(key.key(), model.*member); }, key.member);
+    }
+  }
 }
 
 void add_realism(Text& text, const Realism& realism) {
@@ -146,7 +135,8 @@ void add_realism(Text& text, const Realism& realism) {
 }
 
 std::string aircraft_text(const std::string& aircraft) {
-  return names_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string() : aircraft;
+  return aircraft::is_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string()
+                                           : aircraft;
 }
 
 void add_intruder(Text& text, const Intruder& intruder) {
