@@ -12,7 +12,7 @@
 #include "foundation/base/pattern.h"
 #include "picture/video/still.h"
 #include "sequence/demo/aircraft_sheet.h"
-#include "show/report/tiles.h"
+#include "show/drawing/tiles.h"
 
 namespace airtruth::cli {
 namespace {
@@ -81,7 +81,7 @@ void draw_sheet(const std::string& filter,
   Console& console = context.console();
   aircraft::LoadOptions load;
   load.stop = context.stop;
-  std::vector<report::NamedPicture> tiles;
+  std::vector<drawing::NamedPicture> tiles;
   const std::vector<std::string> names = one_of_each_type(aircraft::aircraft_named_like(filter));
   if (names.empty()) throw Error(nothing_like(filter));
   for (const std::string& name : names) {
@@ -90,7 +90,7 @@ void draw_sheet(const std::string& filter,
         {type_of(name), sequence::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
   }
   video::write_still(
-      out, report::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
+      out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
   console.result(fmt::format("{}: one aircraft of each of {} types", out, names.size()));
 }
 

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "benchmark/experiment/assess.h"
+#include "benchmark/experiment/evaluation_page.h"
 #include "benchmark/experiment/figures.h"
-#include "benchmark/experiment/page.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
@@ -100,7 +100,7 @@ void print_vot(const experiment::Assessment& assessment, Console& console) {
 
 void print_comparison(const experiment::Assessment& assessment, Console& console) {
   if (assessment.comparisons.empty()) return;
-  const experiment::Comparison& best = assessment.comparisons.front();
+  const experiment::TrackerPair& best = assessment.comparisons.front();
   const auto& interval = best.auc.interval;
   console.result(fmt::format(
       "{} against {}: AUC {:+.3f}{}, better in {} of {} sequences, p = {:.3f}",

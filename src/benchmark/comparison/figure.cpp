@@ -8,7 +8,7 @@
 
 #include "foundation/geometry/whole_pixels.h"
 #include "foundation/image/colour.h"
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
 namespace airtruth::comparison {
 namespace {
@@ -28,11 +28,11 @@ Crop crop_of(const image::Picture& picture, const Box& box, int side) {
 }
 
 image::Rgb8 tile_of(const image::Rgb8& crop, int side) {
-  return report::resized(crop, side, side, crop.width > side ? cv::INTER_AREA : cv::INTER_NEAREST);
+  return drawing::resized(crop, side, side, crop.width > side ? cv::INTER_AREA : cv::INTER_NEAREST);
 }
 
 void paste(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
-  report::view(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
+  drawing::view(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
 }
 
 }  // namespace
@@ -53,67 +53,68 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
   cv::Mat canvas(kHeadingPx + lines * (kLargePx + kHeadingPx),
                  columns * (kPairPx + 2 * kGapPx),
                  CV_8UC3,
-                 report::kDarkPaper);
+                 drawing::kDarkPaper);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     int x = kGapPx + static_cast<int>(i) % columns * (kPairPx + 2 * kGapPx);
     const int y = kHeadingPx + static_cast<int>(i) / columns * (kLargePx + kHeadingPx);
     for (const Crop* one : {&rows[i].real, &rows[i].made}) {
       const std::string name =
           one == &rows[i].real ? fmt::format("real, frame {}", rows[i].frame) : "inserted";
-      report::text(canvas,
-                   fmt::format("{}, {:.0f} x {:.0f} px", name, one->box.width, one->box.height),
-                   x,
-                   y - 8,
-                   kTextPx,
-                   report::kWhite);
+      drawing::text(canvas,
+                    fmt::format("{}, {:.0f} x {:.0f} px", name, one->box.width, one->box.height),
+                    x,
+                    y - 8,
+                    kTextPx,
+                    drawing::kWhite);
       // At 1x as much as there is room for, from the middle.
       const int small = std::min(kSmallPx, one->picture.width);
       const int from = (one->picture.width - small) / 2;
       image::Rgb8 copy = tile_of(one->picture, one->picture.width);
-      report::view(copy)(cv::Rect(from, from, small, small))
+      drawing::view(copy)(cv::Rect(from, from, small, small))
           .copyTo(canvas(cv::Rect(x, y, small, small)));
       x += kSmallPx + kGapPx;
       paste(canvas, tile_of(one->picture, kLargePx), x, y);
       cv::Mat large = canvas(cv::Rect(x, y, kLargePx, kLargePx));
-      report::outline(large, one->box, double(kLargePx) / one->picture.width, report::kGreen);
+      drawing::outline(large, one->box, double(kLargePx) / one->picture.width, drawing::kGreen);
       x += kLargePx + kGapPx;
     }
   }
-  return report::from_mat(canvas);
+  return drawing::from_mat(canvas);
 }
 
 image::Rgb8 strip_of(const std::vector<FigureRow>& rows) {
-  cv::Mat canvas(2 * kTilePx, kTilePx * static_cast<int>(rows.size()), CV_8UC3, report::kDarkPaper);
+  cv::Mat canvas(
+      2 * kTilePx, kTilePx * static_cast<int>(rows.size()), CV_8UC3, drawing::kDarkPaper);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int x = kTilePx * static_cast<int>(i);
     paste(canvas, tile_of(rows[i].real.picture, kTilePx), x, 0);
     paste(canvas, tile_of(rows[i].made.picture, kTilePx), x, kTilePx);
   }
-  return report::from_mat(canvas);
+  return drawing::from_mat(canvas);
 }
 
 image::Rgb8 figure_of_all(const std::vector<NamedStrip>& strips) {
   int width = 0, height = kGapPx;
   for (const NamedStrip& strip : strips) {
     width = std::max(
-        {width, strip.picture.width, report::text_size(strip.name, kTextPx).width + kGapPx});
+        {width, strip.picture.width, drawing::text_size(strip.name, kTextPx).width + kGapPx});
     height += kHeadingPx + strip.picture.height;
   }
-  cv::Mat canvas(height, width + 2 * kGapPx, CV_8UC3, report::kDarkPaper);
+  cv::Mat canvas(height, width + 2 * kGapPx, CV_8UC3, drawing::kDarkPaper);
   int y = 0;
   for (const NamedStrip& strip : strips) {
     y += kHeadingPx;
-    report::text(canvas,
-                 strip.name + ": real above, inserted below",
-                 kGapPx,
-                 y - 8,
-                 kTextPx,
-                 report::kWhite);
+    drawing::text(canvas,
+                  strip.name + ": real above, inserted below",
+                  kGapPx,
+                  y - 8,
+                  kTextPx,
+                  drawing::kWhite);
     const image::Rgb8& p = strip.picture;
-    paste(canvas, report::resized(p, p.width, p.height, cv::INTER_NEAREST), kGapPx, y);
+    paste(canvas, drawing::resized(p, p.width, p.height, cv::INTER_NEAREST), kGapPx, y);
     y += strip.picture.height;
   }
-  return report::from_mat(canvas);
+  return drawing::from_mat(canvas);
 }
 
 }  // namespace airtruth::comparison

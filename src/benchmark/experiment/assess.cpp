@@ -204,8 +204,8 @@ class Scoring {
   bool until_loss_ = false;
 };
 
-Comparison compared(const ScoredTracker& a, const ScoredTracker& b) {
-  Comparison comparison{a.name, b.name, 0, {}};
+TrackerPair compared(const ScoredTracker& a, const ScoredTracker& b) {
+  TrackerPair comparison{a.name, b.name, 0, {}};
   std::vector<double> of_a;
   std::vector<double> of_b;
   for (const ScoredSequence& mine : a.sequences)

@@ -35,7 +35,7 @@ struct Measure {
 const std::vector<Measure>& measures();
 
 // The first frame at which a tracker lost its object.
-struct Loss {
+struct FirstLoss {
   std::int64_t frame = 0;  // frame number in the video
   std::optional<double> time_s;
   std::optional<double> range_m;
@@ -47,7 +47,7 @@ struct ScoredSequence {
   std::vector<std::optional<Box>> answers;  // answers of the one-pass run; empty without one
   std::optional<evaluation::Score> score;
   std::vector<evaluation::Outcome> outcomes;
-  std::optional<Loss> loss;
+  std::optional<FirstLoss> loss;
   std::optional<evaluation::Restart> restart;
   std::optional<evaluation::MultiStart> multistart;
 };
@@ -71,7 +71,7 @@ struct ScoredTracker {
   std::optional<evaluation::MultiStart> multistart;
 };
 
-struct Comparison {
+struct TrackerPair {
   std::string a, b;
   std::int64_t sequences = 0;  // sequences that both trackers have
   evaluation::Paired auc;
@@ -82,8 +82,8 @@ struct Assessment {
   std::vector<TruthClip> truths;
   // In order of decreasing AUC.
   std::vector<ScoredTracker> trackers;
-  std::vector<Comparison> comparisons;  // one for each pair of trackers
-  std::pair<int, int> eao_range{};      // in frames
+  std::vector<TrackerPair> comparisons;  // one for each pair of trackers
+  std::pair<int, int> eao_range{};       // in frames
   // True where frames per second leave out lost frames (AssessOptions).
   bool until_loss = false;
 };

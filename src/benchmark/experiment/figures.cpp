@@ -14,16 +14,16 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
-#include "show/report/boxed.h"
-#include "show/report/tiles.h"
+#include "show/drawing/boxed.h"
+#include "show/drawing/tiles.h"
 
 namespace airtruth::experiment {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-// The colours of the page (show/html/assets/common.js): black is for the truth alone, and the first six
-// are distinguishable with every kind of colour vision.
+// The colours of the page (show/html/assets/common.js): black is for the truth alone, and the first
+// six are distinguishable with every kind of colour vision.
 constexpr Colour kTruthColour = {0, 0, 0};
 constexpr Colour kTruthOnPictures = {255, 255, 255};  // with a dark rim
 constexpr std::array<Colour, 12> kColours = {{{0, 114, 178},
@@ -321,12 +321,12 @@ class Figures {
   void film(std::size_t index) const {
     const TruthClip& truth = assessment_.truths[index];
     if (truth.stills.empty()) return;
-    std::vector<report::NamedPicture> pictures;
+    std::vector<drawing::NamedPicture> pictures;
     const std::size_t count = std::min(kFilmPictures, truth.stills.size());
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t at = count > 1 ? k * (truth.stills.size() - 1) / (count - 1) : 0;
       const TruthClip::Still& still = truth.stills[at];
-      std::vector<report::ColouredBox> boxes;
+      std::vector<drawing::ColouredBox> boxes;
       if (const auto box = truth.box(still.index)) boxes.push_back({*box, kTruthOnPictures});
       for (std::size_t t = 0; t < assessment_.trackers.size(); ++t)
         if (const ScoredSequence* sequence = scored(t, index))
@@ -335,10 +335,10 @@ class Figures {
       const double scale =
           std::min(1.0, static_cast<double>(TruthClip::kWholeWidth) / std::max(1, still.width));
       pictures.push_back({fmt::format("frame {}", truth.clip.frames[still.index].frame),
-                          report::boxed(still.whole, scale, boxes)});
+                          drawing::boxed(still.whole, scale, boxes)});
     }
     video::write_still(folder_ / ("frames-" + truth.clip.name + ".png"),
-                       report::tiled(truth.clip.name, std::move(pictures), kFilmColumns));
+                       drawing::tiled(truth.clip.name, std::move(pictures), kFilmColumns));
   }
 
   const Assessment& assessment_;

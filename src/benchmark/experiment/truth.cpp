@@ -10,7 +10,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
-#include "show/report/thumbnails.h"
+#include "show/drawing/thumbnails.h"
 #include "truth/annotation/in_view.h"
 #include "truth/annotation/lens_facts.h"
 #include "truth/exchange/exchange.h"
@@ -52,7 +52,7 @@ TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Pi
   still.index = i;
   still.width = picture.width;
   still.whole = video::jpeg_of(
-      report::small_copy(image::rgb8_from_picture(picture), TruthClip::kWholeWidth), kJpegQuality);
+      drawing::small_copy(image::rgb8_from_picture(picture), TruthClip::kWholeWidth), kJpegQuality);
   const auto box = truth.box(i);
   if (!box) return still;
   const double side =
@@ -61,7 +61,7 @@ TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Pi
   still.close_x = std::round(box->x + box->width / 2 - side / 2);
   still.close_y = std::round(box->y + box->height / 2 - side / 2);
   still.close = video::jpeg_of(
-      report::square(picture, still.close_x, still.close_y, side, TruthClip::kCloseSide),
+      drawing::square(picture, still.close_x, still.close_y, side, TruthClip::kCloseSide),
       kJpegQuality);
   return still;
 }
@@ -106,7 +106,7 @@ void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop)
       throw Error("ends before the labels of " + truth.clip.name + " do",
                   {truth.clip.media.string()});
     if (const auto box = truth.box(i))
-      truth.contrast[i] = report::contrast(*picture, covered(*box));
+      truth.contrast[i] = drawing::contrast(*picture, covered(*box));
     if (wanted.count(i) > 0) truth.stills.push_back(still_of(truth, i, *picture));
   }
 }

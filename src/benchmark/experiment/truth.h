@@ -26,7 +26,7 @@ struct TruthClip {
   // By frame of the clip; empty where the object is not visible or the value is unknown.
   std::vector<std::optional<double>> range_m;
   std::vector<std::optional<double>> size_px;  // longer side of the box, px
-  // Contrast in grey levels (show/report/thumbnails.h), filled in by add_film().
+  // Contrast in grey levels (show/drawing/thumbnails.h), filled in by add_film().
   std::vector<std::optional<double>> contrast;
 
   // Small JPEGs of some frames for the page.

@@ -8,7 +8,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "show/report/thumbnails.h"
+#include "show/drawing/thumbnails.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -96,22 +96,22 @@ Film film_of(const sequence::Finished& finished, std::size_t most, const std::st
       film.stills.push_back(
           {frames[i].frame,
            video::jpeg_of(
-               report::small_copy(image::rgb8_from_picture(frame->picture), Film::kStillWidth),
+               drawing::small_copy(image::rgb8_from_picture(frame->picture), Film::kStillWidth),
                kStillQuality),
            marked(frames[i], ids)});
     }
     if (!in_loop[i]) continue;
     const PixelBox box = *first_box(frames[i]);
-    film.contrasts.push_back(report::contrast(frame->picture, box));
+    film.contrasts.push_back(drawing::contrast(frame->picture, box));
     squares.push_back(
-        report::enlarged(frame->picture,
-                         {double(box.x), double(box.y), double(box.width), double(box.height)},
-                         kLoopSide));
+        drawing::enlarged(frame->picture,
+                          {double(box.x), double(box.y), double(box.width), double(box.height)},
+                          kLoopSide));
   }
   if (squares.empty()) return film;
   film.loop_frames = static_cast<int>(squares.size());
   film.loop_side = kLoopSide;
-  film.loop_jpeg = video::jpeg_of(report::strip(squares), kLoopQuality);
+  film.loop_jpeg = video::jpeg_of(drawing::strip(squares), kLoopQuality);
   return film;
 }
 

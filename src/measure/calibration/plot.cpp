@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "measure/calibration/calibration.h"
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -127,16 +127,16 @@ image::Rgb8 plot(const Calibration& c) {
   if (c.sky_picture) {
     const double scale = std::min(double(kWidth - kLeft - 24) / c.sky_picture->width,
                                   double(kHeight - kTop - 20) / c.sky_picture->height);
-    image::Rgb8 small = report::resized(*c.sky_picture,
-                                        static_cast<int>(c.sky_picture->width * scale),
-                                        static_cast<int>(c.sky_picture->height * scale),
-                                        cv::INTER_AREA);
-    report::view(small).copyTo(
+    image::Rgb8 small = drawing::resized(*c.sky_picture,
+                                         static_cast<int>(c.sky_picture->width * scale),
+                                         static_cast<int>(c.sky_picture->height * scale),
+                                         cv::INTER_AREA);
+    drawing::view(small).copyTo(
         canvas(cv::Rect(kWidth + kLeft, kHeight + kTop, small.width, small.height)));
   } else {
     words(canvas, "no horizon found", kWidth + kLeft + 180, kHeight + kTop + 160, 0.5);
   }
-  return report::from_mat(canvas);
+  return drawing::from_mat(canvas);
 }
 
 }  // namespace airtruth::calibration

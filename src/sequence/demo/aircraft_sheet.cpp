@@ -8,7 +8,7 @@
 #include "foundation/image/colour.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
-#include "show/report/tiles.h"
+#include "show/drawing/tiles.h"
 #include "truth/projection/exact_box.h"
 
 namespace airtruth::sequence {
@@ -86,9 +86,9 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
                                       {"right side, 40 px", 90, 5, 40},
                                       {"front left, 10 px", -40, 5, 10}}};
   const render::Model model(aircraft.mesh);
-  std::vector<report::NamedPicture> tiles;
+  std::vector<drawing::NamedPicture> tiles;
   for (const Pose& pose : poses) tiles.push_back({pose.name, tile(aircraft, model, pose)});
-  return report::tiled(aircraft.name, std::move(tiles), 3);
+  return drawing::tiled(aircraft.name, std::move(tiles), 3);
 }
 
 image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {

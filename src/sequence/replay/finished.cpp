@@ -17,7 +17,7 @@
 #include "sequence/frame/paint.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "show/report/pictures.h"
+#include "show/drawing/pictures.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -152,7 +152,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
       throw Error("holds more frames than truth.jsonl", {sequence.video.string()});
     }
     const auto& truth = sequence.truth.frames[static_cast<std::size_t>(frame->index)];
-    frame->picture = image::picture_from_rgb8(report::overlay(frame->picture, truth, ids),
+    frame->picture = image::picture_from_rgb8(drawing::overlay(frame->picture, truth, ids),
                                               frame->picture.colour);
     writer.write(*frame);
     if (options.progress) options.progress(frame->index + 1, total);
@@ -181,10 +181,10 @@ image::Rgb8 inspect(const Finished& sequence,
   const Moment moment = moment_at(world, truth.frame, truth.time_s, truth.shake);
   const image::Layer layer = render_layer(scene, world, moment, Ambient{});
   const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
-  return report::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
-                         truth,
-                         area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
-                         zoom);
+  return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
+                          truth,
+                          area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
+                          zoom);
 }
 
 }  // namespace airtruth::sequence

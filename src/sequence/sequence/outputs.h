@@ -13,7 +13,7 @@
 #include "picture/video/writer.h"
 #include "sequence/frame/masks.h"
 #include "sequence/sequence/sequence.h"
-#include "show/report/pictures.h"
+#include "show/drawing/pictures.h"
 #include "truth/annotation/evision.h"
 #include "truth/annotation/lens_facts.h"
 #include "truth/annotation/truth.h"
@@ -61,7 +61,7 @@ class Outputs {
   // Indexed by [intruder][frame]. A scene without intruders has one entry whose frames have no
   // position.
   std::vector<std::vector<std::optional<annotation::EvisionFrame>>> evision_;
-  report::ContactSheet sheet_;
+  drawing::ContactSheet sheet_;
 };
 
 }  // namespace airtruth::sequence

@@ -9,11 +9,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/image/colour.h"
-#include "show/report/draw.h"
-#include "show/report/pictures.h"
-#include "show/report/placing.h"
+#include "show/drawing/draw.h"
+#include "show/drawing/pictures.h"
+#include "show/drawing/placing.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 // The drawing data of one intruder.
@@ -123,4 +123,4 @@ image::Rgb8 overlay(const image::Picture& picture,
   return result;
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

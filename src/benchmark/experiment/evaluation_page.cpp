@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/experiment/page.h"
+#include "benchmark/experiment/evaluation_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "benchmark/experiment/tables.h"
+#include "benchmark/experiment/evaluation_tables.h"
 #include "foundation/base/base64.h"
 #include "foundation/base/files.h"
 #include "show/html/page.h"
@@ -114,7 +114,7 @@ void write_page(const Assessment& assessment, const fs::path& out) {
                                       [](const ScoredSequence& s) { return s.score.has_value(); });
     data["trackers"].push_back(json);
   }
-  for (const Comparison& comparison : assessment.comparisons)
+  for (const TrackerPair& comparison : assessment.comparisons)
     data["comparisons"].push_back(json_of(comparison));
   std::vector<html::PageBlob> pictures;
   for (std::size_t i = 0; i < assessment.truths.size(); ++i) {

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "foundation/image/colour.h"
-#include "show/report/pictures.h"
-#include "show/report/placing.h"
+#include "show/drawing/pictures.h"
+#include "show/drawing/placing.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 image::Picture grey_picture(int width, int height, std::uint8_t level) {
@@ -165,4 +165,4 @@ TEST(Closeup, CaptionsDoNotRunTogetherHoweverNarrowThePanels) {
 }
 
 }  // namespace
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

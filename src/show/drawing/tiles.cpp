@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/tiles.h"
+#include "show/drawing/tiles.h"
 
 #include "foundation/base/error.h"
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, int columns) {
   constexpr int kGapPx = 10;
@@ -28,4 +28,4 @@ image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, 
   return from_mat(canvas);
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -11,7 +11,7 @@
 
 // Pictures for people: the contact sheet, the overlay, and the enlarged view of a part of one
 // frame.
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 // The contact sheet preview.jpg: up to twelve frames, each with its visible intruders enlarged in a
 // corner, with range and frame number. add() takes the frames in order. Only small copies of chosen
@@ -61,4 +61,4 @@ image::Rgb8 closeup(const Closeup& what,
                     const PixelBox& area,
                     int zoom);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

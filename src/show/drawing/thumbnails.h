@@ -7,7 +7,7 @@
 #include "foundation/image/picture.h"
 
 // Small pictures for HTML pages.
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 // The whole picture, at most `width` pixels wide.
 image::Rgb8 small_copy(const image::Rgb8& picture, int width);
@@ -26,4 +26,4 @@ image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
 // the median of a ring that is as wide as the box's shorter side (at least 4 px).
 double contrast(const image::Picture& picture, const PixelBox& box);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

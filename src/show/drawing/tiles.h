@@ -6,7 +6,7 @@
 
 #include "foundation/image/picture.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 struct NamedPicture {
   std::string name;
@@ -17,4 +17,4 @@ struct NamedPicture {
 // left corner.
 image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, int columns);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

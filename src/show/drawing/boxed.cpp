@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/boxed.h"
+#include "show/drawing/boxed.h"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/base/error.h"
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 // Thickness of the first box's line, in pixels.
@@ -30,4 +30,4 @@ image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<Colou
   return from_mat(picture);
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
@@ -130,4 +130,4 @@ cv::Scalar intruder_colour(std::size_t index) {
   return kColours[index % kColours.size()];
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

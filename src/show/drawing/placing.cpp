@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/placing.h"
+#include "show/drawing/placing.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 // Distance between a box's outline and its label, in pixels.
@@ -86,4 +86,4 @@ std::optional<PixelBox> place_label(const PixelBox& anchor,
   return best;
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -7,7 +7,7 @@
 #include "foundation/geometry/box.h"
 
 // Places labels on a picture without overlaps between them.
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 struct Placing {
   // No label leaves it.
@@ -27,4 +27,4 @@ std::optional<PixelBox> place_label(const PixelBox& anchor,
                                     int height,
                                     const Placing& placing);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -7,10 +7,10 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "show/report/draw.h"
-#include "show/report/pictures.h"
+#include "show/drawing/draw.h"
+#include "show/drawing/pictures.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
@@ -123,4 +123,4 @@ image::Rgb8 closeup(const Closeup& what,
   return from_mat(canvas);
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark/experiment/tables.h"
+#include "benchmark/experiment/evaluation_tables.h"
 
 #include <cmath>
 
@@ -59,7 +59,7 @@ Json json_of(const Bin& bin) {
           {"angle_mrad", json_or_null(bin.angle_mrad)}};
 }
 
-Json json_of(const Loss& loss) {
+Json json_of(const FirstLoss& loss) {
   return {{"frame", loss.frame},
           {"time_s", json_or_null(loss.time_s)},
           {"range_m", json_or_null(loss.range_m)}};
@@ -208,7 +208,7 @@ Json json_of(const ScoredTracker& tracker) {
   return json;
 }
 
-Json json_of(const Comparison& c) {
+Json json_of(const TrackerPair& c) {
   return {{"a", c.a},
           {"b", c.b},
           {"sequences", c.sequences},
@@ -238,7 +238,7 @@ void write_tables(const Assessment& assessment, const fs::path& out) {
       json["sequences"].push_back(json_of(sequence));
     all["trackers"].push_back(json);
   }
-  for (const Comparison& comparison : assessment.comparisons)
+  for (const TrackerPair& comparison : assessment.comparisons)
     all["comparisons"].push_back(json_of(comparison));
   write_file(out / "trackers.csv", trackers_csv(assessment));
   write_file(out / "sequences.csv", sequences_csv(assessment));

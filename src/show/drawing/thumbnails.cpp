@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/thumbnails.h"
+#include "show/drawing/thumbnails.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/whole_pixels.h"
 #include "foundation/image/colour.h"
-#include "show/report/draw.h"
+#include "show/drawing/draw.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 // Side of the square, as a multiple of the box's longer side.
@@ -91,4 +91,4 @@ double contrast(const image::Picture& picture, const PixelBox& box) {
   return std::sqrt(sum / (double(inside->width) * inside->height));
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -9,7 +9,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 struct ColouredBox {
   Box box;
@@ -21,4 +21,4 @@ struct ColouredBox {
 // are not a JPEG.
 image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

@@ -10,7 +10,7 @@
 #include "foundation/image/picture.h"
 
 // OpenCV's drawing functions for packed sRGB pictures. Colours are red, green, blue.
-namespace airtruth::report {
+namespace airtruth::drawing {
 
 const cv::Scalar kGreen(64, 255, 96);
 const cv::Scalar kAmber(255, 176, 32);
@@ -64,4 +64,4 @@ void outline(
     cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour, int thickness = 1);
 void dashed_outline(cv::Mat& canvas, const Box& box, double scale, const cv::Scalar& colour);
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing

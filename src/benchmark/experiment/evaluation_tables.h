@@ -11,6 +11,6 @@ namespace airtruth::experiment {
 // Everything except the tracker's sequences.
 nlohmann::ordered_json json_of(const ScoredTracker& tracker);
 nlohmann::ordered_json json_of(const ScoredSequence& sequence);
-nlohmann::ordered_json json_of(const Comparison& comparison);
+nlohmann::ordered_json json_of(const TrackerPair& comparison);
 
 }  // namespace airtruth::experiment

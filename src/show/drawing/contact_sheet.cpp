@@ -11,10 +11,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/image/colour.h"
-#include "show/report/draw.h"
-#include "show/report/pictures.h"
+#include "show/drawing/draw.h"
+#include "show/drawing/pictures.h"
 
-namespace airtruth::report {
+namespace airtruth::drawing {
 namespace {
 
 constexpr int kTileWidthPx = 640;
@@ -200,4 +200,4 @@ image::Rgb8 ContactSheet::sheet() const {
   return from_mat(canvas);
 }
 
-}  // namespace airtruth::report
+}  // namespace airtruth::drawing
