@@ -24,7 +24,6 @@ using aircraft::Assembly;
 using aircraft::Batch;
 using aircraft::ChoosePart;
 using aircraft::PartChoice;
-using aircraft::Picture;
 
 constexpr float kSmoothBelowDeg = 60;  // where a file states no normals
 constexpr int kMaxNodeDepth = 256;

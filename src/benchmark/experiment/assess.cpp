@@ -16,7 +16,6 @@ namespace airtruth::experiment {
 namespace {
 
 using evaluation::FramePair;
-using evaluation::Mark;
 using evaluation::Score;
 
 // Stills of all sequences together: about 20 KB each on the page.

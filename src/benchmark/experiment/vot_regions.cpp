@@ -73,11 +73,12 @@ VotFrame mask_box(const std::vector<double>& n, int origin_px) {
     const auto run = static_cast<std::int64_t>(n[i]);
     if ((i - kMaskHead) % 2 == 1 && run > 0) {
       const std::int64_t last = at + run - 1;
-      const bool is_one_row = at / width == last / width;
+      const std::int64_t top = at / width, bottom = last / width;  // rows
+      const bool is_one_row = top == bottom;
       const double left = is_one_row ? double(at % width) : 0;
       const double right = is_one_row ? double(last % width) : n[2] - 1;
-      bounds.add({n[0] + left - origin_px, n[1] + double(at / width) - origin_px});
-      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(last / width) + 1 - origin_px});
+      bounds.add({n[0] + left - origin_px, n[1] + double(top) - origin_px});
+      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(bottom) + 1 - origin_px});
     }
     at += run;
   }

@@ -76,7 +76,8 @@ double area_of_judge(const std::vector<Patches>& train, const Patches& asked) {
   boost->setWeightTrimRate(0);
   boost->train(samples, cv::ml::ROW_SAMPLE, answers);
   cv::Mat raw;
-  boost->predict(rows_of(asked), raw, cv::ml::StatModel::RAW_OUTPUT | cv::ml::DTrees::PREDICT_SUM);
+  constexpr int kSumOfTrees = int{cv::ml::StatModel::RAW_OUTPUT} | int{cv::ml::DTrees::PREDICT_SUM};
+  boost->predict(rows_of(asked), raw, kSumOfTrees);
   std::vector<double> scores;
   for (int i = 0; i < raw.rows; ++i) scores.push_back(double(raw.at<float>(i, 0)));
   return area_under_curve(scores, asked.real);

@@ -104,8 +104,9 @@ void paint_panels(image::Picture& picture, int finer) {
       for (int x = 0; x < side; ++x) {
         int inside = 0;
         for (int i = 0; i < kPlaces * kPlaces; ++i) {
-          const double u = x + (i % kPlaces + 0.5) / kPlaces - 0.5 * side;
-          const double v = y + (i / kPlaces + 0.5) / kPlaces - 0.5 * side;
+          const int column = i % kPlaces, row = i / kPlaces;  // of the places in a pixel
+          const double u = x + (column + 0.5) / kPlaces - 0.5 * side;
+          const double v = y + (row + 0.5) / kPlaces - 0.5 * side;
           inside +=
               std::abs(c * u + s * v) < 26 * finer && std::abs(c * v - s * u) < 26 * finer ? 1 : 0;
         }

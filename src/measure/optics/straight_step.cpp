@@ -135,13 +135,14 @@ class Profile {
   // is 0 for a step through any symmetric spread and mask, but not for a step with a line along one
   // side.
   double asymmetry() const {
+    constexpr std::size_t kPairs = kBins / 2;
     double squares = 0;
-    for (std::size_t b = 0; b < kBins / 2; ++b) {
+    for (std::size_t b = 0; b < kPairs; ++b) {
       const std::size_t o = kBins - 1 - b;
       const double off = sums_[b] / counts_[b] + sums_[o] / counts_[o] - 1;
       squares += off * off;
     }
-    return std::sqrt(squares / (kBins / 2));
+    return std::sqrt(squares / kPairs);
   }
   // The width from the integral of |height - step|, which is sigma * sqrt(2 / pi) for a Gaussian.
   double width_px() const {
