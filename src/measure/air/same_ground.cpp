@@ -10,6 +10,8 @@
 namespace airtruth::calibration {
 namespace {
 
+// Least number of squares for a fit: fewer do not average out that the light of ground depends on
+// the direction from which it is seen. Chosen on virtual flights.
 constexpr std::size_t kMinSquares = 300;
 
 // Error of a square's light relative to the model: kSquareError is a share of the square's own
@@ -27,7 +29,11 @@ constexpr double kSkyPrior = 0.03, kUnseenSkyPrior = 0.15;
 // Range in heights at which the loss of contrast among squares is stated, and the prior error of
 // that loss. Large pixels and errors of the path mix the light of neighbouring squares.
 constexpr double kMixedRange = 15, kMixedPrior = 0.03;
+// The extinction follows the wavelength to the power of -slope (Angstrom 1929): mean and standard
+// deviation of the prior of the slope, its largest value and the spacing of those that are tried.
+// Air between haze, where the slope is near 0, and small particles, where it is above 1.
 constexpr double kMeanAngstrom = 0.5, kAngstromSigma = 0.5, kMaxAngstrom = 2, kAngstromStep = 0.1;
+// Wavelengths of the channels red, green and blue.
 constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
 // Relative error that is added to the extinction: its scatter over virtual flights (same_ground.h).
 constexpr double kFlightScatter = 0.1;
@@ -73,6 +79,14 @@ struct System {
   Unknowns ay = Unknowns::Zero();
   double yy = 0;
 
+  // Adds the prior that `unknown` is `value`, with the relative error `trust`.
+  void expect(int unknown, double value, double trust);
+  // Adds a square in a view, and a band of far ground; `t` is the share of its light that arrives.
+  void add_square(const Row& row, double t);
+  void add_far(const Row& row, double t, double mean_light);
+  // Eliminates the squares' own light. It is called once, after all squares were added.
+  void eliminate_own_light();
+
   Unknowns solution() const { return aa.ldlt().solve(ay); }
   double cost() const { return yy - ay.dot(solution()); }
   Unknowns sigma() const { return aa.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt(); }
@@ -98,44 +112,48 @@ struct Channel {
   void try_all(double altitude_m);
 };
 
-System Channel::system(double per_height) const {
-  System result;
-  std::vector<System::Square>& all = result.squares;
-  Normal& aa = result.aa;
-  Unknowns& ay = result.ay;
-  double& yy = result.yy;
-  all.resize(static_cast<std::size_t>(squares.back().square) + 1);
-  const auto expect = [&](int unknown, double value, double trust) {
-    const double weight = 1 / (trust * value * trust * value);
-    aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
-  };
-  aa(kMixed, kMixed) = 1 / (kMixedPrior * kMixedPrior);
-  for (std::size_t s = 0; s < kSectors; ++s) expect(static_cast<int>(s), sky[s], sky_trust[s]);
-  expect(kMean, mean_light, kMeanPrior);
-  for (const Row& r : squares) {
-    const double t = std::exp(-per_height * r.range);
-    System::Square& q = all[static_cast<std::size_t>(r.square)];
-    const double air = 1 - t;
-    const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
-    q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
-    q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
-    aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
-    aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
-    ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
-    yy += r.weight * r.light * r.light;
-  }
-  for (const System::Square& q : all) {
+void System::expect(int unknown, double value, double trust) {
+  const double weight = 1 / (trust * value * trust * value);
+  aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
+}
+
+void System::add_square(const Row& r, double t) {
+  Square& q = squares[static_cast<std::size_t>(r.square)];
+  const double air = 1 - t;
+  const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
+  q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
+  q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
+  aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
+  aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
+  ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
+  yy += r.weight * r.light * r.light;
+}
+
+void System::eliminate_own_light() {
+  for (const Square& q : squares) {
     if (q.tt == 0) continue;
     aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
   }
-  for (const Row& r : far) {
-    const double t = std::exp(-per_height * r.range);
-    const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
-    const double w = 1 / (error * error);
-    Unknowns row = Unknowns::Zero();
-    row[r.sector] = 1 - t, row[kMean] = t;
-    aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
-  }
+}
+
+void System::add_far(const Row& r, double t, double mean_light) {
+  const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
+  const double w = 1 / (error * error);
+  Unknowns row = Unknowns::Zero();
+  row[r.sector] = 1 - t, row[kMean] = t;
+  aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
+}
+
+System Channel::system(double per_height) const {
+  System result;
+  result.squares.resize(static_cast<std::size_t>(squares.back().square) + 1);
+  result.aa(kMixed, kMixed) = 1 / (kMixedPrior * kMixedPrior);
+  for (std::size_t s = 0; s < kSectors; ++s)
+    result.expect(static_cast<int>(s), sky[s], sky_trust[s]);
+  result.expect(kMean, mean_light, kMeanPrior);
+  for (const Row& r : squares) result.add_square(r, std::exp(-per_height * r.range));
+  result.eliminate_own_light();
+  for (const Row& r : far) result.add_far(r, std::exp(-per_height * r.range), mean_light);
   return result;
 }
 

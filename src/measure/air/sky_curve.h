@@ -12,9 +12,6 @@
 // The light of the sky above the horizon, by sector of the azimuth.
 namespace airtruth::calibration {
 
-// One estimate per channel: red, green, blue of linear light.
-using ColourEstimate = std::array<Estimate, 3>;
-
 // The number of equal sectors into which azimuth is divided. Each sector has its own airlight,
 // since airlight is brighter towards the sun.
 constexpr int kSectors = 12;

@@ -7,9 +7,10 @@
 #include "camera/horizon/horizon.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
-#include "foundation/base/median.h"
 #include "measure/air/air.h"
 #include "measure/calibration/calibration.h"
+#include "measure/calibration/extinction_quantity.h"
+#include "measure/calibration/level.h"
 #include "measure/optics/edges.h"
 #include "measure/sensor/blur.h"
 #include "measure/sensor/noise.h"
@@ -30,18 +31,13 @@ GroundRange ground_range(const Options& options) {
   return {std::nullopt, "the ground has no range without " + missing};
 }
 
+// Number of frames, spread over the clip, at which noise, edges, horizon and air are measured:
+// chosen to bound the time.
 constexpr std::int64_t kSampledFrames = 40;
-constexpr std::int64_t kFewestFrames = 8;
+// A shorter clip has fewer than four pairs of frames for noise and edges.
+constexpr std::int64_t kMinFrames = 8;
 // Field of view that is assumed for finding the horizon when no lens is given.
 constexpr double kAssumedFovDeg = 60;
-
-// A frame that is used for horizon, sky and ground.
-struct Sampled {
-  image::Picture picture;
-  std::int64_t frame = 0;
-  Quaternion cam_from_first = Quaternion::Identity();
-  bool turn_known = false;
-};
 
 bool is_measured(const motion::FrameMotion& motion) {
   return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
@@ -73,12 +69,12 @@ class Session {
 
   Calibration run() {
     read_all();
-    if (result_.frames < kFewestFrames)
-      options_.warn ? options_.warn(fmt::format("{}: holds {} frames; most values take {}",
-                                                result_.video.string(),
-                                                result_.frames,
-                                                kFewestFrames))
-                    : void();
+    if (result_.frames < kMinFrames)
+      warn(options_.warn,
+           fmt::format("{}: holds {} frames; most values take {}",
+                       result_.video.string(),
+                       result_.frames,
+                       kMinFrames));
     if (!result_.cuts.empty())
       warn(options_.warn,
            fmt::format("{}: the clip is cut at frame {}; nothing is measured across",
@@ -95,41 +91,62 @@ class Session {
  private:
   void read_all() {
     std::optional<image::Picture> before;
-    std::optional<Homography> last;
     while (auto frame = reader_.next()) {
-      if (options_.stop.stop_requested()) throw Interrupted();
+      stop_if_asked();
       const motion::FrameMotion moved =
           planar_.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
       // A frame into which most corners can be tracked does not begin a shot.
       if (frame->begins_shot && !is_measured(moved)) cut(frame->index, before);
-      std::optional<Homography> step;
-      if (moved.state == motion::State::kMeasured && last)
-        step = moved.frame_from_reference * last->inverse();
-      last = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
+      const std::optional<Homography> step = step_of(moved);
       steps_.back().push_back(step);
-      const Pixel centre(result_.width / 2.0, result_.height / 2.0);
-      blur_.add(frame->picture,
-                step ? std::optional<Pixel>(apply(*step, centre) - centre) : std::nullopt);
-      std::optional<motion::FrameMotion> turned;
-      if (turning_) {
-        turned = turning_->next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
-        cam_from_first_.push_back(*turned->rotation);
-      }
+      blur_.add(frame->picture, step ? std::optional(centre_motion(*step)) : std::nullopt);
+      const std::optional<Quaternion> turned = turn_of(*frame);
       if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
-      if (frame->index % every_ == 1 && before) {
-        noise_.add(*before, frame->picture);
-        edges_.add(frame->picture, step);
-        if (static_cast<std::int64_t>(sampled_.size()) < 2 * kSampledFrames)
-          sampled_.push_back({frame->picture.clone(),
-                              frame->index,
-                              turned ? *turned->rotation : Quaternion::Identity(),
-                              turned && is_measured(*turned) && result_.cuts.empty()});
-      }
+      if (frame->index % every_ == 1 && before) sample(*before, *frame, step, turned);
       // The measurements of the next sampled frame also use the frame before it.
       before = std::move(frame->picture);
       ++result_.frames;
       if (options_.progress) options_.progress(result_.frames, total_);
     }
+  }
+
+  void stop_if_asked() const {
+    if (options_.stop.stop_requested()) throw Interrupted();
+  }
+
+  // The homography from the frame before; empty if either of the two was not measured.
+  std::optional<Homography> step_of(const motion::FrameMotion& moved) {
+    std::optional<Homography> step;
+    if (moved.state == motion::State::kMeasured && frame_before_)
+      step = moved.frame_from_reference * frame_before_->inverse();
+    frame_before_ = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
+    return step;
+  }
+
+  Pixel centre_motion(const Homography& step) const {
+    const Pixel centre(result_.width / 2.0, result_.height / 2.0);
+    return apply(step, centre) - centre;
+  }
+
+  // Follows the rotation of the camera, if the lens is given. Returns the rotation since the first
+  // frame of the clip; empty if it was not measured, or a cut lies between.
+  std::optional<Quaternion> turn_of(const video::Frame& frame) {
+    if (!turning_) return std::nullopt;
+    const motion::FrameMotion turned =
+        turning_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
+    cam_from_first_.push_back(*turned.rotation);
+    const bool known = is_measured(turned) && result_.cuts.empty();
+    return known ? turned.rotation : std::nullopt;
+  }
+
+  void sample(const image::Picture& before,
+              const video::Frame& frame,
+              const std::optional<Homography>& step,
+              const std::optional<Quaternion>& cam_from_first) {
+    noise_.add(before, frame.picture);
+    edges_.add(frame.picture, step);
+    if (static_cast<std::int64_t>(sampled_.size()) < 2 * kSampledFrames)
+      sampled_.push_back({frame.picture.clone(), frame.index, cam_from_first});
   }
 
   // Begins a new shot. No pair of frames and no motion crosses a cut, and the attitude of the
@@ -142,27 +159,6 @@ class Session {
   }
 
   Quantities& quantities() { return result_.quantities; }
-
-  // Stores an answer of a meter.
-  static void put(Quantity& quantity, const Measured<Estimate>& measured) {
-    if (measured)
-      quantity.values = {*measured};
-    else
-      quantity.missing = measured.why();
-  }
-  static void put(Quantity& quantity, const Measured<ColourEstimate>& measured) {
-    if (measured)
-      quantity.values.assign(measured->begin(), measured->end());
-    else
-      quantity.missing = measured.why();
-  }
-  // The quantity that is the member `part` of a meter's answer.
-  template <typename Whole>
-  static void put(Quantity& quantity, const Measured<Whole>& measured, Estimate Whole::*part) {
-    put(quantity,
-        measured ? Measured<Estimate>((*measured).*part)
-                 : Measured<Estimate>(NotMeasured{measured.why()}));
-  }
 
   void take_noise() {
     result_.noise = noise_.points();
@@ -238,33 +234,38 @@ class Session {
     const lens::Lens lens =
         options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
     const motion::HorizonFinder finder(lens, options_.own_aircraft);
-    const auto found = horizons_of(finder);
-    // The upward directions in the camera frame of the first frame.
-    std::vector<Vector3> ups;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (!found[i]) continue;
-      const YawPitchRoll attitude = motion::attitude_from_up(found[i]->up_in_cam);
-      result_.horizons.push_back(
-          {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found[i]->separation});
-      if (sampled_[i].turn_known)
-        ups.push_back(sampled_[i].cam_from_first.conjugate() * found[i]->up_in_cam);
-    }
-    tint_sky(lens, found);
+    const Horizons horizons = accepted_horizons(finder, sampled_, [this] { stop_if_asked(); });
+    take_horizons(horizons);
+    result_.sky_picture = tinted_sky(lens, sampled_, horizons.found);
     AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
-    const auto first_from_level = levelled(ups);
+    const auto first_from_level = level_attitude(sampled_, horizons.found, options_.heading_deg);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
+      const auto& [picture, frame, cam_from_first] = sampled_[i];
       // With a known rotation, the attitude of the frame follows from the common one; otherwise the
       // frame has the attitude of its own horizon.
-      if (first_from_level && sampled_[i].turn_known)
-        air.add(sampled_[i].picture, sampled_[i].cam_from_first * *first_from_level);
-      else if (!options_.lens && found[i])
-        air.add(sampled_[i].picture, motion::cam_from_level(found[i]->up_in_cam));
+      if (first_from_level && cam_from_first)
+        air.add(picture, *cam_from_first * *first_from_level);
+      else if (!options_.lens && horizons.found[i])
+        air.add(picture, motion::cam_from_level(horizons.found[i]->up_in_cam));
     }
     const Air measured = air.air(options_.stop);
     put(quantities().airlight, measured.airlight);
-    take_extinction(measured);
+    quantities().extinction =
+        extinction_quantity(measured, options_.altitude_m.has_value() && options_.lens.has_value());
     take_sun(air, first_from_level.has_value());
     if (first_from_level) take_yaw(*first_from_level);
+  }
+
+  void take_horizons(const Horizons& horizons) {
+    result_.no_horizon = horizons.why_none;
+    result_.horizon_note = horizons.note;
+    for (std::size_t i = 0; i < sampled_.size(); ++i) {
+      const FoundHorizon& found = horizons.found[i];
+      if (!found) continue;
+      const YawPitchRoll attitude = motion::attitude_from_up(found->up_in_cam);
+      result_.horizons.push_back(
+          {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found->separation});
+    }
   }
 
   void take_yaw(const Quaternion& first_from_world) {
@@ -282,51 +283,6 @@ class Session {
     }
   }
 
-  // cam_from_world of the first frame, from the median of the upward directions.
-  std::optional<Quaternion> levelled(const std::vector<Vector3>& ups) const {
-    if (ups.empty()) return std::nullopt;
-    Vector3 middle;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<double> values;
-      for (const Vector3& up : ups) values.push_back(up[axis]);
-      middle[axis] = median(std::move(values));
-    }
-    const Quaternion cam_from_heading = motion::cam_from_level(middle.normalized());
-    const Quaternion heading(Eigen::AngleAxisd(-radians(options_.heading_deg), Vector3::UnitZ()));
-    return cam_from_heading * heading;
-  }
-
-  void take_extinction(const Air& air) {
-    if (air.extinction_per_km) {
-      put(quantities().extinction, air.extinction_per_km);
-      return;
-    }
-    // An extinction that is not measured is not applied: air that may be clear is rendered clear.
-    // The error is the extinction of a visibility of 50 km (Koschmieder: 3.912 / visibility),
-    // beyond which the international visibility code calls the air exceptionally clear. A horizon
-    // that appears hazy gives a prior.
-    constexpr double kKoschmieder = 3.912, kClearKm = 50;
-    if (air.visibility_km && *air.visibility_km < kClearKm) {
-      const double per_km = kKoschmieder / *air.visibility_km;
-      const Estimate hazy{per_km, per_km};
-      quantities().extinction.values = {hazy, hazy, hazy};
-      quantities().extinction.note = fmt::format(
-          "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
-          "less{}: {}",
-          *air.visibility_km,
-          options_.altitude_m && options_.lens
-              ? ""
-              : fmt::format(" from {} m above the ground", kAssumedHeightM),
-          air.extinction_per_km.why());
-      return;
-    }
-    const Estimate clear{0, kKoschmieder / kClearKm};
-    quantities().extinction.values = {clear, clear, clear};
-    quantities().extinction.note = fmt::format("not measured, and drawn as clear air{}: {}",
-                                               air.visibility_km ? ", as the horizon looks" : "",
-                                               air.extinction_per_km.why());
-  }
-
   void take_sun(const AirMeter& air, bool level_known) {
     const auto sun = [&]() -> Measured<Sun> {
       if (!options_.lens) return NotMeasured{"the lens is not known (--lens)"};
@@ -337,61 +293,6 @@ class Session {
     put(quantities().sun_elevation, sun, &Sun::elevation_deg);
   }
 
-  // The horizons that are accepted. If most frames show a sky whose boundary is not a sharp line,
-  // the lines in the other frames are accidental too, and no horizon is accepted.
-  std::vector<std::optional<motion::HorizonFinder::Found>> horizons_of(
-      const motion::HorizonFinder& finder) {
-    std::vector<std::optional<motion::HorizonFinder::Found>> found;
-    std::size_t parted = 0, sharp = 0;
-    for (const Sampled& sampled : sampled_) {
-      if (options_.stop.stop_requested()) throw Interrupted();
-      found.push_back(finder.find(sampled.picture));
-      if (!found.back()) continue;
-      ++(found.back()->is_sharp() ? sharp : parted);
-      if (!found.back()->is_sharp()) found.back().reset();
-    }
-    if (sharp == 0 && parted == 0) {
-      result_.no_horizon =
-          fmt::format("in none of {} frames do a sky and a ground part", sampled_.size());
-    } else if (sharp < parted) {
-      result_.no_horizon = fmt::format(
-          "a line that is sharp from side to side parts sky and ground in {} of {} frames; in {} "
-          "they part without one, as at a coast, hills, haze or clouds: no pitch, roll or sky is "
-          "taken from it",
-          sharp,
-          sampled_.size(),
-          parted);
-      for (auto& horizon : found) horizon.reset();
-    } else if (parted > 0) {
-      result_.horizon_note = fmt::format(
-          "measured in {} of {} frames; in {} sky and ground part without a line that "
-          "is sharp from side to side, and these are left out",
-          sharp,
-          sampled_.size(),
-          parted);
-    }
-    return found;
-  }
-
-  // Keeps the middle one of the sampled frames with a horizon, with its sky tinted.
-  void tint_sky(const lens::Lens& lens,
-                const std::vector<std::optional<motion::HorizonFinder::Found>>& found) {
-    std::vector<std::size_t> with;
-    for (std::size_t i = 0; i < found.size(); ++i)
-      if (found[i]) with.push_back(i);
-    if (with.empty()) return;
-    const std::size_t i = with[with.size() / 2];
-    image::Rgb8 picture = image::rgb8_from_picture(sampled_[i].picture);
-    for (int y = 0; y < picture.height; ++y)
-      for (int x = 0; x < picture.width; ++x) {
-        const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
-        if (!ray || ray->dot(found[i]->up_in_cam) <= 0) continue;
-        std::uint8_t* p = picture.at(x, y);
-        p[0] = static_cast<std::uint8_t>(p[0] * 3 / 4 + 60);
-      }
-    result_.sky_picture = std::move(picture);
-  }
-
   Options options_;
   video::Reader reader_;
   Calibration result_;
@@ -400,12 +301,14 @@ class Session {
   BlurMeter blur_;
   motion::Estimator planar_;
   std::optional<motion::Estimator> turning_;
+  // Of the frame before, its motion from the reference; empty if that was not measured.
+  std::optional<Homography> frame_before_;
   // One entry per shot.
   std::vector<Steps> steps_ = std::vector<Steps>(1);
   std::vector<double> quantisers_;
   // One rotation per frame; empty without a lens.
   std::vector<Quaternion> cam_from_first_;
-  std::vector<Sampled> sampled_;
+  std::vector<SampledFrame> sampled_;
   std::int64_t total_ = 0;
   std::int64_t every_ = 2;
 };

@@ -5,6 +5,20 @@
 #include <stdexcept>
 
 namespace airtruth::calibration {
+
+void put(Quantity& quantity, const Measured<Estimate>& measured) {
+  if (measured)
+    quantity.values = {*measured};
+  else
+    quantity.missing = measured.why();
+}
+
+void put(Quantity& quantity, const Measured<ColourEstimate>& measured) {
+  if (measured)
+    quantity.values.assign(measured->begin(), measured->end());
+  else
+    quantity.missing = measured.why();
+}
 namespace {
 
 const QuantityKey& key_of(std::string_view name) {

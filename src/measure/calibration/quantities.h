@@ -36,6 +36,17 @@ struct Quantity {
   const Estimate& value() const { return values.at(0); }
 };
 
+// Stores an answer: its value, or the reason why there is none.
+void put(Quantity& quantity, const Measured<Estimate>& measured);
+void put(Quantity& quantity, const Measured<ColourEstimate>& measured);
+// Stores the member `part` of an answer that has several quantities.
+template <typename Whole>
+void put(Quantity& quantity, const Measured<Whole>& measured, Estimate Whole::*part) {
+  put(quantity,
+      measured ? Measured<Estimate>((*measured).*part)
+               : Measured<Estimate>(NotMeasured{measured.why()}));
+}
+
 // Units are those of the keys in a scene file (docs/formats/scene.md).
 struct Quantities {
   Quantity exposure;           // s

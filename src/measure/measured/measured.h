@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,6 +23,9 @@ struct Estimate {
   double value = 0;
   double sigma = 0;
 };
+
+// One estimate per channel: red, green, blue of linear light.
+using ColourEstimate = std::array<Estimate, 3>;
 
 // The reason why a quantity is not measured, as part of a sentence for the user.
 struct NotMeasured {
