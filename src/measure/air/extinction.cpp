@@ -11,10 +11,13 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Range of depressions that is used, degrees, and the number of bands into which it is divided in
 // equal ratios.
 constexpr double kMinDepressionDeg = 0.6, kMaxDepressionDeg = 40;
-constexpr int kGroundBands = 14;
+constexpr int kDepressionBands = 14;
 // Least number of samples of a cell, and of cells for a fit.
 constexpr std::size_t kMinSamples = 100;
 constexpr int kMinCells = 10;
@@ -56,16 +59,16 @@ double quantile(std::vector<float>& values, double share) {
 
 std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
   const double low = radians(kMinDepressionDeg);
-  const double step = std::log(kMaxDepressionDeg / kMinDepressionDeg) / kGroundBands;
+  const double step = std::log(kMaxDepressionDeg / kMinDepressionDeg) / kDepressionBands;
   struct Seen {
     double depression = 0;
     std::array<std::vector<float>, 3> light;
   };
-  std::vector<Seen> all(static_cast<std::size_t>(kSectors * kGroundBands));
+  std::vector<Seen> all(static_cast<std::size_t>(kSectors * kDepressionBands));
   for (const SeenLight& s : ground) {
     const double at = std::log(-s.elevation_rad / low) / step;
-    if (!(at >= 0 && at < kGroundBands)) continue;
-    Seen& here = all[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kGroundBands) +
+    if (!(at >= 0 && at < kDepressionBands)) continue;
+    Seen& here = all[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kDepressionBands) +
                      static_cast<std::size_t>(at)];
     here.depression += -s.elevation_rad;
     for (std::size_t c = 0; c < 3; ++c) here.light[c].push_back(s.linear[c]);
@@ -75,7 +78,7 @@ std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
     const std::size_t count = all[i].light[0].size();
     if (count < kMinSamples) continue;
     Cell cell;
-    cell.sector = static_cast<int>(i) / kGroundBands;
+    cell.sector = static_cast<int>(i) / kDepressionBands;
     cell.depression_rad = all[i].depression / double(count);
     for (std::size_t c = 0; c < 3; ++c) {
       cell.dark[c] = quantile(all[i].light[c], kDarkQuantile);
@@ -156,6 +159,7 @@ ChannelFit fit_channel(const std::vector<Cell>& cells,
 }
 
 Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m) {
+  // Keeps the logarithm of a perfect fit finite.
   constexpr double kMinMisfit = 1e-12;
   const double freedom = std::max(1.0, double(cells.size()) - 4);
   Fit best;
@@ -193,9 +197,12 @@ std::vector<Fit> fits_of_parts(const std::vector<Cell>& cells,
 // The colour channel from which the visibility follows: the one nearest to the eye's sensitivity.
 constexpr std::size_t kGreen = 1;
 
+// The visibility compares near ground, below the horizon by more than the first angle, with far
+// ground, below it by less than the second (extinction.h).
+constexpr double kNearDepressionDeg = 10, kFarDepressionDeg = 5;
+
 // The light of the darkest ground near the camera; empty if none is seen.
 std::optional<double> dark_near_ground(const std::vector<Cell>& cells) {
-  constexpr double kNearDepressionDeg = 10;
   std::vector<double> near;
   for (const Cell& cell : cells)
     if (cell.depression_rad > radians(kNearDepressionDeg)) near.push_back(cell.dark[kGreen]);
@@ -208,9 +215,9 @@ std::vector<float> largest_extinctions_per_km(const std::vector<Cell>& cells,
                                               const SkyCurves& sky,
                                               double dark,
                                               double altitude_m) {
-  constexpr double kFarDepressionDeg = 5;
   // Least contrast between near ground and sky, linear light.
   constexpr double kMinContrast = 0.02;
+  // Least share of that contrast that is kept: less is not distinguishable from none.
   constexpr double kMinShare = 1e-3;
   std::vector<float> per_km;
   for (const Cell& cell : cells) {
@@ -261,7 +268,9 @@ std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& gro
   constexpr double kKoschmieder = 3.912;
   // Share of the values that lie below the one that is used.
   constexpr double kQuantile = 0.25;
+  // Least number of cells with a value.
   constexpr std::size_t kMinValues = 3;
+  // Keeps the visibility of air without extinction finite.
   constexpr double kMinPerKm = 1e-6;
   const std::vector<Cell> cells = cells_of(ground);
   const auto dark = dark_near_ground(cells);

@@ -14,6 +14,7 @@ namespace {
 
 // Spacing of the samples, pixels.
 constexpr int kGroundStep = 2;
+// Height of a patch, degrees of depression. Chosen by judgement.
 constexpr double kPatchDepressionDeg = 2;
 
 std::vector<SeenLight> ground_of(const GroundView& view,

@@ -13,20 +13,24 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Least range of a square, heights.
-constexpr double kNearest = 2.5;
-// Least share of the pixels of a square that a view shows, and the fewest pixels of a square.
-constexpr double kShareSeen = 0.6;
-constexpr double kFewestPixels = 3;
-// Largest number of pixels that are sampled in a view.
-constexpr double kMostPixels = 1.5e6;
+constexpr double kMinRange = 2.5;
+// Least share of the pixels of a square that a view shows, and the least number
+// of pixels of a square.
+constexpr double kMinShareSeen = 0.6;
+constexpr double kMinPixels = 3;
+// Largest number of pixels that are sampled in a view: it bounds the time.
+constexpr double kMaxSampledPixels = 1.5e6;
 
 // Borders of the bands of far ground, degrees below the horizon. Bands within one pixel of the
 // horizon are not used.
 constexpr std::array kBordersDeg{0.15, 0.3, 0.45, 0.6, 0.8, 1.05, 1.35, 1.7, 2.1, 2.6, 3.2};
 constexpr std::size_t kBands = kBordersDeg.size() - 1;
-// Fewest pixels of a band, over all views.
-constexpr double kFewestInBand = 1000;
+// Least number of pixels of a band, over all views.
+constexpr double kMinPixelsInBand = 1000;
 
 struct Sum {
   double count = 0, range = 0, depression_rad = 0;
@@ -53,7 +57,8 @@ class Gatherer {
   Gatherer(const lens::Lens& lens, const image::Mask* own_aircraft, const image::ToneCurve& tone)
       : tone_(tone), bands_(kSectors * kBands) {
     const double pixels = double(lens.size().width) * lens.size().height;
-    const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMostPixels))));
+    const int step =
+        std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMaxSampledPixels))));
     step_rad_ = step / lens.focal_px();
     rays_ = pixel_rays(lens, own_aircraft, step / 2, step);
     for (std::size_t i = 0; i <= kBands; ++i) {
@@ -72,7 +77,7 @@ class Gatherer {
       if (!way) continue;
       const double range = std::hypot(way->norm(), 1.0);
       const auto band = band_of(range);
-      const bool in_square = range >= kNearest && range <= farthest;
+      const bool in_square = range >= kMinRange && range <= farthest;
       if (!band && !in_square) continue;
       const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone_);
       if (band)
@@ -85,7 +90,7 @@ class Gatherer {
     for (const auto& [place, sum] : sums) {
       const double range = sum.range / sum.count;
       const double whole = 1 / (range * range * range * step_rad_ * step_rad_);
-      if (sum.count < std::max(kFewestPixels, kShareSeen * whole)) continue;
+      if (sum.count < std::max(kMinPixels, kMinShareSeen * whole)) continue;
       const int square = numbers_.emplace(place, static_cast<int>(numbers_.size())).first->second;
       seen_.squares.push_back({square, sector_of(sum.way), range, sum.mean_light()});
     }
@@ -96,7 +101,7 @@ class Gatherer {
                      seen_.squares.end(),
                      [](const SquareSeen& a, const SquareSeen& b) { return a.square < b.square; });
     for (std::size_t i = 0; i < bands_.size(); ++i)
-      if (const Sum& band = bands_[i]; band.count >= kFewestInBand)
+      if (const Sum& band = bands_[i]; band.count >= kMinPixelsInBand)
         seen_.far.push_back({static_cast<int>(i / kBands),
                              1 / std::sin(band.depression_rad / band.count),
                              band.mean_light()});

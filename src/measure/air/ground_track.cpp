@@ -13,6 +13,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Lengths in heights: multiples of the camera's height above the ground.
 // Range of the ground that is used, measured from the camera.
 constexpr double kMinRange = 0.8, kMaxRange = 14;
@@ -24,11 +27,15 @@ constexpr double kMaxBetweenViews = 3;
 constexpr double kContrastWindow = 1.1;
 // Distance between the views whose agreement determines the horizon.
 constexpr double kFarViewDistance = 2.5;
+// Least correlation of such views, 0 to 1, with which the path counts as followed.
 constexpr double kMinAgreement = 0.25;
+// Spacing of the tilts that are tried, degrees, and of the first, coarse search in such steps.
 constexpr double kTiltStepDeg = 0.25;
 constexpr int kCoarse = 4, kMaxTiltSteps = static_cast<int>(kMaxTiltDeg / kTiltStepDeg);
 static_assert(kMaxTiltSteps % kCoarse == 0);
+// Least number of views for a path.
 constexpr std::size_t kMinViews = 4;
+// Side of the rectified view, and largest displacement from one view to the next, cells.
 constexpr int kSide = 2 * static_cast<int>(kMaxRange / kCell) + 1;
 constexpr int kReach = static_cast<int>(kMaxBetweenViews / kCell);
 // Search radius, in cells, about the expected displacement of views that are farther apart.
@@ -212,6 +219,7 @@ GroundTrack track_at(const std::vector<GroundView>& views,
 }  // namespace
 
 std::optional<Eigen::Vector2d> place_on_ground(const Vector3& direction) {
+  // The sine of 0.06 degrees below the horizon: ground beyond has no useful range.
   constexpr double kMinDown = 1e-3;
   if (direction.z() < kMinDown) return std::nullopt;
   return Eigen::Vector2d(direction.x(), direction.y()) / direction.z();

@@ -10,8 +10,11 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Least number of squares for a fit: fewer do not average out that the light of ground depends on
-// the direction from which it is seen. Chosen on virtual flights.
+// the direction from which it is seen.
 constexpr std::size_t kMinSquares = 300;
 
 // Error of a square's light relative to the model: kSquareError is a share of the square's own

@@ -13,6 +13,7 @@ namespace {
 
 // Unit of the elevation in the polynomials, degrees.
 constexpr double kUnitDeg = 10;
+// The constants were chosen on the virtual flights of surroundings_slow_test.cpp.
 // Number of equal bands into which the elevations are divided.
 constexpr int kBands = 16;
 // Least number of samples of a band, and of bands of a curve, which has three coefficients.

@@ -11,14 +11,20 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
+// Least number of samples of the sky.
 constexpr std::size_t kMinSamples = 2000;
 // Number of samples that the fits use, at least; they bound the time.
 constexpr std::size_t kFittedSamples = 4000;
 // Weight of a sample brighter than the fit. That of a darker one is 1 - kBrightWeight.
 constexpr double kBrightWeight = 0.12;
-constexpr int kRounds = 6;
+// Rounds of reweighting.
+constexpr int kReweightingRounds = 6;
 // Light of a saturated pixel, linear.
 constexpr double kSaturated = 1;
+// The cost of a direction that is no candidate.
 constexpr double kNoFit = 1e300;
 // Spacing of the directions that are tried, degrees, and their elevations.
 constexpr double kGridElevationDeg = 10, kGridAzimuthDeg = 15;
@@ -26,11 +32,12 @@ constexpr double kFirstElevationDeg = 5, kLastElevationDeg = 85;
 // Refinement: the first and the last spacing of the directions, degrees, and the ratio of one to
 // the one before.
 constexpr double kFirstStepDeg = 6, kLastStepDeg = 0.8, kStepRatio = 0.6;
+// Bounds of the elevation that is found.
 constexpr double kMinElevationDeg = 1, kMaxElevationDeg = 89;
 // A direction explains the sky nearly as well as the best if its cost exceeds the least by less
 // than this share of the range of costs: chosen so that the error covers the truth on virtual
 // flights (surroundings_slow_test.cpp).
-constexpr double kNearlyShare = 0.06;
+constexpr double kMaxExcessCostShare = 0.06;
 // Bounds of the angle, degrees, to the farthest such direction.
 constexpr double kMinSpreadDeg = 4, kMaxSpreadDeg = 45;
 // Least ratio between the greatest and the least cost.
@@ -66,7 +73,7 @@ double cost_of(const std::vector<SkySample>& samples, const Vector3& sun) {
   for (const SkySample& s : samples) rows.push_back(terms_of(s.direction, sun));
   Row solution = Row::Zero();
   double cost = 0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kReweightingRounds; ++round) {
     Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Identity() * 1e-6;
     Row right = Row::Zero();
     cost = 0;
@@ -123,7 +130,7 @@ void refine(Search& search, const std::vector<SkySample>& samples) {
 // The angle, degrees, to the farthest direction that explains the sky nearly as well.
 double spread_deg(const Search& search) {
   const Vector3 found = search.best.vector();
-  const double most = search.least + kNearlyShare * (search.greatest - search.least);
+  const double most = search.least + kMaxExcessCostShare * (search.greatest - search.least);
   double spread = kMinSpreadDeg;
   for (const auto& [direction, cost] : search.all)
     if (cost < most)

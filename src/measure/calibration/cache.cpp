@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kCalibrationVersion = 6;
 // Keys of texts that belong to no quantity alone.
 constexpr const char* kHorizon = "horizon";
+// The key that a cached calibration has beyond those of kQuantityKeys.
 constexpr const char* kReadoutDirection = "shutter.readout";
 
 Json json_of(const Calibration& c) {

@@ -146,7 +146,8 @@ Pooled pooled(std::vector<Estimate> all) {
 }
 
 void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn& warn) {
-  constexpr double kSameRate = 0.01;
+  // Largest relative difference of frame rates that counts as rounding: 29.97 against 30.
+  constexpr double kMaxRateDifference = 0.01;
   const auto info_of = [&](const std::filesystem::path& clip) {
     return video::Reader(clip, {.threads = 1}, warn).info();
   };
@@ -164,7 +165,7 @@ void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn&
                               first.height),
                   where);
     const double rate = info.frame_rate.value(), other = first.frame_rate.value();
-    if (std::abs(rate - other) > kSameRate * other)
+    if (std::abs(rate - other) > kMaxRateDifference * other)
       throw Error(fmt::format("has {:.3f} frames/s, and {} has {:.3f}; expected clips of one "
                               "camera at one rate",
                               rate,

@@ -15,6 +15,7 @@
 namespace airtruth::calibration {
 namespace {
 
+// The keys of the optics, which a clip shows together by its edges or not at all.
 constexpr std::array<const char*, 4> kOptics = {"optics.point_spread_px",
                                                 "optics.sharpening",
                                                 "optics.sharpening_px",
@@ -28,14 +29,16 @@ constexpr std::array<const char*, 8> kProfileKeys = {"optics.point_spread_px",
                                                      "sensor.noise_correlation_px",
                                                      "sensor.chroma_spread_px",
                                                      "shutter.readout_s"};
+// The key of the readout time, whose sign is its direction.
 constexpr const char* kReadout = "shutter.readout_s";
 // Share of the clip's own weight from which on a value counts as the clip's own; below 1 minus this
 // share it counts as the profile's.
 constexpr double kOwnShare = 0.95;
 // A clip contradicts its profile if they differ by more than this multiple of their common error.
-constexpr double kDoubted = 3;
+constexpr double kMaxDifferenceInErrors = 3;
 
 std::vector<CameraProfile> read_library(std::string_view text) {
+  // The line before each profile of the table (profile_table.h).
   constexpr std::string_view kHead = "profile,";
   std::vector<CameraProfile> profiles;
   while (text.starts_with(kHead)) {
@@ -97,7 +100,7 @@ void join(Calibration& c, const std::string& key, const Estimate& prior, const s
             ? fmt::format("of the clip, {}, and {}, {}", with_error(own), whose, with_error(prior))
             : fmt::format("of {}; the clip's {} says next to nothing", whose, with_error(own));
   const double off = std::abs(own.value - prior.value);
-  if (off > kDoubted * std::hypot(own.sigma, prior.sigma))
+  if (off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma))
     quantity.doubt =
         fmt::format("the clip has {}, {} {}", with_error(own), whose, with_error(prior));
 }

@@ -15,6 +15,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Distance from the edge up to which chroma samples are used, px.
 constexpr double kReachPx = 10;
 // Distance from the edge at which the two levels begin, px.
@@ -23,6 +26,7 @@ constexpr double kLevelFromPx = 6.5;
 constexpr double kMinHeightCodes = 6;
 // Largest standard deviation of a level, as a share of the height of the step.
 constexpr double kMaxLevelDeviation = 0.2;
+// Least number of chroma samples across an edge, for four unknowns.
 constexpr std::size_t kMinSamples = 24;
 // Largest standard deviation of a step, px. The levels of a wider step would begin beyond
 // kLevelFromPx.
@@ -96,6 +100,8 @@ std::vector<Sample> samples_across(const image::Plane& plane,
 // Fits the two levels, the place and the width of a Gaussian step by Gauss-Newton; the levels are
 // eliminated by variable projection (Golub and Pereyra 1973).
 std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
+  // Bounds of the iteration: rounds; the change of place, px, and of the logarithm of the width in
+  // one round, and the change that ends it; the distance of the step from the edge of luma, px.
   constexpr int kMaxRounds = 20;
   constexpr double kMaxChange = 0.4, kMinChange = 1e-3, kMaxPlacePx = 4;
   const auto count = static_cast<Eigen::Index>(samples.size());

@@ -26,6 +26,7 @@ constexpr double kDerivativeStep = 0.01;
 constexpr double kMaxChange = 0.3;
 // The iteration ends when all changes are smaller than this.
 constexpr double kMinChange = 0.001;
+// Largest number of rounds: it ends a fit that oscillates.
 constexpr int kMaxRounds = 12;
 
 // The Jacobian. Its columns are plateau, height, place, spread and, if it is unknown, the amount.

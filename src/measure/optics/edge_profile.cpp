@@ -12,9 +12,11 @@ namespace {
 
 // Half the width of the profile and the width of its bins, px.
 constexpr double kHalfWidthPx = 6, kBinPx = 0.2;
+// Least number of samples of a bin that is shown.
 constexpr std::size_t kMinSamplesInBin = 5;
 // Largest spread of an edge that is shown, as a multiple of the camera's.
 constexpr double kMaxSpreadRatio = 1.1;
+// Least number of edges that are shown.
 constexpr std::size_t kMinEdgesShown = 8;
 
 // The edges whose spread is mostly the camera's; at least the sharpest kMinEdgesShown ones.

@@ -16,6 +16,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Number of long edges from which on only long ones are used.
 constexpr std::size_t kMinLong = 60;
 // Number of edges that are kept: of one frame, of the clip, and the least number for a result.
@@ -27,6 +30,8 @@ constexpr int kMinDistancePx = 8;
 // Largest width of an edge, as a multiple of that of the sharpest one. Only the most symmetric of
 // these are used, since a line along one side of an edge looks like half an unsharp mask.
 constexpr double kMaxWidthRatio = 1.4;
+// Share of the edges that count as most symmetric, the least number of them, and the largest number
+// that is fitted, which bounds the time.
 constexpr double kSymmetricShare = 0.25;
 constexpr std::size_t kMinSymmetric = 60;
 constexpr std::size_t kMaxFitted = 150;

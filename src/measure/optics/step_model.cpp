@@ -20,7 +20,7 @@ double bend(double x, double sigma) {
 }  // namespace
 
 UnsharpMask::UnsharpMask(double amount, double radius_px) : amount_(amount) {
-  const double sigma = std::hypot(radius_px, std::sqrt(1.0 / 12)) * StepModel::kAPixel;
+  const double sigma = std::hypot(radius_px, std::sqrt(1.0 / 12)) * StepModel::kPerPixel;
   const int reach = static_cast<int>(std::ceil(4.5 * sigma));
   double total = 0;
   for (int j = -reach; j <= reach; ++j) {
@@ -37,18 +37,18 @@ StepModel::StepModel(double spread_px,
                      const image::ToneCurve& tone) {
   const double dark = tone.linear_from_coded(low);
   const double bright = tone.linear_from_coded(high);
-  std::array<double, kCount + 2 * kAPixel> bends{};
+  std::array<double, kCount + 2 * kPerPixel> bends{};
   for (std::size_t i = 0; i < bends.size(); ++i)
-    bends[i] = bend(double(i) / kAPixel - kHalf - 1, spread_px);
+    bends[i] = bend(double(i) / kPerPixel - kHalf - 1, spread_px);
   for (std::size_t i = 0; i < kCount; ++i) {
     // The second difference integrates over two boxes of a pixel: the light is that of whole
     // pixels, and so is the spread.
-    const double risen = bends[i + 2 * kAPixel] - 2 * bends[i + kAPixel] + bends[i];
+    const double risen = bends[i + 2 * kPerPixel] - 2 * bends[i + kPerPixel] + bends[i];
     heights_[i] = (tone.coded_from_linear(dark + (bright - dark) * risen) - low) / (high - low);
   }
   if (mask.amount_ != 0) sharpen(mask);
-  for (const double height : heights_) middle_ += (1 - height) / kAPixel;
-  middle_ -= kHalf + 0.5 / kAPixel;
+  for (const double height : heights_) middle_ += (1 - height) / kPerPixel;
+  middle_ -= kHalf + 0.5 / kPerPixel;
 }
 
 void StepModel::sharpen(const UnsharpMask& mask) {
@@ -65,11 +65,12 @@ void StepModel::sharpen(const UnsharpMask& mask) {
 
 double StepModel::slope(std::size_t i) const {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, kCount - 1);
-  return (heights_[after] - heights_[before]) * kAPixel / double(after - before);
+  return (heights_[after] - heights_[before]) * kPerPixel / double(after - before);
 }
 
 std::pair<double, double> StepModel::at(double place_px) const {
-  const double p = std::clamp((place_px + middle_ + kHalf) * kAPixel, 0.0, double(kCount) - 1.001);
+  const double p =
+      std::clamp((place_px + middle_ + kHalf) * kPerPixel, 0.0, double(kCount) - 1.001);
   const auto i = static_cast<std::size_t>(p);
   const double t = p - double(i);
   return {(1 - t) * heights_[i] + t * heights_[i + 1], (1 - t) * slope(i) + t * slope(i + 1)};

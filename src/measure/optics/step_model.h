@@ -43,8 +43,9 @@ class StepModel {
   // Half the length of the table of heights, px.
   static constexpr double kHalf = 9;
   // The number of table entries per pixel.
-  static constexpr int kAPixel = 10;
-  static constexpr std::size_t kCount = 2 * static_cast<std::size_t>(kHalf) * kAPixel + 1;
+  static constexpr int kPerPixel = 10;
+  // The number of table entries.
+  static constexpr std::size_t kCount = 2 * static_cast<std::size_t>(kHalf) * kPerPixel + 1;
   void sharpen(const UnsharpMask& mask);
   double slope(std::size_t i) const;
 

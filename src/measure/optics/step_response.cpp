@@ -15,6 +15,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Radii of the unsharp mask that are tried, px.
 constexpr std::array kTriedRadiiPx = {0.6, 0.75, 0.9, 1.05, 1.25, 1.5, 1.8, 2.2, 2.7};
 // Prior of the radius: its median, px, and the standard deviation of its logarithm.
@@ -73,14 +76,15 @@ double median_of(std::vector<Weighted> values) {
 // distributed error. The excess of one half of the edges is exponentially distributed with the mean
 // `world` (Meeusen and van den Broeck 1977); the excess of the other half is arbitrary.
 double sum_likelihood(double sum, double world, double error) {
-  constexpr double kSoftest = 1.5;
+  // Range of an arbitrary excess, in logarithms: an edge up to 4.5 times as soft as the camera.
+  constexpr double kMaxExcess = 1.5;
   const auto above = [](double deviations) {
     return 0.5 * std::erfc(-deviations / std::sqrt(2.0));
   };
   const double ratio = error / world;
   const double near = std::exp(std::min(0.5 * ratio * ratio - sum / world, 600.0)) / world *
                       above(sum / error - ratio);
-  return 0.5 * near + 0.5 * above(sum / error) / kSoftest;
+  return 0.5 * near + 0.5 * above(sum / error) / kMaxExcess;
 }
 
 // Likelihood of the logarithm of an edge's spread relative to the camera's. Lines along an edge and
@@ -89,6 +93,7 @@ double sum_likelihood(double sum, double world, double error) {
 double likelihood(double over_camera, double world, double error) {
   // Standard deviations of the logarithm of the spread: of most edges, and of outliers.
   constexpr double kScatter = 0.05, kOutlierScatter = 0.2;
+  // Share of the outliers.
   constexpr double kOutlierShare = 0.1;
   // Likelihood of an edge that neither describes.
   constexpr double kMinLikelihood = 1e-4;
@@ -102,6 +107,7 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
   std::vector<double> spreads;
   for (const EdgeFit& fit : fits) spreads.push_back(std::log(fit.spread_px));
   const auto [least, most] = std::minmax_element(spreads.begin(), spreads.end());
+  // Number of spreads that are tried, between the least and the greatest of an edge.
   constexpr int kTriedSpreads = 200;
   const double first = *least, step = (*most - *least) / (kTriedSpreads - 1);
   std::vector<Likely> all;
@@ -145,6 +151,7 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges,
     total += a.weight, squares += a.weight * a.weight;
     a.value = std::abs(a.value - middle);
   }
+  // The standard deviation of a Gaussian over its median absolute deviation.
   constexpr double kSigmaFromMedian = 1.4826;
   // The median of Gaussian values has the error of a mean of 2 / pi as many values.
   const double many = total * total / squares * 2 / kPi;

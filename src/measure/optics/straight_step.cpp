@@ -12,6 +12,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Half the width of the profile of an edge, px.
 constexpr double kHalfWidthPx = 6;
 // Distance from the edge at which its two levels begin, px.
@@ -25,6 +28,7 @@ constexpr double kMinGradient = 4 * kMinHeightCodes / 2;
 constexpr double kMaxBendPx = 0.2;
 // Largest standard deviation of a level, as a share of the height of the step.
 constexpr double kMaxLevelDeviation = 0.08;
+// Least number of samples of a level.
 constexpr int kMinLevelSamples = 10;
 // Levels beyond these code values are clipped.
 constexpr double kDarkestCode = 4, kBrightestCode = 248;
@@ -153,6 +157,7 @@ class Profile {
   }
 
  private:
+  // Half the width of the profile and the width of its bins, px.
   static constexpr double kHalf = 4, kWide = 0.25;
   static constexpr int kBins = static_cast<int>(2 * kHalf / kWide);
   std::array<double, kBins> sums_{};

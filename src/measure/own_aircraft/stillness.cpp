@@ -21,8 +21,8 @@ constexpr double kMaxDifference = 40;
 constexpr float kBlack = 10;
 // Standard deviation of the blur of the mean differences, working pixels.
 constexpr double kDifferenceBlurPx = 1;
-// Noise of the differences: their quantile, with a least value in code values.
-constexpr std::size_t kNoiseQuantile = 10;  // a tenth
+// Noise of the differences: the quantile 1 / kNoiseQuantile, with a least value in code values.
+constexpr std::size_t kNoiseQuantile = 10;
 constexpr float kMinNoise = 0.6F;
 // Ratios between the two differences, beyond the noise, from which on a pixel is certainly
 // aircraft, certainly world, or probably aircraft. They were chosen on the virtual flights of

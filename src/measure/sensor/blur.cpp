@@ -13,7 +13,11 @@
 namespace airtruth::calibration {
 namespace {
 
-// Frames whose crops are kept, and the size of a crop, px: they bound memory to 45 MB.
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
+// Frames whose crops are kept, and the size of a crop, px: they bound memory to 300 x 448 x 336
+// bytes.
 constexpr std::size_t kMaxFrames = 300;
 constexpr int kCropWidth = 448;
 constexpr int kCropHeight = 336;
@@ -23,7 +27,8 @@ constexpr double kMinMovingSpeed = 4;
 constexpr double kMaxRestSpeedShare = 0.35;
 // Largest distance between the two, frames.
 constexpr std::size_t kMaxFramesApart = 4;
-// Number of pairs of a frame in motion and a frame at rest.
+// Largest and least number of pairs of a frame in motion and a frame at rest: the largest bounds
+// the time.
 constexpr std::size_t kMaxPairs = 60;
 constexpr std::size_t kMinPairs = 8;
 // Largest length of a blur that is tried, as a multiple of the motion in one frame interval.
@@ -58,6 +63,7 @@ cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   if (length_px < 0.05) return grey;
   const int half = static_cast<int>(std::ceil(length_px / 2)) + 2;
   cv::Mat kernel(2 * half + 1, 2 * half + 1, CV_32F, cv::Scalar(0));
+  // Points along the line.
   constexpr int kPoints = 64;
   for (int i = 0; i < kPoints; ++i) {
     const Pixel p = along * length_px * ((i + 0.5) / kPoints - 0.5);
@@ -94,6 +100,7 @@ std::optional<double> length_of(const cv::Mat& still,
 }  // namespace
 
 std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
+  // Half the length of the differentiator, frames.
   constexpr int kReach = 12;
   if (k < kReach || k + kReach >= places.size()) return std::nullopt;
   Pixel rate = Pixel::Zero();

@@ -13,6 +13,9 @@
 namespace airtruth::calibration {
 namespace {
 
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
 // Side of a block, px.
 constexpr int kSide = 12;
 // Number of brightnesses, of equal width in coded luma.
@@ -46,6 +49,7 @@ struct Statistics {
 // Statistics of a block after the best-fitting plane is subtracted. The plane has three degrees of
 // freedom and takes a little of the noise with it; the divisor n - 3 corrects for that.
 Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
+  // Middle of the block and number of its pixels.
   constexpr double kHalf = (kSide - 1) / 2.0;
   constexpr double kCount = kSide * kSide;
   double sum = 0, sum_x = 0, sum_y = 0, squares = 0;
@@ -142,6 +146,7 @@ LineFit line_fit(const std::vector<CurvePoint>& points, const LineFit* before) {
 // Texture only increases the measured variance. Points that lie above the curve by more than the
 // others therefore lose weight in each round; points below the curve keep theirs.
 NoiseCurve noise_curve(const std::vector<CurvePoint>& points) {
+  // Rounds of reweighting.
   constexpr int kRounds = 30;
   LineFit fit = line_fit(points, nullptr);
   for (int round = 1; round < kRounds; ++round) {

@@ -28,6 +28,7 @@ constexpr double kMaxShare = 1.2;
 // A low-pass filter with binomial weights. It removes what is faster than a third of the frame
 // rate, where the differentiator is no longer exact. NaN if a neighbour is NaN.
 double slow_part(const std::vector<double>& values, std::size_t k) {
+  // Binomial weights, whose sum is 256.
   constexpr std::array<double, 9> kWeights = {1, 8, 28, 56, 70, 56, 28, 8, 1};
   double sum = 0;
   for (std::size_t i = 0; i < kWeights.size(); ++i)
@@ -90,6 +91,7 @@ void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
 
 // A robust line through the origin: least squares with the weights of Geman and McClure (1985).
 Estimate line_through_origin(const Pairs& pairs) {
+  // Rounds of reweighting.
   constexpr int kRounds = 12;
   double slope = 0, error = 0, scale = 1e9;
   for (int round = 0; round < kRounds; ++round) {
