@@ -131,6 +131,27 @@ std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box
   return 1000 * std::atan2(from->cross(*to).norm(), from->dot(*to));
 }
 
+namespace {
+
+// Turns the sums over frames into means. The first frame counts for the curves alone.
+void divide_sums(std::int64_t after_first, Score& score) {
+  if (score.counted > 0) {
+    const double n = static_cast<double>(score.counted);
+    score.auc = divided(score.success, n);
+    divided(score.precision, n);
+    score.precision_20px = score.precision[20];
+    score.normalised_auc = divided(score.normalised, n);
+  }
+  if (after_first > 0) {
+    const double n = static_cast<double>(after_first);
+    score.average_overlap /= n;
+    score.success_50 /= n;
+    score.success_75 /= n;
+  }
+}
+
+}  // namespace
+
 Score score(std::span<const FramePair> frames, int width, int height) {
   Score score;
   score.frames = std::ssize(frames);
@@ -155,19 +176,7 @@ Score score(std::span<const FramePair> frames, int width, int height) {
     score.success_75 += shared > 0.75 ? 1 : 0;
   }
   offsets.write(score);
-  if (score.counted > 0) {
-    const double n = static_cast<double>(score.counted);
-    score.auc = divided(score.success, n);
-    divided(score.precision, n);
-    score.precision_20px = score.precision[20];
-    score.normalised_auc = divided(score.normalised, n);
-  }
-  if (after_first > 0) {
-    const double n = static_cast<double>(after_first);
-    score.average_overlap /= n;
-    score.success_50 /= n;
-    score.success_75 /= n;
-  }
+  divide_sums(after_first, score);
   return score;
 }
 

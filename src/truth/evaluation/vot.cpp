@@ -300,8 +300,11 @@ std::vector<Anchor> anchors_of(const VotTruth& truth, int step) {
   return anchors;
 }
 
-std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
-  if (lengths.empty()) return {0, 0};
+namespace {
+
+// The density of lengths at 0, 1, ... frames up to the longest, not normalised: a sum of Gaussians
+// whose width follows the rule of Silverman (1986), 1.06 sigma n^(-1/5), and is at least 1 frame.
+std::vector<double> density_of(std::span<const std::int64_t> lengths) {
   const double n = static_cast<double>(lengths.size());
   const double mean =
       std::accumulate(lengths.begin(),
@@ -322,6 +325,15 @@ std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
       const double z = (static_cast<double>(x) - static_cast<double>(l)) / width;
       density[x] += std::exp(-z * z / 2);
     }
+  return density;
+}
+
+}  // namespace
+
+std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
+  if (lengths.empty()) return {0, 0};
+  const std::vector<double> density = density_of(lengths);
+  const auto longest = std::ssize(density) - 1;
   const double all = std::accumulate(density.begin(), density.end(), 0.0);
   // Extends the range from the mode towards the denser side until it holds half of the density.
   auto low = std::max_element(density.begin(), density.end()) - density.begin();

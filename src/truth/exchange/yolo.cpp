@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -87,44 +88,58 @@ class YoloWriter : public IndexedWriter {
   WriteOptions options_;
 };
 
+// A YAML scalar without blanks around it and without its quotes.
+std::string bare(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  std::string word = text.substr(first, text.find_last_not_of(' ') - first + 1);
+  const char quote = word.front();
+  if (word.size() < 2 || (quote != '"' && quote != '\'') || word.back() != quote) return word;
+  // YAML's double quotes accept JSON's strings and a few more.
+  if (quote == '"') {
+    const auto string = nlohmann::json::parse(word, nullptr, false);
+    if (string.is_string()) return string.get<std::string>();
+  }
+  return word.substr(1, word.size() - 2);
+}
+
+// The names of a list in brackets on one line; empty if the line has no such list.
+std::optional<std::vector<std::string>> names_in_brackets(const std::string& line) {
+  const std::size_t open = line.find('[');
+  const std::size_t close = line.rfind(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+  std::vector<std::string> names;
+  const std::string list = line.substr(open + 1, close - open - 1) + ",";
+  for (std::size_t at = 0, comma; (comma = list.find(',', at)) != std::string::npos; at = comma + 1)
+    if (const std::string word = bare(list.substr(at, comma - at)); !word.empty())
+      names.push_back(word);
+  return names;
+}
+
+// The name on a line "- name" or "0: name"; empty if the line is neither.
+std::optional<std::string> listed_name(const std::string& line) {
+  if (line.starts_with("- ")) return bare(line.substr(2));
+  const std::size_t colon = line.find(':');
+  const bool is_numbered =
+      colon != std::string::npos && colon > 0 && line.find_first_not_of("0123456789") == colon;
+  if (!is_numbered) return std::nullopt;
+  return bare(line.substr(colon + 1));
+}
+
 // Reads the names of data.yaml: "  0: name", "- name" or "names: [a, b]".
 std::vector<std::string> names_of(const fs::path& file) {
   std::vector<std::string> names;
   if (!fs::exists(file)) return names;
-  const auto bare = [](const std::string& text) {
-    const std::size_t first = text.find_first_not_of(' ');
-    if (first == std::string::npos) return std::string();
-    std::string word = text.substr(first, text.find_last_not_of(' ') - first + 1);
-    const char quote = word.front();
-    if (word.size() < 2 || (quote != '"' && quote != '\'') || word.back() != quote) return word;
-    // YAML's double quotes accept JSON's strings and a few more.
-    if (quote == '"') {
-      const auto string = nlohmann::json::parse(word, nullptr, false);
-      if (string.is_string()) return string.get<std::string>();
-    }
-    return word.substr(1, word.size() - 2);
-  };
-  bool inside = false;
+  bool is_inside = false;
   for (const Line& line : lines_of(file)) {
     if (line.text.starts_with("names:")) {
-      inside = true;
-      const std::size_t open = line.text.find('[');
-      const std::size_t close = line.text.rfind(']');
-      if (open == std::string::npos || close == std::string::npos || close < open) continue;
-      std::string list = line.text.substr(open + 1, close - open - 1) + ",";
-      for (std::size_t at = 0, comma; (comma = list.find(',', at)) != std::string::npos;
-           at = comma + 1)
-        if (const std::string word = bare(list.substr(at, comma - at)); !word.empty())
-          names.push_back(word);
-      inside = false;
-    } else if (inside && line.text.starts_with("- ")) {
-      names.push_back(bare(line.text.substr(2)));
-    } else if (inside) {
-      const std::size_t colon = line.text.find(':');
-      const bool numbered = colon != std::string::npos && colon > 0 &&
-                            line.text.find_first_not_of("0123456789") == colon;
-      if (!numbered) break;
-      names.push_back(bare(line.text.substr(colon + 1)));
+      const auto list = names_in_brackets(line.text);
+      is_inside = !list;
+      if (list) names.insert(names.end(), list->begin(), list->end());
+    } else if (is_inside) {
+      const auto name = listed_name(line.text);
+      if (!name) break;
+      names.push_back(*name);
     }
   }
   return names;

@@ -191,11 +191,8 @@ LinearRgb Clouds::scattered(const Sample& sample, float height, float phase) con
   return sky_.sunlight() * sun + ambient;
 }
 
-LinearRgb Clouds::seen_through(const Vector3& direction, const LinearRgb& behind) const {
-  const float up = static_cast<float>(-direction.z());
-  LinearRgb colour = behind;
-  if (cover_ <= 0 || up < 0.012F) return colour;
-  add_cirrus(direction, colour);
+// Walks along a ray in steps that grow with the distance.
+Clouds::Crossed Clouds::crossed(const Vector3& direction, float up) const {
   const float north = static_cast<float>(direction.x());
   const float east = static_cast<float>(direction.y());
   const float phase = cloud_phase(static_cast<float>(direction.dot(sky_.sun_in_world())));
@@ -204,34 +201,50 @@ LinearRgb Clouds::seen_through(const Vector3& direction, const LinearRgb& behind
   const float jitter =
       unit(hash(static_cast<int>(north * 65536), static_cast<int>(east * 65536), seed_));
   t += jitter * std::max(28.0F, 0.010F * t);
-  float through = 1;
-  LinearRgb sum = LinearRgb::Zero();
-  float reach = 0;
-  while (t < end && through > 0.01F) {
+  Crossed all;
+  while (t < end && all.through > 0.01F) {
     const float step = std::max(28.0F, 0.010F * t);
     const float height_m = t * up - kBase_m;
-    Sample here = sample(t * north, t * east, height_m / kDepth_m);
-    if (here.density > 0) {
-      // At a large distance the fine noise is finer than the steps, so it fades to its mean.
-      const float fine = lerp(erosion(t * north, t * east, height_m), 0.5F, clamp01(t / 15000));
-      here.density = clamp01((here.density - 1.05F * (1 - here.density) * (fine - 0.22F)) * 1.4F);
-    }
+    const Sample here = eroded_sample(t, t * north, t * east, height_m);
     if (here.density <= 0.004F) {
       t += 1.5F * step;
       continue;
     }
     const float pass = std::exp(-kExtinction_per_m * here.density * step);
-    const float gain = through * (1 - pass);
-    sum += gain * scattered(here, height_m / kDepth_m, phase);
-    reach += gain * t;
-    through *= pass;
+    const float gain = all.through * (1 - pass);
+    all.light += gain * scattered(here, height_m / kDepth_m, phase);
+    all.reach_m += gain * t;
+    all.through *= pass;
     t += step;
   }
-  if (through > 0.995F) return colour;
-  const float opaque = 1 - through;
-  const float clear = std::exp(-reach / opaque / kHaze_m);
+  return all;
+}
+
+// The sample with its edges eroded by fine noise. At a large distance that noise is finer than the
+// steps, so it fades to its mean.
+Clouds::Sample Clouds::eroded_sample(float distance_m,
+                                     float north_m,
+                                     float east_m,
+                                     float height_m) const {
+  Sample here = sample(north_m, east_m, height_m / kDepth_m);
+  if (here.density > 0) {
+    const float fine = lerp(erosion(north_m, east_m, height_m), 0.5F, clamp01(distance_m / 15000));
+    here.density = clamp01((here.density - 1.05F * (1 - here.density) * (fine - 0.22F)) * 1.4F);
+  }
+  return here;
+}
+
+LinearRgb Clouds::seen_through(const Vector3& direction, const LinearRgb& behind) const {
+  const float up = static_cast<float>(-direction.z());
+  LinearRgb colour = behind;
+  if (cover_ <= 0 || up < 0.012F) return colour;
+  add_cirrus(direction, colour);
+  const Crossed clouds = crossed(direction, up);
+  if (clouds.through > 0.995F) return colour;
+  const float opaque = 1 - clouds.through;
+  const float clear = std::exp(-clouds.reach_m / opaque / kHaze_m);
   const float kept = clear * smoothstep(0.012F, 0.05F, up);
-  return colour * (1 - opaque * kept) + sum * kept;
+  return colour * (1 - opaque * kept) + clouds.light * kept;
 }
 
 // Streaks of ice, stretched along one wind direction.

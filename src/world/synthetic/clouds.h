@@ -34,9 +34,20 @@ class Clouds {
     float density = 0;
     float sunlit = 0;
   };
+  // What a ray meets on its way through the clouds.
+  struct Crossed {
+    // Share of the light behind the clouds that passes.
+    float through = 1;
+    // Light that the clouds scatter into the ray.
+    LinearRgb light = LinearRgb::Zero();
+    // Distance of the clouds times their opacity, metres.
+    float reach_m = 0;
+  };
+  Crossed crossed(const Vector3& direction, float up) const;
   void fill(double cover);
   void light_up();
   Sample sample(float north_m, float east_m, float height) const;
+  Sample eroded_sample(float distance_m, float north_m, float east_m, float height_m) const;
   float erosion(float north_m, float east_m, float height_m) const;
   LinearRgb scattered(const Sample& sample, float height, float phase) const;
   void add_cirrus(const Vector3& direction, LinearRgb& colour) const;

@@ -25,6 +25,16 @@ void require(bool good, std::string_view name, double value, std::string_view ex
     throw Error(fmt::format("virtual flight: {} is {}; expected {}", name, value, expected));
 }
 
+void check_lens(const FlightOptions& o) {
+  if (o.lens && !(o.lens->size() == lens::ImageSize{o.width, o.height}))
+    throw Error(
+        fmt::format("virtual flight: the lens is for {} x {} px; expected the picture's {} x {}",
+                    o.lens->size().width,
+                    o.lens->size().height,
+                    o.width,
+                    o.height));
+}
+
 const FlightOptions& validated(const FlightOptions& o) {
   require(o.width >= 16 && o.width <= 16384, "width", o.width, "16 to 16384 px");
   require(o.height >= 16 && o.height <= 16384, "height", o.height, "16 to 16384 px");
@@ -54,13 +64,7 @@ const FlightOptions& validated(const FlightOptions& o) {
   require(std::abs(o.roll_deg) <= 45, "roll", o.roll_deg, "-45 to 45 deg");
   require(o.noise >= 0 && o.noise <= 20, "noise", o.noise, "0 to 20");
   require(o.clutter >= 0 && o.clutter <= 1, "clutter", o.clutter, "0 to 1");
-  if (o.lens && !(o.lens->size() == lens::ImageSize{o.width, o.height}))
-    throw Error(
-        fmt::format("virtual flight: the lens is for {} x {} px; expected the picture's {} x {}",
-                    o.lens->size().width,
-                    o.lens->size().height,
-                    o.width,
-                    o.height));
+  check_lens(o);
   return o;
 }
 

@@ -58,6 +58,8 @@ class Ground {
   void paint(const Land& land);
   void plant(const Land& land, std::uint32_t seed);
   void build(std::uint32_t seed);
+  void build_village(int k, std::uint32_t seed);
+  void build_barn(std::uint32_t id);
   void make_levels();
   void find_peaks();
   float peak_m(float north_m, float east_m, float span_m) const;

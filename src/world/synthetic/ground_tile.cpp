@@ -21,6 +21,48 @@ std::uint32_t pack(const LinearRgb& albedo, float height_m) {
          byte(std::sqrt(albedo[2])) << 16 | byte(height_m / Ground::kHighest_m) << 24;
 }
 
+struct Tree {
+  float north_m, east_m, radius_m, height_m;
+  LinearRgb colour;
+};
+
+// The tree at a place, if one grows there; `id` is the place's random number.
+std::optional<Tree> tree_at(const Place& place, float north, float east, std::uint32_t id) {
+  if (place.track_m < 4.5F || place.river_m < 11) return std::nullopt;
+  float chance = 0.86F * place.wood + (place.field ? 0.0035F : 0.012F);
+  if (place.river_m < 40)
+    chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, place.river_m));
+  if (place.hedge && place.track_m < 11) chance = std::max(chance, 0.62F);
+  if (unit(mix(id + 1)) >= chance) return std::nullopt;
+  const float size = unit(mix(id + 2));
+  const LinearRgb green =
+      lerp(0.75F, 1.35F, unit(mix(id + 3))) * linear_rgb(0.062F, 0.082F, 0.030F);
+  return Tree{north, east, 2.0F + 2.6F * size, 4.0F + 6.5F * size, green};
+}
+
+// The trees of all planting cells, row by row.
+std::vector<std::vector<Tree>> trees_on(const Land& land, std::uint32_t seed) {
+  const int cells = static_cast<int>(kLand_m / kPlanting_m);
+  std::vector<std::vector<Tree>> rows(static_cast<std::size_t>(cells));
+  tbb::parallel_for(0, cells, [&](int j) {
+    for (int i = 0; i < cells; ++i) {
+      const std::uint32_t id = hash(i, j, seed);
+      const float north = (static_cast<float>(i) + unit(id)) * kPlanting_m;
+      const float east = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
+      if (const auto tree = tree_at(land.at(north, east), north, east, id))
+        rows[static_cast<std::size_t>(j)].push_back(*tree);
+    }
+  });
+  return rows;
+}
+
+LinearRgb roof_of(std::uint32_t id) {
+  const float tone = 0.8F + 0.45F * unit(mix(id + 9));
+  if (id % 7 == 0) return tone * linear_rgb(0.72F, 0.70F, 0.66F);
+  if (id % 7 == 1) return tone * linear_rgb(0.42F, 0.41F, 0.40F);
+  return tone * linear_rgb(0.44F, 0.235F, 0.145F);
+}
+
 }  // namespace
 
 Ground::Ground(double texel_m,
@@ -86,31 +128,7 @@ void Ground::paint(const Land& land) {
 
 // Plants woods, riverside trees, trees along tracks, and single holm oaks in the fields.
 void Ground::plant(const Land& land, std::uint32_t seed) {
-  struct Tree {
-    float north_m, east_m, radius_m, height_m;
-    LinearRgb colour;
-  };
-  const int cells = static_cast<int>(kLand_m / kPlanting_m);
-  std::vector<std::vector<Tree>> rows(static_cast<std::size_t>(cells));
-  tbb::parallel_for(0, cells, [&](int j) {
-    for (int i = 0; i < cells; ++i) {
-      const std::uint32_t id = hash(i, j, seed);
-      const float north = (static_cast<float>(i) + unit(id)) * kPlanting_m;
-      const float east = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
-      const Place place = land.at(north, east);
-      if (place.track_m < 4.5F || place.river_m < 11) continue;
-      float chance = 0.86F * place.wood + (place.field ? 0.0035F : 0.012F);
-      if (place.river_m < 40)
-        chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, place.river_m));
-      if (place.hedge && place.track_m < 11) chance = std::max(chance, 0.62F);
-      if (unit(mix(id + 1)) >= chance) continue;
-      const float size = unit(mix(id + 2));
-      const LinearRgb green =
-          lerp(0.75F, 1.35F, unit(mix(id + 3))) * linear_rgb(0.062F, 0.082F, 0.030F);
-      rows[static_cast<std::size_t>(j)].push_back(
-          {north, east, 2.0F + 2.6F * size, 4.0F + 6.5F * size, green});
-    }
-  });
+  const auto rows = trees_on(land, seed);
   const float up = static_cast<float>(std::max(-sun_.z(), 0.3));
   for (const auto& row : rows)
     for (const Tree& t : row) {
@@ -189,48 +207,44 @@ void Ground::house(float north_m,
 
 // Builds villages of tiled roofs around a few streets, and single barns.
 void Ground::build(std::uint32_t seed) {
-  constexpr int kVillages = 6;
+  constexpr int kVillages = 6, kBarns = 40;
+  for (int k = 0; k < kVillages; ++k) build_village(k, seed);
+  for (int k = 0; k < kBarns; ++k) build_barn(hash(k, 2, seed));
+}
+
+void Ground::build_village(int k, std::uint32_t seed) {
   constexpr int kHouses = 90;
-  const auto roof = [](std::uint32_t id) {
-    const float tone = 0.8F + 0.45F * unit(mix(id + 9));
-    if (id % 7 == 0) return LinearRgb(tone * linear_rgb(0.72F, 0.70F, 0.66F));
-    if (id % 7 == 1) return LinearRgb(tone * linear_rgb(0.42F, 0.41F, 0.40F));
-    return LinearRgb(tone * linear_rgb(0.44F, 0.235F, 0.145F));
-  };
-  for (int k = 0; k < kVillages; ++k) {
-    const std::uint32_t village = hash(k, 1, seed);
-    const float north = kLand_m * unit(village);
-    const float east = kLand_m * unit(mix(village));
-    const float street = 3.14F * unit(mix(village + 1));
-    const int houses = kHouses / 3 + static_cast<int>(kHouses * unit(mix(village + 2)));
-    for (int i = 0; i < houses; ++i) {
-      const std::uint32_t id = hash(i, k, seed + 1);
-      const float far_m = 30 + 150 * std::sqrt(unit(id)) * (0.4F + 0.6F * unit(mix(id + 1)));
-      const float angle = 6.2832F * unit(mix(id + 2));
-      // The houses stand along a grid of lanes 26 m apart.
-      const float u = 26 * std::round(far_m * std::cos(angle) * 1.5F / 26) + 5 * unit(mix(id + 3));
-      const float v = 17 * std::round(far_m * std::sin(angle) / 17);
-      const float x = north + std::cos(street) * u - std::sin(street) * v;
-      const float y = east + std::sin(street) * u + std::cos(street) * v;
-      house(x,
-            y,
-            street + (id % 3 == 0 ? 1.571F : 0.0F),
-            11 + 9 * unit(mix(id + 4)),
-            8 + 4 * unit(mix(id + 5)),
-            4.5F + 3 * unit(mix(id + 6)),
-            roof(id));
-    }
-    house(north, east, street, 9, 9, 12, roof(3));
+  const std::uint32_t village = hash(k, 1, seed);
+  const float north = kLand_m * unit(village);
+  const float east = kLand_m * unit(mix(village));
+  const float street = 3.14F * unit(mix(village + 1));
+  const int houses = kHouses / 3 + static_cast<int>(kHouses * unit(mix(village + 2)));
+  for (int i = 0; i < houses; ++i) {
+    const std::uint32_t id = hash(i, k, seed + 1);
+    const float far_m = 30 + 150 * std::sqrt(unit(id)) * (0.4F + 0.6F * unit(mix(id + 1)));
+    const float angle = 6.2832F * unit(mix(id + 2));
+    // The houses stand along a grid of lanes 26 m apart.
+    const float u = 26 * std::round(far_m * std::cos(angle) * 1.5F / 26) + 5 * unit(mix(id + 3));
+    const float v = 17 * std::round(far_m * std::sin(angle) / 17);
+    const float x = north + std::cos(street) * u - std::sin(street) * v;
+    const float y = east + std::sin(street) * u + std::cos(street) * v;
+    house(x,
+          y,
+          street + (id % 3 == 0 ? 1.571F : 0.0F),
+          11 + 9 * unit(mix(id + 4)),
+          8 + 4 * unit(mix(id + 5)),
+          4.5F + 3 * unit(mix(id + 6)),
+          roof_of(id));
   }
-  constexpr int kBarns = 40;
-  for (int k = 0; k < kBarns; ++k) {
-    const std::uint32_t id = hash(k, 2, seed);
-    const float angle = 3.14F * unit(mix(id + 1));
-    const float x = kLand_m * unit(mix(id + 2));
-    const float y = kLand_m * unit(mix(id + 3));
-    house(x, y, angle, 30 + 35 * unit(mix(id + 4)), 13, 5, roof(id % 3));
-    house(x + 30, y + 12, angle + 1.571F, 18, 10, 4.5F, roof(id));
-  }
+  house(north, east, street, 9, 9, 12, roof_of(3));
+}
+
+void Ground::build_barn(std::uint32_t id) {
+  const float angle = 3.14F * unit(mix(id + 1));
+  const float x = kLand_m * unit(mix(id + 2));
+  const float y = kLand_m * unit(mix(id + 3));
+  house(x, y, angle, 30 + 35 * unit(mix(id + 4)), 13, 5, roof_of(id % 3));
+  house(x + 30, y + 12, angle + 1.571F, 18, 10, 4.5F, roof_of(id));
 }
 
 void Ground::find_peaks() {

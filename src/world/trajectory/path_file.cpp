@@ -25,8 +25,9 @@ constexpr std::size_t kRequired = 4;
 constexpr double kLargest = 1e9;
 
 // The cell of each known column; npos where the header lacks the column.
-std::array<std::size_t, 7> columns_of(const std::string& header, const std::string& file) {
-  std::array<std::size_t, 7> place;
+using Places = std::array<std::size_t, 7>;
+Places columns_of(const std::string& header, const std::string& file) {
+  Places place;
   place.fill(std::string::npos);
   const auto names = cells_of(header);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -72,46 +73,59 @@ double unwrapped(double angle_deg, double before_deg) {
   return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
 }
 
+// The columns of a file: where each known column stands, and how many there are.
+struct Header {
+  Places place;
+  std::size_t columns = 0;
+};
+
+// Adds the values of one row, which must follow those before in time.
+void add_row(const std::vector<std::string>& cells,
+             const Header& header,
+             const Where& where,
+             Samples& samples) {
+  if (cells.size() > header.columns)
+    throw Error("has " + std::to_string(cells.size()) + " cells for " +
+                    std::to_string(header.columns) + " columns; expected one each",
+                where);
+  const auto value = [&](std::size_t column) {
+    const std::size_t place = header.place[column];
+    if (place == std::string::npos) return 0.0;
+    if (place >= cells.size()) throw Error("has no value for " + kColumns[column], where);
+    return number_of(cells[place], kColumns[column], where);
+  };
+  const double time = value(0);
+  if (!samples.times.empty() && time - samples.times.back() < kShortestStep_s)
+    throw Error("time_s is " + cells[header.place[0]] +
+                    ", not after the row before; expected times that increase",
+                where);
+  Vector3 angle(value(4), value(5), value(6));
+  if (!samples.angles.empty())
+    for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
+  samples.times.push_back(time);
+  // The values are read in this order, so that an error names the first bad column.
+  const double north = value(1);
+  const double east = value(2);
+  const double down = value(3);
+  samples.positions.emplace_back(north, east, down);
+  samples.angles.push_back(angle);
+}
+
 Samples read_samples(std::string_view text, const std::string& file) {
   std::istringstream lines{std::string(text)};
   std::string line;
   if (!std::getline(lines, line))
     throw Error("is empty; expected a header and at least two rows", {file});
   if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
-  const auto place = columns_of(line, file);
-  const std::size_t columns = cells_of(line).size();
+  const Header header{columns_of(line, file), cells_of(line).size()};
   Samples samples;
-  for (std::size_t i = 0; i < 3; ++i) samples.given[i] = place[kRequired + i] != std::string::npos;
+  for (std::size_t i = 0; i < 3; ++i)
+    samples.given[i] = header.place[kRequired + i] != std::string::npos;
   int number = 1;
   while (std::getline(lines, line)) {
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const auto cells = cells_of(line);
-    const Where where{file, number};
-    if (cells.size() > columns)
-      throw Error("has " + std::to_string(cells.size()) + " cells for " + std::to_string(columns) +
-                      " columns; expected one each",
-                  where);
-    const auto value = [&](std::size_t column) {
-      if (place[column] == std::string::npos) return 0.0;
-      if (place[column] >= cells.size()) throw Error("has no value for " + kColumns[column], where);
-      return number_of(cells[place[column]], kColumns[column], where);
-    };
-    const double time = value(0);
-    if (!samples.times.empty() && time - samples.times.back() < kShortestStep_s)
-      throw Error("time_s is " + cells[place[0]] +
-                      ", not after the row before; expected times that increase",
-                  where);
-    Vector3 angle(value(4), value(5), value(6));
-    if (!samples.angles.empty())
-      for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
-    samples.times.push_back(time);
-    // The values are read in this order, so that an error names the first bad column.
-    const double north = value(1);
-    const double east = value(2);
-    const double down = value(3);
-    samples.positions.emplace_back(north, east, down);
-    samples.angles.push_back(angle);
+    add_row(cells_of(line), header, {file, number}, samples);
   }
   if (samples.times.size() < 2)
     throw Error("holds " + std::to_string(samples.times.size()) + " rows; expected at least two",
