@@ -8,7 +8,8 @@
 
 namespace airtruth {
 
-// "scene.toml:12:3", "scene.toml", or "" where nothing is known.
+// The place as messages state it: "scene.toml:12:3" (file, line, column), "scene.toml" where the
+// line is not known, or "" where the file is not known. Error itself is in airtruth/error.h.
 std::string to_string(const Where& where);
 
 // Checks an invariant of the program. A false condition is a bug: the function throws

@@ -6,9 +6,15 @@
 
 namespace airtruth {
 
-// An advisory lock (flock) on a file, made where it is missing with the folders above it. Held
-// while one thread or process makes what others would make as well; the others wait. The kernel
-// drops it when the process dies. Error where the file cannot be made; Interrupted on stop.
+// An advisory lock (flock) on a file, for work that only one thread or process should do at a time,
+// for example filling a cache. The constructor creates the file and its folders where they are
+// missing and waits, checking ten times a second, until the lock is free. The destructor releases
+// the lock, and the kernel releases it when the process dies; the empty file stays. The constructor
+// throws Error where the file cannot be created or locked, and Interrupted where `stop` is
+// requested while it waits.
+//
+//   const WaitingLock lock(cache_folder() / "models" / "b737.lock", stop);
+//   if (!exists(result)) make(result);  // one process makes it, the others find it
 class WaitingLock {
  public:
   WaitingLock(const std::filesystem::path& file, const std::stop_token& stop);

@@ -12,8 +12,8 @@
 
 namespace airtruth {
 
-// Threads of its own, not oneTBB's: a job waits for a tracker in a child process, or limits oneTBB
-// while it renders, and the number of jobs that the user asks for is under way all the same
+// These are plain threads and not tasks of oneTBB. A job may wait for a tracker in a child process,
+// or limit oneTBB while it renders; even then as many jobs run as the user asked for
 // (docs/decisions/0022).
 void in_parallel(std::size_t count,
                  int jobs,

@@ -13,7 +13,8 @@
 namespace airtruth {
 namespace {
 
-// Waits until `count` reaches `wanted`; false after a minute, which stops a hang.
+// Waits until `count` reaches `wanted`. Returns false after a minute, so that a failure does not
+// hang.
 bool reaches(const std::atomic<int>& count, int wanted) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (count < wanted) {
@@ -39,7 +40,7 @@ TEST(InParallel, MakesEachCallOnceAndCountsThem) {
   for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(seen.at(i), static_cast<std::int64_t>(i) + 1);
 }
 
-// Each call waits for the seven others: fewer threads than asked for would wait for ever.
+// Each of the eight calls waits for the seven others: with fewer threads the test would time out.
 TEST(InParallel, HasAsManyCallsUnderWayAsItIsAskedForWhateverTheCores) {
   std::atomic<int> under_way = 0;
   std::atomic<bool> all_met = true;

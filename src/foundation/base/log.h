@@ -7,7 +7,7 @@
 
 namespace airtruth {
 
-// Passes a warning to the caller, where it has a function for warnings (Warn).
+// Passes a warning to the caller's function for warnings; does nothing where the caller gave none.
 inline void warn(const Warn& to, const std::string& message) {
   if (to) to(message);
 }

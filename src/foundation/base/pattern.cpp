@@ -18,7 +18,7 @@ bool same_letter(char a, char b, LetterCase letter_case) {
 bool matches(std::string_view pattern, std::string_view name, LetterCase letter_case) {
   std::size_t p = 0;
   std::size_t n = 0;
-  std::size_t star = std::string_view::npos;  // the last *, and where in the name it was met
+  std::size_t star = std::string_view::npos;  // the last * in the pattern, for backtracking
   std::size_t met = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] != '*' &&

@@ -6,9 +6,10 @@
 
 namespace airtruth {
 
-// A small fast generator whose values are the same on every machine (Steele, Lea and Flood 2014,
-// SplitMix64). Satisfies UniformRandomBitGenerator; prefer uniform() and normal(), since the
-// standard library's distributions differ between implementations.
+// SplitMix64 (Steele, Lea and Flood 2014): a small, fast generator of 64-bit numbers whose values
+// are the same on every machine. It satisfies UniformRandomBitGenerator, but uniform() and normal()
+// should be preferred, since the distributions of the standard library differ between
+// implementations.
 class Random {
  public:
   using result_type = std::uint64_t;
@@ -26,14 +27,17 @@ class Random {
   std::uint64_t state_;
 };
 
-// The seed of a scene. Each use of randomness draws from its own named stream, so that adding one
-// never changes another: Seed(1).stream("wind").
+// The seed of a scene. Each use of randomness draws from a stream with its own name, so that adding
+// a use does not change the others.
+//
+//   Random wind = Seed(1).stream("wind");
+//   Random noise = Seed(1).stream("noise", 42);  // of frame 42
 class Seed {
  public:
   explicit Seed(std::uint64_t value) : value_(value) {}
   Random stream(std::string_view name) const;
-  // A stream for one item of a series, for example one frame: the same whatever the order of the
-  // frames.
+  // The stream of one item of a series, for example one frame. It depends on the seed, the name and
+  // the index only, so that frames may be processed in any order.
   Random stream(std::string_view name, std::uint64_t index) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace airtruth {
 
-// Wall time since it was made.
+// The wall time since construction, in seconds, from a clock that never goes back.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -16,7 +16,8 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-// Adds the lifetime of its scope to a total that several threads share.
+// Adds the time from its construction to its destruction, in seconds, to a total that several
+// threads share.
 class Timed {
  public:
   explicit Timed(std::atomic<double>& total) : total_(total) {}

@@ -17,7 +17,8 @@ struct Registry {
   std::uint64_t last = 0;
 };
 
-// Never destroyed: threads may still be at work when static objects go.
+// The registry is never destroyed: other threads may still use it while static objects are
+// destroyed.
 Registry& registry() {
   static auto* const all = new Registry;
   return *all;
@@ -57,14 +58,15 @@ void Unfinished::finish(const std::function<void()>& step) {
 }
 
 void undo_unfinished() {
-  // A step that hangs (a disk that does not answer) must not keep the process alive.
+  // A step that hangs, for example on a disk that does not answer, must not keep the process alive.
+  // 0.3 s is chosen: a rename takes far less, and a user who pressed Ctrl-C does not notice it.
   constexpr std::chrono::milliseconds kLongestStep{300};
   Registry& all = registry();
   if (!all.mutex.try_lock_for(kLongestStep)) return;
   for (auto at = all.undo.rbegin(); at != all.undo.rend(); ++at) {
     try {
       at->second();
-    } catch (const std::exception&) {  // the others are undone all the same
+    } catch (const std::exception&) {  // a failure must not keep the others from being undone
     }
   }
 }

@@ -7,32 +7,38 @@
 
 namespace airtruth {
 
-// Owns something that must not outlive a process that ends in the middle of a step: a half-written
-// file or folder, or a child process. The destructor undoes it; where the process ends without
-// destructors, undo_unfinished() does. The class is thread-safe.
+// Registers something that must not stay when the process ends in the middle of a step: a
+// half-written file or folder, or a child process. A process that stops on a signal runs no
+// destructors, so it calls undo_unfinished() first. The class is thread-safe.
+//
+//   Unfinished part = Unfinished::path("dir/.a.part.mp4");
+//   ...                                                  // write the file
+//   part.finish([] { rename("dir/.a.part.mp4", "dir/a.mp4"); });
 class Unfinished {
  public:
-  // `undo` runs on another thread than the owner's, while the owner may still be at work; it must
-  // not throw. It is called at most once, and not after the destructor or finish() began.
+  // `undo` must not throw, and it must be safe while the owner still works, because
+  // undo_unfinished() calls it on another thread. The destructor forgets `undo` without calling it:
+  // in a process that goes on, the owner itself cleans up.
   explicit Unfinished(std::function<void()> undo);
-  // Removes the file, or the folder with all below it.
+  // `undo` removes the file, or the folder with everything below it.
   static Unfinished path(const std::filesystem::path& path);
 
   Unfinished(Unfinished&& other) noexcept;
   Unfinished& operator=(Unfinished&&) = delete;
   ~Unfinished();
 
-  // Runs the step that makes it whole (a rename) and forgets it. undo_unfinished() comes before the
-  // step or after, never in its midst. What the step throws passes through, and it stays
-  // unfinished.
+  // Runs the step that completes the work (a rename) and forgets `undo`. undo_unfinished() runs
+  // before the step or after it, never during it. Where the step throws, the exception passes
+  // through and the work stays unfinished.
   void finish(const std::function<void()>& step);
 
  private:
   std::uint64_t number_ = 0;
 };
 
-// Undoes everything that is unfinished. The process must end straight after it: every other thread
-// that begins or finishes a step from now on waits for ever.
+// Undoes everything that is unfinished, the newest first. It gives up after 0.3 s where another
+// thread is in a step that does not end. The caller must end the process straight after it: other
+// threads that begin or finish a step wait for ever.
 void undo_unfinished();
 
 }  // namespace airtruth

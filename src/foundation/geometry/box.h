@@ -11,8 +11,10 @@
 
 namespace airtruth {
 
-// The whole pixels that a box touches. Its edges are clamped to +-1,000,000 pixels, which is far
-// outside any picture.
+// The smallest box of whole pixels that contains `box`. Edges are clamped to +-1,000,000 pixels,
+// which is far outside any picture.
+//
+//   pixels_of({1.2, 0, 2.0, 1}) == {1, 0, 3, 1}
 inline PixelBox pixels_of(const Box& box) {
   const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
   const int x = bounded(std::floor(box.x));
@@ -35,7 +37,7 @@ inline PixelBox bounds(const PixelBox& a, const PixelBox& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
-// The bounds of the points that were added. They are empty before the first point.
+// The bounding box of points. It is empty before the first point.
 class BoxBounds {
  public:
   void add(const Pixel& p) {

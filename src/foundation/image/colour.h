@@ -19,9 +19,9 @@ using Rgb = std::array<float, 3>;
 float linear_from_srgb(float coded);
 float srgb_from_linear(float linear);
 
-// Y', Cb, Cr as code values (0..255, may be fractional) to coded R'G'B' (0..1 nominal; may exceed)
-// and back. For Matrix::kRgb the three are G, B, R. The pair is an exact inverse up to float
-// rounding.
+// Converts Y', Cb, Cr as code values (0..255, may be fractional) to coded R'G'B' (nominally 0..1,
+// values beyond are kept) and back. For Matrix::kRgb the three values are G, B, R. Each function is
+// the exact inverse of the other up to rounding to float.
 struct Ycc {
   float y = 0;
   float cb = 128;

@@ -11,12 +11,13 @@ namespace {
 
 constexpr int kCellColumns = 32;
 constexpr int kCellRows = 24;
-// The least difference at a cut: the mean over the picture, in code values.
-constexpr double kLeastOfCut = 6;
-// The least ratio of the difference at a cut to that of the frames around it.
-constexpr double kOverNeighbours = 3;
+// The least difference of a frame that begins a shot: the mean over the cells, in code values.
+constexpr double kMinCutDifferenceCodes = 6;
+// The least ratio of that difference to the difference of each neighbouring frame. Both limits are
+// chosen: they find the cuts of the looked-at clips (docs/realism.md, "Cuts") and no pan.
+constexpr double kMinRatioToNeighbours = 3;
 
-// The first pixel of a cell where `count` cells divide `size` pixels.
+// The first pixel of a cell where `count` cells share `size` pixels.
 int cell_begin(int cell, int count, int size) { return (cell * size + count - 1) / count; }
 
 }  // namespace
@@ -49,7 +50,7 @@ bool is_cut(std::span<const double> before, double here, std::span<const double>
   double around = 0;
   for (const double d : before) around = std::max(around, d);
   for (const double d : after) around = std::max(around, d);
-  return here >= kLeastOfCut && here > kOverNeighbours * around;
+  return here >= kMinCutDifferenceCodes && here > kMinRatioToNeighbours * around;
 }
 
 }  // namespace airtruth::image

@@ -32,7 +32,8 @@ TEST(Cuts, OneFrameThatDiffersIsACutAndAPanIsNone) {
 }
 
 TEST(Cuts, TheDifferenceIsOfMeansByCell) {
-  // 64 x 48: cells of 2 x 2 pixels. A checkerboard of single pixels is even in them.
+  // At 64 x 48 pixels a cell has 2 x 2 pixels, so a checkerboard of single pixels is uniform over
+  // cells.
   const auto picture = [](int even, int odd) {
     Picture p = make_picture(64, 48, {});
     for (int y = 0; y < 48; ++y)
@@ -46,7 +47,7 @@ TEST(Cuts, TheDifferenceIsOfMeansByCell) {
   EXPECT_NEAR(*differences.add(picture(120, 107)), 3.5, 1e-12);
 }
 
-// Cells of unequal widths (100 = 32 x 3.125) hold every pixel once.
+// The cells have unequal widths (100 = 32 x 3.125), and each pixel lies in exactly one cell.
 TEST(Cuts, EveryPixelIsInOneCell) {
   for (const int width : {5, 31, 32, 33, 100, 641}) {
     Picture one = make_picture(width, 30, {}), other = make_picture(width, 30, {});
@@ -56,7 +57,7 @@ TEST(Cuts, EveryPixelIsInOneCell) {
     }
     Differences differences;
     differences.add(one);
-    const double cells = std::min(width, 32) / 32.0;  // of a narrow picture some are empty
+    const double cells = std::min(width, 32) / 32.0;  // a narrow picture leaves some cells empty
     EXPECT_NEAR(*differences.add(other), 20 * cells, 1e-9) << width;
   }
 }

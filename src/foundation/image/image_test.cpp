@@ -22,7 +22,7 @@ TEST(ToneCurve, IsSrgbsUnlessItHasAnExponent) {
   const ToneCurve srgb;
   EXPECT_NEAR(srgb.linear_from_coded(0.5), 0.21404114, 1e-8);
   EXPECT_NEAR(srgb.coded_from_linear(0.18), 0.46135613, 1e-8);
-  // Its exponent is 2.4; the standard rounds where the line ends.
+  // The curve has the exponent 2.4. The standard rounds the place where the line ends.
   for (double coded = 0; coded <= 1; coded += 0.01)
     EXPECT_NEAR(ToneCurve{2.4}.linear_from_coded(coded), srgb.linear_from_coded(coded), 2e-6);
 }

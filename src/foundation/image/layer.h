@@ -19,23 +19,28 @@ struct LayerPixel {
 };
 
 struct Layer {
-  PixelBox patch{};                // where in the frame; width == 0 means an empty layer
-  std::vector<LayerPixel> pixels;  // patch.height rows of patch.width
-  std::vector<float>
-      depth_m;  // alpha-weighted mean distance from the camera; +inf where alpha is 0
+  // The position in the frame; width == 0 means an empty layer.
+  PixelBox patch{};
+  // patch.height rows of patch.width pixels.
+  std::vector<LayerPixel> pixels;
+  // The alpha-weighted mean distance from the camera; +inf where alpha is 0.
+  std::vector<float> depth_m;
 
-  // Per intruder i (in the scene's order), coverage after occlusion by nearer intruders; alpha is
-  // their sum.
-  std::vector<std::vector<float>>
-      coverage;  // [intruder][pixel]; an empty vector: nowhere in the patch
-  // Per intruder, the sum of the coverage it would have alone, over the patch and unclipped by the
-  // frame (pixels).
+  // coverage[i][pixel] is the coverage by intruder i (in the scene's order) after occlusion by
+  // nearer intruders; alpha is the sum over the intruders. An intruder that covers nothing in the
+  // patch has an empty vector.
+  std::vector<std::vector<float>> coverage;
+
+  // The areas below have one entry per intruder, in pixels. They are areas of the silhouette before
+  // any point spread, so that a difference between two of them is due to occlusion alone.
+  //
+  // Without occlusion, within the frame.
   std::vector<double> area_alone_in_frame_px;
-  std::vector<double> area_alone_px;  // the same, with what the frame cuts off counted too
-  // What is left of area_alone_in_frame_px behind nearer intruders, and of that again behind the
-  // own aircraft's mask. All four areas are of the silhouette itself, before any point spread, so
-  // that their differences are what hides it, and nothing else.
+  // Without occlusion, with the part beyond the frame's border.
+  std::vector<double> area_alone_px;
+  // The part of area_alone_in_frame_px that no nearer intruder hides.
   std::vector<double> area_seen_px;
+  // The part of area_seen_px that the own aircraft's mask leaves free.
   std::vector<double> area_free_px;
 
   bool empty() const { return patch.width == 0; }
@@ -45,8 +50,8 @@ struct Layer {
   }
 };
 
-// The own-aircraft mask: 1 byte a pixel, 0 = own aircraft (nothing can be seen through it), 255 =
-// free.
+// The own-aircraft mask, one byte per pixel: 0 where the own aircraft hides the scene, 255 where
+// the view is free.
 struct Mask {
   int width = 0;
   int height = 0;

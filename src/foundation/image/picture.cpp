@@ -13,7 +13,7 @@ Plane make_plane(int width, int height) {
   Plane plane;
   plane.width = width;
   plane.height = height;
-  plane.stride = (width + 31) / 32 * 32;  // rows start where the vector units like them
+  plane.stride = (width + 31) / 32 * 32;  // rows begin at multiples of 32 bytes for AVX2
   plane.samples = std::make_unique_for_overwrite<std::uint8_t[]>(
       static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(height));
   return plane;
@@ -57,7 +57,7 @@ Picture Picture::clone() const {
 
 namespace {
 
-// How many halvings lie between the luma plane and plane i.
+// The base-2 logarithm of the width of the luma plane over the width of plane i.
 int log2_width(const Picture& picture, std::size_t i) {
   return i > 0 ? log2_chroma_width(picture.colour.chroma) : 0;
 }

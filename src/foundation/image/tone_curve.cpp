@@ -12,12 +12,12 @@ namespace {
 constexpr double kOffset = 0.055;
 
 struct Toe {
-  double gamma, end, slope;  // coded below `end` is slope times linear
+  double gamma, end, slope;  // below the coded value `end`, coded = slope * linear
 };
 
 Toe toe_of(double gamma) {
-  if (gamma == 0) return {2.4, 0.04045, 12.92};  // as the standard rounds them
-  const double end = kOffset / (gamma - 1);      // where line and power touch
+  if (gamma == 0) return {2.4, 0.04045, 12.92};  // IEC 61966-2-1 rounds them so
+  const double end = kOffset / (gamma - 1);      // where the line is tangent to the power
   return {gamma, end, end / std::pow((end + kOffset) / (1 + kOffset), gamma)};
 }
 

@@ -18,15 +18,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kLargestInteger =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-// Bytes of a value that a message repeats.
-constexpr std::size_t kMostShownBytes = 40;
+// A message repeats at most this many bytes of a value. Chosen: it keeps a message on one line.
+constexpr std::size_t kMaxShownBytes = 40;
 
-// A list or an object is not written out: its depth is the stranger's, and writing it is recursive.
+// A list or an object is not written out. Writing is recursive, and the file sets the depth, so a
+// hostile file could exhaust the stack.
 std::string shown(const Json& value) {
   if (value.is_array()) return "a list";
   if (value.is_object()) return "an object";
   if (!value.is_string()) return value.dump();
-  const std::string start = value.get_ref<const std::string&>().substr(0, kMostShownBytes);
+  const std::string start = value.get_ref<const std::string&>().substr(0, kMaxShownBytes);
   return Json(start).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -88,7 +88,7 @@ TEST(JsonObject, ErrorsNameTheLineOfTheKeyWhereTheTextIsGiven) {
   }
 }
 
-// A list of a million levels is refused without a stack as deep as it.
+// A list with a million levels is refused without recursion to that depth.
 TEST(JsonObject, DeepValuesAreRefused) {
   constexpr std::size_t kDepth = 1'000'000;
   const std::string text = "{\"a\": " + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
