@@ -100,10 +100,27 @@ void report_count(const calibration::Calibration& found, const std::string& out,
                              found.clips > 1 ? "the clips' own" : "the clip's own"));
 }
 
+// The options but the mask, which the caller keeps.
+calibration::Options options_of(const CalibrateArguments& arguments,
+                                const lens::ImageSize& size,
+                                Context& context) {
+  Console& console = context.console();
+  calibration::Options options;
+  if (!arguments.lens.empty()) options.lens = lens::read_calibration(arguments.lens, size);
+  options.altitude_m = arguments.altitude_m;
+  options.heading_deg = arguments.heading_deg;
+  options.tone.gamma = arguments.gamma;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("measuring", done, total);
+  };
+  return options;
+}
+
 void calibrate(const CalibrateArguments& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
-  Console& console = context.console();
   const calibration::CameraProfile profile = arguments.profile.empty()
                                                  ? calibration::usual_camera()
                                                  : calibration::camera_profile(arguments.profile);
@@ -115,20 +132,11 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   calibration::check_size(profile, info.width, info.height);
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  calibration::Options options;
-  if (!arguments.lens.empty())
-    options.lens = lens::read_calibration(arguments.lens, {info.width, info.height});
+  calibration::Options options = options_of(arguments, {info.width, info.height}, context);
   options.own_aircraft = mask ? &*mask : nullptr;
-  options.altitude_m = arguments.altitude_m;
-  options.heading_deg = arguments.heading_deg;
-  options.tone.gamma = arguments.gamma;
-  options.warn = console.warn();
-  options.stop = context.stop;
-  options.progress = [&](std::int64_t done, std::int64_t total) {
-    console.progress("measuring", done, total);
-  };
   std::vector<calibration::Calibration> measured;
   for (const fs::path& clip : clips) measured.push_back(calibration::calibrate(clip, options));
+  Console& console = context.console();
   console.end_progress();
   const calibration::Calibration found =
       calibration::with_profile(calibration::joined(std::move(measured)), profile);
@@ -163,6 +171,29 @@ void find_mask(const MaskArguments& arguments, Context& context) {
                              100.0 * double(own) / double(mask.free.size())));
 }
 
+// The options that say what a clip alone does not show.
+void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
+  command->add_option(
+      "--lens", arguments.lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
+  command->add_option("--mask", arguments.mask, "Own-aircraft mask: black = own aircraft");
+  command
+      ->add_option("--altitude",
+                   arguments.altitude_m,
+                   "Height of the camera above the ground, m: for the extinction")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--heading",
+                   arguments.heading_deg,
+                   "Where the camera looks in the first frame, degrees from north: for the sun")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  command
+      ->add_option("--gamma",
+                   arguments.gamma,
+                   "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
+      ->check(CLI::Range(1.2, 3.0));
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, Context& context) {
@@ -172,25 +203,7 @@ void add_calibrate(CLI::App& app, Context& context) {
   command->add_option("VIDEO", arguments->videos, "The video, or several of one camera")
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
-  command->add_option(
-      "--lens", arguments->lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
-  command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
-  command
-      ->add_option("--altitude",
-                   arguments->altitude_m,
-                   "Height of the camera above the ground, m: for the extinction")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--heading",
-                   arguments->heading_deg,
-                   "Where the camera looks in the first frame, degrees from north: for the sun")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
-  command
-      ->add_option("--gamma",
-                   arguments->gamma,
-                   "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
-      ->check(CLI::Range(1.2, 3.0));
+  add_known_facts(command, *arguments);
   command->add_option("--profile",
                       arguments->profile,
                       "Known camera, for what the clip cannot tell; none: the clip's values alone "

@@ -31,6 +31,28 @@ std::string number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
+std::string one_pass_line(const experiment::ScoredTracker& tracker, const evaluation::Score& s) {
+  const auto interval = tracker.intervals.at("auc");
+  return fmt::format(
+      "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
+      "{:>10.1f} {:>10.1f}",
+      tracker.name,
+      std::count_if(tracker.sequences.begin(),
+                    tracker.sequences.end(),
+                    [](const auto& sequence) { return sequence.score.has_value(); }),
+      s.auc,
+      interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
+      s.precision_20px,
+      s.normalised_auc,
+      s.average_overlap,
+      s.success_50,
+      s.centre_mean_px,
+      number(tracker.angle_mrad, 1),
+      tracker.lost,
+      s.frames_per_second,
+      s.frames_per_second_median);
+}
+
 void print_one_pass(const experiment::Assessment& assessment, Console& console) {
   console.result(fmt::format(
       "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
@@ -47,29 +69,8 @@ void print_one_pass(const experiment::Assessment& assessment, Console& console) 
       "lost",
       "frames/s",
       "median"));
-  for (const experiment::ScoredTracker& tracker : assessment.trackers) {
-    if (!tracker.overall) continue;
-    const evaluation::Score& s = *tracker.overall;
-    const auto interval = tracker.intervals.at("auc");
-    console.result(fmt::format(
-        "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
-        "{:>10.1f} {:>10.1f}",
-        tracker.name,
-        std::count_if(tracker.sequences.begin(),
-                      tracker.sequences.end(),
-                      [](const auto& sequence) { return sequence.score.has_value(); }),
-        s.auc,
-        interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
-        s.precision_20px,
-        s.normalised_auc,
-        s.average_overlap,
-        s.success_50,
-        s.centre_mean_px,
-        number(tracker.angle_mrad, 1),
-        tracker.lost,
-        s.frames_per_second,
-        s.frames_per_second_median));
-  }
+  for (const experiment::ScoredTracker& tracker : assessment.trackers)
+    if (tracker.overall) console.result(one_pass_line(tracker, *tracker.overall));
 }
 
 void print_vot(const experiment::Assessment& assessment, Console& console) {
@@ -155,6 +156,26 @@ void run_evaluate(Evaluate arguments, Context& context) {
   if (agreement) print_agreement(*agreement, arguments.against, console);
 }
 
+// The options that change what is measured.
+void add_measure_options(CLI::App* command, Evaluate& arguments) {
+  command
+      ->add_option("--origin",
+                   arguments.options.origin_px,
+                   "What the results call the first pixel: 0 (default) or 1")
+      ->check(CLI::Range(0, 1));
+  command
+      ->add_option("--eao-range",
+                   arguments.eao_range,
+                   "Lengths over which VOT's expected average overlap is taken, frames (default: "
+                   "by the data set's own lengths)")
+      ->expected(2)
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_flag("--speed-until-loss",
+                    arguments.options.until_loss,
+                    "Frames per second without the frames from the first loss on, where some "
+                    "trackers answer at once");
+}
+
 }  // namespace
 
 void add_evaluate(CLI::App& app, Context& context) {
@@ -167,22 +188,7 @@ void add_evaluate(CLI::App& app, Context& context) {
       ->add_option(
           "--out,-o", arguments->out, "Folder for evaluation.json, the tables and report.html")
       ->required();
-  command
-      ->add_option("--origin",
-                   arguments->options.origin_px,
-                   "What the results call the first pixel: 0 (default) or 1")
-      ->check(CLI::Range(0, 1));
-  command
-      ->add_option("--eao-range",
-                   arguments->eao_range,
-                   "Lengths over which VOT's expected average overlap is taken, frames (default: "
-                   "by the data set's own lengths)")
-      ->expected(2)
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_flag("--speed-until-loss",
-                    arguments->options.until_loss,
-                    "Frames per second without the frames from the first loss on, where some "
-                    "trackers answer at once");
+  add_measure_options(command, *arguments);
   command->add_option("--against",
                       arguments->against,
                       "Another evaluation.json: how far do the two rankings agree?");

@@ -14,6 +14,8 @@ namespace {
 constexpr int kAcross = 56;  // blocks along the longer side
 constexpr double kLeastShare = 0.06;
 constexpr double kLeastSeparation = 2.2;
+// Least number of blocks for a covariance of four features. Chosen by judgement.
+constexpr std::size_t kMinBlocks = 40;
 
 using Feature = Eigen::Vector4d;  // luma, Cb, Cr, texture
 
@@ -64,6 +66,51 @@ bool is_sky(const std::vector<Sample>& samples, const Vector3& up) {
   return d[0] + 0.5 * d[1] - 3 * d[3] > 0;
 }
 
+// Mean and standard deviation of luma over the block of `side` pixels at (x0, y0), and the chroma
+// at its middle.
+Feature feature_of(const image::Picture& picture, int x0, int y0, int side) {
+  double sum = 0, squares = 0;
+  for (int y = y0; y < y0 + side; y += 2)
+    for (int x = x0; x < x0 + side; x += 2) {
+      const double v = picture.planes[0].row(y)[x];
+      sum += v, squares += v * v;
+    }
+  const int samples_along = (side + 1) / 2;
+  const double n = double(samples_along) * samples_along;
+  const double mean = sum / n;
+  Feature f(mean, 0, 0, std::sqrt(std::max(0.0, squares / n - mean * mean)));
+  if (picture.plane_count == 3) {
+    const int cx = (x0 + side / 2) >> image::log2_chroma_width(picture.colour.chroma);
+    const int cy = (y0 + side / 2) >> image::log2_chroma_height(picture.colour.chroma);
+    f[1] = picture.planes[1].row(cy)[cx] - 128.0;
+    f[2] = picture.planes[2].row(cy)[cx] - 128.0;
+  }
+  return f;
+}
+
+// A plane that parts the picture, in radians, with the value of parted().
+struct Parting {
+  double value = 0, pitch = 0, roll = 0;
+};
+
+// The plane that parts the picture best: a grid over all attitudes, and a refinement of its best
+// point down to 0.02 degrees.
+Parting best_parting(const std::vector<Sample>& samples) {
+  Parting best;
+  const auto look = [&](double pitch, double roll) {
+    const double value = parted(samples, up_of(pitch, roll));
+    if (value > best.value) best = {value, pitch, roll};
+  };
+  for (double p = -48; p <= 48; p += 4)
+    for (double r = -88; r <= 92; r += 6) look(radians(p), radians(r));
+  for (double step = 2; step > 0.02; step *= 0.6) {
+    const double p0 = best.pitch, r0 = best.roll;
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) look(p0 + radians(step) * i, r0 + radians(1.5 * step) * j);
+  }
+  return best;
+}
+
 }  // namespace
 
 Quaternion cam_from_level(const Vector3& up_in_cam) {
@@ -94,45 +141,15 @@ HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_airc
 
 std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& picture) const {
   std::vector<Sample> samples;
-  const int sx = image::log2_chroma_width(picture.colour.chroma);
-  const int sy = image::log2_chroma_height(picture.colour.chroma);
-  for (const Block& b : blocks_) {
-    double sum = 0, squares = 0;
-    for (int y = b.y; y < b.y + step_; y += 2)
-      for (int x = b.x; x < b.x + step_; x += 2) {
-        const double v = picture.planes[0].row(y)[x];
-        sum += v, squares += v * v;
-      }
-    const int samples_along = (step_ + 1) / 2;
-    const double n = double(samples_along) * samples_along;
-    const double mean = sum / n;
-    Feature f(mean, 0, 0, std::sqrt(std::max(0.0, squares / n - mean * mean)));
-    if (picture.plane_count == 3) {
-      const int cx = (b.x + step_ / 2) >> sx;
-      const int cy = (b.y + step_ / 2) >> sy;
-      f[1] = picture.planes[1].row(cy)[cx] - 128.0;
-      f[2] = picture.planes[2].row(cy)[cx] - 128.0;
-    }
-    samples.push_back({b.ray, f});
-  }
-  if (samples.size() < 40) return std::nullopt;
-  double best = 0, pitch = 0, roll = 0;
-  const auto look = [&](double p, double r) {
-    const double value = parted(samples, up_of(p, r));
-    if (value > best) best = value, pitch = p, roll = r;
-  };
-  for (double p = -48; p <= 48; p += 4)
-    for (double r = -88; r <= 92; r += 6) look(radians(p), radians(r));
-  for (double step = 2; step > 0.02; step *= 0.6) {
-    const double p0 = pitch, r0 = roll;
-    for (int i = -2; i <= 2; ++i)
-      for (int j = -2; j <= 2; ++j) look(p0 + radians(step) * i, r0 + radians(1.5 * step) * j);
-  }
-  if (std::sqrt(best) < kLeastSeparation) return std::nullopt;
-  Vector3 up = up_of(pitch, roll);
+  for (const Block& b : blocks_) samples.push_back({b.ray, feature_of(picture, b.x, b.y, step_)});
+  if (samples.size() < kMinBlocks) return std::nullopt;
+  const Parting best = best_parting(samples);
+  if (std::sqrt(best.value) < kLeastSeparation) return std::nullopt;
+  Vector3 up = up_of(best.pitch, best.roll);
   if (!is_sky(samples, up)) up = -up;
   const HorizonEdge edge = horizon_edge(picture, lens_, mask(), up);
-  return Found{edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best), edge.sharpness};
+  return Found{
+      edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best.value), edge.sharpness};
 }
 
 HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,

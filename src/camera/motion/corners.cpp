@@ -99,6 +99,38 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
   return chosen;
 }
 
+namespace {
+
+// Pyramidal Lucas-Kanade from `corners` to `moved`, with the guess that `moved` holds or from the
+// corners' own places. Returns for each corner whether it was found.
+std::vector<unsigned char> tracked(const Pyramid& from,
+                                   const Pyramid& to,
+                                   const std::vector<cv::Point2f>& corners,
+                                   std::vector<cv::Point2f>& moved,
+                                   int levels,
+                                   bool guessed) {
+  // The search for one corner ends after 10 rounds, or once it moves by less than 0.03 px.
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.03);
+  // Least eigenvalue of the normal matrix, OpenCV's default.
+  constexpr double kMinEigenvalue = 1e-4;
+  std::vector<unsigned char> found;
+  std::vector<float> unused;
+  cv::calcOpticalFlowPyrLK(from,
+                           to,
+                           corners,
+                           moved,
+                           found,
+                           unused,
+                           {kWindowPx, kWindowPx},
+                           levels,
+                           enough,
+                           guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
+                           kMinEigenvalue);
+  return found;
+}
+
+}  // namespace
+
 std::vector<bool> follow(const Pyramid& from,
                          const Pyramid& to,
                          const cv::Mat& allowed,
@@ -108,34 +140,10 @@ std::vector<bool> follow(const Pyramid& from,
                          const Options& options) {
   std::vector<bool> good(corners.size(), false);
   if (corners.empty()) return good;
-  const cv::Size window(kWindowPx, kWindowPx);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.03);
+  const auto found =
+      tracked(from, to, corners, moved, guessed ? kGuessedLevels : kPyramidLevels, guessed);
   std::vector<cv::Point2f> back = corners;
-  std::vector<unsigned char> found;
-  std::vector<unsigned char> found_back;
-  std::vector<float> unused;
-  cv::calcOpticalFlowPyrLK(from,
-                           to,
-                           corners,
-                           moved,
-                           found,
-                           unused,
-                           window,
-                           guessed ? kGuessedLevels : kPyramidLevels,
-                           enough,
-                           guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
-                           1e-4);
-  cv::calcOpticalFlowPyrLK(to,
-                           from,
-                           moved,
-                           back,
-                           found_back,
-                           unused,
-                           window,
-                           kBackLevels,
-                           enough,
-                           cv::OPTFLOW_USE_INITIAL_FLOW,
-                           1e-4);
+  const auto found_back = tracked(to, from, moved, back, kBackLevels, true);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const cv::Point2f& p = moved[i];
     const bool inside = p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(allowed.cols - 1) &&

@@ -47,42 +47,46 @@ std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
   return text;
 }
 
+namespace {
+
+FrameMotion motion_of(const std::vector<std::string>& cells, bool is_rotation, const Where& where) {
+  const std::size_t expected = is_rotation ? kRotationCells : kCells;
+  if (cells.size() != expected)
+    throw Error(fmt::format("has {} cells; expected {}", cells.size(), expected), where);
+  FrameMotion m;
+  const double frame = finite_number(cells[0], where);
+  const double inliers = finite_number(cells[expected - 3], where);
+  if (std::abs(frame) > 1e15 || std::abs(inliers) > 1e9) throw Error("a count is too large", where);
+  m.frame = static_cast<std::int64_t>(frame);
+  m.time_s = finite_number(cells[1], where);
+  if (is_rotation) {
+    const auto q = [&](std::size_t i) { return finite_number(cells[2 + i], where); };
+    m.rotation = Quaternion(q(0), q(1), q(2), q(3));
+    if (std::abs(m.rotation->norm() - 1) > 1e-6)
+      throw Error("qw,qx,qy,qz is no rotation; expected a unit quaternion", where);
+  } else {
+    for (std::size_t i = 0; i < 9; ++i)
+      m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
+          finite_number(cells[2 + i], where);
+  }
+  m.inliers = static_cast<int>(inliers);
+  m.rms_px = finite_number(cells[expected - 2], where);
+  m.state = state_of(cells[expected - 1], where);
+  return m;
+}
+
+}  // namespace
+
 std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& file) {
   std::istringstream lines{std::string(text)};
   std::string line;
   if (!std::getline(lines, line) || (line != kHeader && line != kRotationHeader))
     throw Error(std::string("does not begin with ") + kHeader + " or " + kRotationHeader,
                 {file.string(), 1});
-  const bool rotations = line == kRotationHeader;
-  const std::size_t expected = rotations ? kRotationCells : kCells;
+  const bool is_rotation = line == kRotationHeader;
   std::vector<FrameMotion> motion;
-  for (int row = 2; std::getline(lines, line); ++row) {
-    const Where where{file.string(), row};
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != expected)
-      throw Error(fmt::format("has {} cells; expected {}", cells.size(), expected), where);
-    FrameMotion m;
-    const double frame = finite_number(cells[0], where);
-    const double inliers = finite_number(cells[expected - 3], where);
-    if (std::abs(frame) > 1e15 || std::abs(inliers) > 1e9)
-      throw Error("a count is too large", where);
-    m.frame = static_cast<std::int64_t>(frame);
-    m.time_s = finite_number(cells[1], where);
-    if (rotations) {
-      const auto q = [&](std::size_t i) { return finite_number(cells[2 + i], where); };
-      m.rotation = Quaternion(q(0), q(1), q(2), q(3));
-      if (std::abs(m.rotation->norm() - 1) > 1e-6)
-        throw Error("qw,qx,qy,qz is no rotation; expected a unit quaternion", where);
-    } else {
-      for (std::size_t i = 0; i < 9; ++i)
-        m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
-            finite_number(cells[2 + i], where);
-    }
-    m.inliers = static_cast<int>(inliers);
-    m.rms_px = finite_number(cells[expected - 2], where);
-    m.state = state_of(cells[expected - 1], where);
-    motion.push_back(m);
-  }
+  for (int row = 2; std::getline(lines, line); ++row)
+    motion.push_back(motion_of(cells_of(line), is_rotation, {file.string(), row}));
   return motion;
 }
 

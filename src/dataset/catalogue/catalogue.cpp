@@ -141,6 +141,47 @@ void refuse_same_names(const Catalogue& catalogue) {
       throw Error("two sequences are named '" + listed->name + "'", listed->where);
 }
 
+// The parts from which sequences are made: backgrounds, aircraft and trajectories.
+void add_parts(const TableReader& root, Catalogue& catalogue) {
+  for (const TableReader& table : root.tables("background",
+                                              scene::with_camera_tables({"name",
+                                                                         "video",
+                                                                         "flight",
+                                                                         "mask",
+                                                                         "first_frame",
+                                                                         "lens",
+                                                                         "camera",
+                                                                         "motion",
+                                                                         "light"},
+                                                                        {"realism"})))
+    catalogue.backgrounds.push_back(background_from(table));
+  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
+    catalogue.aircraft.push_back(
+        {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
+  for (const TableReader& table : root.tables(
+           "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
+    catalogue.trajectories.push_back(trajectory_from(table));
+  const std::string file = catalogue.file.string();
+  refuse_twice(catalogue.backgrounds, "background", file);
+  refuse_twice(catalogue.aircraft, "aircraft", file);
+  refuse_twice(catalogue.trajectories, "trajectory", file);
+}
+
+// The rules by which sequences are made from the parts.
+void add_rules(const TableReader& root, Catalogue& catalogue) {
+  for (const TableReader& table :
+       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(listed_from(table, catalogue));
+  for (const TableReader& table :
+       root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
+    catalogue.rules.emplace_back(product_from(table, catalogue));
+  for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
+  if (catalogue.rules.empty())
+    throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
+                {catalogue.file.string()});
+  refuse_same_names(catalogue);
+}
+
 }  // namespace
 
 Catalogue read_catalogue(const fs::path& file) {
@@ -174,38 +215,8 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);
   catalogue.slurm = slurm_in(root);
-  for (const TableReader& table : root.tables("background",
-                                              scene::with_camera_tables({"name",
-                                                                         "video",
-                                                                         "flight",
-                                                                         "mask",
-                                                                         "first_frame",
-                                                                         "lens",
-                                                                         "camera",
-                                                                         "motion",
-                                                                         "light"},
-                                                                        {"realism"})))
-    catalogue.backgrounds.push_back(background_from(table));
-  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
-    catalogue.aircraft.push_back(
-        {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
-  for (const TableReader& table : root.tables(
-           "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
-    catalogue.trajectories.push_back(trajectory_from(table));
-  refuse_twice(catalogue.backgrounds, "background", file.string());
-  refuse_twice(catalogue.aircraft, "aircraft", file.string());
-  refuse_twice(catalogue.trajectories, "trajectory", file.string());
-  for (const TableReader& table :
-       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
-    catalogue.rules.emplace_back(listed_from(table, catalogue));
-  for (const TableReader& table :
-       root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
-    catalogue.rules.emplace_back(product_from(table, catalogue));
-  for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
-  if (catalogue.rules.empty())
-    throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
-                {file.string()});
-  refuse_same_names(catalogue);
+  add_parts(root, catalogue);
+  add_rules(root, catalogue);
   return catalogue;
 }
 

@@ -69,17 +69,44 @@ std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
   return indices;
 }
 
-Film film_of(const sequence::Finished& finished, std::size_t most, const std::stop_token& stop) {
-  const auto& frames = finished.truth.frames;
+namespace {
+
+// The frames of a sequence that its film shows.
+struct Selection {
+  // For each frame: whether it is a still, and whether it is in the loop.
+  std::vector<bool> is_still, is_in_loop;
+  // The frame with the largest box, and the last one with a box; empty if none has a box.
+  std::optional<std::size_t> poster, last_seen;
+};
+
+Selection selected_frames(const std::vector<annotation::Frame>& frames, std::size_t most_stills) {
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (first_box(frames[i])) seen.push_back(i);
-  std::vector<std::size_t> in_loop_indices;
-  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop_indices.push_back(seen[k]);
-  const std::vector<bool> in_loop = chosen(frames.size(), in_loop_indices);
-  const auto largest = largest_frame(frames);
-  std::vector<bool> is_still = chosen(frames.size(), thinned(frames.size(), most));
-  if (largest) is_still[*largest] = true;
+  std::vector<std::size_t> in_loop;
+  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop.push_back(seen[k]);
+  Selection selected;
+  selected.is_in_loop = chosen(frames.size(), in_loop);
+  selected.is_still = chosen(frames.size(), thinned(frames.size(), most_stills));
+  selected.poster = largest_frame(frames);
+  if (selected.poster) selected.is_still[*selected.poster] = true;
+  if (!seen.empty()) selected.last_seen = seen.back();
+  return selected;
+}
+
+Film::Still still_of(const image::Picture& picture,
+                     const annotation::Frame& truth,
+                     const std::vector<std::string>& ids) {
+  const image::Rgb8 small =
+      drawing::small_copy(image::rgb8_from_picture(picture), Film::kStillWidth);
+  return {truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
+}
+
+}  // namespace
+
+Film film_of(const sequence::Finished& finished, std::size_t most, const std::stop_token& stop) {
+  const auto& frames = finished.truth.frames;
+  const Selection selected = selected_frames(frames, most);
   const std::vector<std::string> ids = sequence::intruder_ids(finished.truth);
   Film film;
   std::vector<image::Rgb8> squares;
@@ -88,19 +115,14 @@ Film film_of(const sequence::Finished& finished, std::size_t most, const std::st
     if (stop.stop_requested()) throw Interrupted();
     const auto frame = reader.next();
     if (!frame) {
-      if (seen.empty() || i > seen.back()) break;
+      if (!selected.last_seen || i > *selected.last_seen) break;
       throw Error("holds fewer frames than its truth", {finished.video.string()});
     }
-    if (is_still[i]) {
-      if (i == largest) film.poster = film.stills.size();
-      film.stills.push_back(
-          {frames[i].frame,
-           video::jpeg_of(
-               drawing::small_copy(image::rgb8_from_picture(frame->picture), Film::kStillWidth),
-               kStillQuality),
-           marked(frames[i], ids)});
+    if (selected.is_still[i]) {
+      if (i == selected.poster) film.poster = film.stills.size();
+      film.stills.push_back(still_of(frame->picture, frames[i], ids));
     }
-    if (!in_loop[i]) continue;
+    if (!selected.is_in_loop[i]) continue;
     const PixelBox box = *first_box(frames[i]);
     film.contrasts.push_back(drawing::contrast(frame->picture, box));
     squares.push_back(

@@ -164,54 +164,58 @@ Json film_json(const Film& film) {
   return stills;
 }
 
-Json json_of(const Portrait& portrait, const fs::path& page) {
-  Json files = Json::array();
-  const auto beside_page = [&](const fs::path& path) {
-    return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
-  };
-  const fs::path folder = beside_page(portrait.folder);
-  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+// The mean contrast over the frames of the film; null without any.
+Json mean_contrast(const Film& film) {
+  if (film.contrasts.empty()) return {};
+  double sum = 0;
+  for (const double value : film.contrasts) sum += value;
+  return rounded(sum / static_cast<double>(film.contrasts.size()), 0.1);
+}
+
+Json intruders_json(const Portrait& portrait) {
   Json intruders = Json::array();
   for (const Portrait::Intruder& intruder : portrait.intruders)
     intruders.push_back(series_of(intruder));
-  double contrast = 0;
-  for (const double value : portrait.film.contrasts) contrast += value;
-  return {
-      {"name", portrait.facts.name},
-      {"background", fs::path(portrait.facts.background).filename().string()},
-      {"aircraft", portrait.facts.categories},
-      {"frames", portrait.facts.frames},
-      {"seconds", rounded(portrait.duration_s, 0.01)},
-      {"width", portrait.width},
-      {"height", portrait.height},
-      {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
-      {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
-      {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
-      {"motion_model", portrait.motion_model},
-      {"visible", portrait.frames_by_state[0]},
-      {"hidden", portrait.frames_by_state[1]},
-      {"contrast",
-       portrait.film.contrasts.empty()
-           ? Json()
-           : Json(rounded(contrast / static_cast<double>(portrait.film.contrasts.size()), 0.1))},
-      {"loop_frames", portrait.film.loop_frames},
-      {"loop_side", portrait.film.loop_side},
-      {"stills", film_json(portrait.film)},
-      {"poster", portrait.film.poster},
-      {"ids", portrait.ids},
-      {"video",
-       plays_in_browsers(portrait.video) ? Json(beside_page(portrait.video).generic_string())
-                                         : Json()},
-      {"intruders", intruders},
-      {"camera", camera_of(portrait)},
-      {"files", files}};
+  return intruders;
 }
 
-}  // namespace
+// A path as the page links to it.
+fs::path beside(const fs::path& page, const fs::path& path) {
+  return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
+}
 
-void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
-  check_output_file(out, options.overwrite);
-  const LabelledSet labelled(set);
+Json json_of(const Portrait& portrait, const fs::path& page) {
+  Json files = Json::array();
+  const fs::path folder = beside(page, portrait.folder);
+  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+  return {{"name", portrait.facts.name},
+          {"background", fs::path(portrait.facts.background).filename().string()},
+          {"aircraft", portrait.facts.categories},
+          {"frames", portrait.facts.frames},
+          {"seconds", rounded(portrait.duration_s, 0.01)},
+          {"width", portrait.width},
+          {"height", portrait.height},
+          {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+          {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
+          {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
+          {"motion_model", portrait.motion_model},
+          {"visible", portrait.frames_by_state[0]},
+          {"hidden", portrait.frames_by_state[1]},
+          {"contrast", mean_contrast(portrait.film)},
+          {"loop_frames", portrait.film.loop_frames},
+          {"loop_side", portrait.film.loop_side},
+          {"stills", film_json(portrait.film)},
+          {"poster", portrait.film.poster},
+          {"ids", portrait.ids},
+          {"video",
+           plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
+                                             : Json()},
+          {"intruders", intruders_json(portrait)},
+          {"camera", camera_of(portrait)},
+          {"files", files}};
+}
+
+std::vector<Portrait> portraits_of(const LabelledSet& labelled, const ReportOptions& options) {
   std::vector<Portrait> portraits(labelled.names().size());
   const std::size_t stills = std::clamp(kMostStills / std::max<std::size_t>(1, portraits.size()),
                                         kLeastStillsOfOne,
@@ -224,37 +228,37 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
       },
       options.progress,
       options.stop);
-  Totals totals;
-  Json sequences = Json::array();
-  for (const Portrait& portrait : portraits) {
-    totals.add(portrait);
-    sequences.push_back(json_of(portrait, out));
-  }
-  Json card = Json::object();
-  for (const auto& [key, text] : card_of(set, portraits)) card[key] = text;
+  return portraits;
+}
+
+// The name on the card, or the name of the folder.
+std::string title_of(const Json& card, const fs::path& set) {
+  if (card.contains("name")) return card.at("name").get<std::string>();
   const fs::path named = fs::absolute(set).lexically_normal();
-  const std::string title = card.contains("name")  ? card.at("name").get<std::string>()
-                            : named.has_filename() ? named.filename().string()
-                                                   : named.parent_path().filename().string();
-  const Json data = {{"title", title},
-                     {"frames", totals.frames},
-                     {"states", totals.by_state},
-                     {"without_box", totals.without_box},
-                     {"missing", labelled.missing()},
-                     {"frames_with_intruder", totals.frames_with_intruder},
-                     {"negative_sequences", totals.negative_sequences},
-                     {"classes", totals.boxes_by_class},
-                     {"centres",
-                      {{"columns", Portrait::kCellColumns},
-                       {"rows", Portrait::kCellRows},
-                       {"counts", totals.centres}}},
-                     {"histograms",
-                      {{"range_m", totals.range_m.json()},
-                       {"size_px", totals.size_px.json()},
-                       {"azimuth_deg", totals.azimuth_deg.json()},
-                       {"contrast", totals.contrast.json()}}},
-                     {"card", card},
-                     {"sequences", sequences}};
+  return named.has_filename() ? named.filename().string() : named.parent_path().filename().string();
+}
+
+// The counts over all sequences, as the page reads them.
+Json json_of(const Totals& totals) {
+  return {{"frames", totals.frames},
+          {"states", totals.by_state},
+          {"without_box", totals.without_box},
+          {"frames_with_intruder", totals.frames_with_intruder},
+          {"negative_sequences", totals.negative_sequences},
+          {"classes", totals.boxes_by_class},
+          {"centres",
+           {{"columns", Portrait::kCellColumns},
+            {"rows", Portrait::kCellRows},
+            {"counts", totals.centres}}},
+          {"histograms",
+           {{"range_m", totals.range_m.json()},
+            {"size_px", totals.size_px.json()},
+            {"azimuth_deg", totals.azimuth_deg.json()},
+            {"contrast", totals.contrast.json()}}}};
+}
+
+// The pictures of all films, under the names by which the page finds them.
+std::vector<html::PageBlob> pictures_of(const std::vector<Portrait>& portraits) {
   std::vector<html::PageBlob> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
     const Film& film = portraits[i].film;
@@ -263,11 +267,33 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
     if (!film.loop_jpeg.empty())
       pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
   }
+  return pictures;
+}
+
+}  // namespace
+
+void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
+  check_output_file(out, options.overwrite);
+  const LabelledSet labelled(set);
+  const std::vector<Portrait> portraits = portraits_of(labelled, options);
+  Totals totals;
+  Json sequences = Json::array();
+  for (const Portrait& portrait : portraits) {
+    totals.add(portrait);
+    sequences.push_back(json_of(portrait, out));
+  }
+  Json card = Json::object();
+  for (const auto& [key, text] : card_of(set, portraits)) card[key] = text;
+  Json data = json_of(totals);
+  data["title"] = title_of(card, set);
+  data["missing"] = labelled.missing();
+  data["card"] = card;
+  data["sequences"] = sequences;
   write_file(out,
              html::page_of("airtruth data set",
                            html::page_body(),
                            data.dump(-1, ' ', false, Json::error_handler_t::replace),
-                           pictures,
+                           pictures_of(portraits),
                            html::page_js()));
 }
 

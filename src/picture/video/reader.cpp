@@ -80,6 +80,7 @@ struct Reader::State {
 
   void open_input();
   void open_codec();
+  void describe_stream(const AVStream& stream);
   void describe(const AVFrame& first);
   // Fills `packet`. Returns a negative number at the end, as libav does.
   int read_packet();
@@ -152,6 +153,10 @@ void Reader::State::open_codec() {
   packet.reset(av_packet_alloc());
   frame.reset(av_frame_alloc());
   info.codec = decoder->name;
+  describe_stream(stream);
+}
+
+void Reader::State::describe_stream(const AVStream& stream) {
   info.time_base = rational(stream.time_base);
   const AVRational average =
       stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;

@@ -159,6 +159,7 @@ struct Writer::State {
   void open();
   void open_codec();
   void set_codec_options(AVDictionary** settings) const;
+  FramePtr filled_frame(const Picture& picture);
   void encode(const AVFrame* frame);
   void write_image(const Picture& picture) const;
 };
@@ -301,6 +302,32 @@ Writer::~Writer() {
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
+// A frame for the encoder, in the stored colour model.
+FramePtr Writer::State::filled_frame(const Picture& picture) {
+  FramePtr out(av_frame_alloc());
+  out->format = codec->pix_fmt;
+  out->width = info.width;
+  out->height = info.height;
+  out->color_range = codec->color_range;
+  out->colorspace = codec->colorspace;
+  check_av(av_frame_get_buffer(out.get(), 0), "out of memory");
+  if (picture.colour == stored) {
+    fill_frame(*out, picture);
+  } else if (picture.colour.matrix != Matrix::kRgb && options.format == Format::kAvi &&
+             picture.colour.range == Range::kLimited) {
+    fill_frame(*out, with_full_range(picture, stored));
+  } else if (picture.colour.matrix == Matrix::kRgb) {
+    fill_frame(*out, converted(picture, stored));
+  } else {
+    Picture same = picture.clone();
+    same.colour = stored;
+    fill_frame(
+        *out,
+        stored.chroma == picture.colour.chroma ? std::move(same) : converted(picture, stored));
+  }
+  return out;
+}
+
 void Writer::write(const Frame& frame) {
   State& s = *state_;
   check(frame.picture.width == s.info.width && frame.picture.height == s.info.height,
@@ -310,27 +337,7 @@ void Writer::write(const Frame& frame) {
     ++s.count;
     return;
   }
-  const FramePtr out(av_frame_alloc());
-  out->format = s.codec->pix_fmt;
-  out->width = s.info.width;
-  out->height = s.info.height;
-  out->color_range = s.codec->color_range;
-  out->colorspace = s.codec->colorspace;
-  s.check_av(av_frame_get_buffer(out.get(), 0), "out of memory");
-  if (frame.picture.colour == s.stored) {
-    fill_frame(*out, frame.picture);
-  } else if (frame.picture.colour.matrix != Matrix::kRgb && s.options.format == Format::kAvi &&
-             frame.picture.colour.range == Range::kLimited) {
-    fill_frame(*out, with_full_range(frame.picture, s.stored));
-  } else if (frame.picture.colour.matrix == Matrix::kRgb) {
-    fill_frame(*out, converted(frame.picture, s.stored));
-  } else {
-    Picture same = frame.picture.clone();
-    same.colour = s.stored;
-    fill_frame(*out,
-               s.stored.chroma == frame.picture.colour.chroma ? std::move(same)
-                                                              : converted(frame.picture, s.stored));
-  }
+  const FramePtr out = s.filled_frame(frame.picture);
   if (s.count == 0) s.first_pts = frame.pts;
   std::int64_t pts = s.options.format == Format::kAvi ? s.count : frame.pts - s.first_pts;
   if (pts <= s.last_pts) pts = s.last_pts + 1;

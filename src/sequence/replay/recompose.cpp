@@ -105,6 +105,34 @@ std::vector<std::string> truth_faults(const Finished& sequence,
   return faults;
 }
 
+// What is computed again for one frame.
+struct PaintedAgain {
+  const video::Frame& background;
+  const Moment& moment;
+  const Painted& painted;
+};
+
+// What differs between a stored frame and the one that is computed again: truth, masks, picture.
+std::vector<std::string> frame_faults(const Finished& sequence,
+                                      const World& world,
+                                      const annotation::Frame& truth,
+                                      const PaintedAgain& frame,
+                                      const image::Picture& stored,
+                                      const image::Mask* own_aircraft) {
+  // The measured motion is the input of both; all else is computed again.
+  annotation::Frame again = frame_truth(
+      world, frame.background, {truth.motion_state, truth.shake}, frame.moment, frame.painted);
+  if (!sequence.has_covered_boxes) as_older_truth(again);
+  std::vector<std::string> faults =
+      truth_faults(sequence, truth, again, frame.painted.layer, own_aircraft);
+  const scene::OutputVideo format = sequence.scene->output.video;
+  if (format == scene::OutputVideo::kPng) return faults;  // sRGB, rounded on the way
+  const std::string found =
+      picture_fault(frame.background.picture, stored, truth, format == scene::OutputVideo::kMkv);
+  if (!found.empty()) faults.push_back(found);
+  return faults;
+}
+
 video::Reader background_of(const scene::Scene& scene) {
   video::ReaderOptions options;
   options.first_frame = scene.background.first_frame;
@@ -127,7 +155,6 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   const image::Mask* mask_ptr = mask ? &*mask : nullptr;
   const auto painter = make_painter(scene, world, mask_ptr, {});
   AmbientEstimator ambient(scene.light, tone_of(scene.camera_model), mask_ptr);
-  const scene::OutputVideo format = scene.output.video;
   Recomposition result;
   const auto fault = [&](const annotation::Frame& truth, const std::string& what) {
     result.faults.push_back("frame " + std::to_string(truth.frame) + " " + what);
@@ -147,17 +174,10 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
     if (!is_compared && !painter->is_in_order()) continue;
     const Painted painted = painter->paint(before->picture, moment, light);
     if (!is_compared) continue;
-    // The measured motion is the input of both; all else is computed again.
-    annotation::Frame again =
-        frame_truth(world, *before, {truth.motion_state, truth.shake}, moment, painted);
-    if (!sequence.has_covered_boxes) as_older_truth(again);
     ++result.compared;
-    for (const std::string& what : truth_faults(sequence, truth, again, painted.layer, mask_ptr))
+    for (const std::string& what :
+         frame_faults(sequence, world, truth, {*before, moment, painted}, after->picture, mask_ptr))
       fault(truth, what);
-    if (format == scene::OutputVideo::kPng) continue;  // sRGB, rounded on the way
-    const std::string found =
-        picture_fault(before->picture, after->picture, truth, format == scene::OutputVideo::kMkv);
-    if (!found.empty()) fault(truth, found);
   }
   return result;
 }

@@ -32,47 +32,63 @@ struct Clocks {
 
 // The sixth stage, after those of FrameMaker. write: picture, truth and masks. Frames come in
 // order.
-void write(const Work& work, Outputs& outputs, Tally& tally) {
+void write_frame(const Work& work, Outputs& outputs, Tally& tally) {
   outputs.write(work.frame, work.truth, work.masks);
   add_frame(tally, work.frame, work.moved.motion.state, work.truth);
 }
+
+// The stages as the pipeline calls them: each is timed, and none works on after a stop.
+class Stages {
+ public:
+  Stages(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks, Tally& tally)
+      : maker_(maker), outputs_(outputs), options_(options), clocks_(clocks), tally_(tally) {}
+
+  bool is_stopped() const { return options_.stop.stop_requested(); }
+
+  WorkPtr decode(tbb::flow_control& control) const {
+    const Timed timed(clocks_.read);
+    WorkPtr work = maker_.decode();
+    if (!work) control.stop();
+    return work;
+  }
+  WorkPtr locate(WorkPtr work) const {
+    const Timed timed(clocks_.move);
+    maker_.locate(*work);
+    return work;
+  }
+  WorkPtr draw(WorkPtr work) const {
+    if (is_stopped()) return work;
+    maker_.draw(*work);
+    clocks_.render += work->painted.render_s;
+    return work;
+  }
+  WorkPtr compose(WorkPtr work) const {
+    if (is_stopped()) return work;
+    const Timed timed(clocks_.composite);
+    maker_.compose(*work);
+    maker_.describe(*work);
+    return work;
+  }
+  void write(const WorkPtr& work) const {
+    if (is_stopped()) return;  // a frame that was not painted is not written
+    const Timed timed(clocks_.write);
+    write_frame(*work, outputs_, tally_);
+    if (options_.progress) options_.progress({tally_.frames, maker_.info().frame_count_estimate});
+  }
+
+ private:
+  FrameMaker& maker_;
+  Outputs& outputs_;
+  const Options& options_;
+  Clocks& clocks_;
+  Tally& tally_;
+};
 
 // All frames through the six stages, as many at a time as there are threads; memory is bounded by
 // the frames in flight.
 Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks) {
   Tally tally;
-  const auto stopped = [&] { return options.stop.stop_requested(); };
-  const auto decode_stage = [&](tbb::flow_control& control) {
-    const Timed timed(clocks.read);
-    WorkPtr work = maker.decode();
-    if (!work) control.stop();
-    return work;
-  };
-  const auto locate_stage = [&](WorkPtr work) {
-    const Timed timed(clocks.move);
-    maker.locate(*work);
-    return work;
-  };
-  const auto draw_stage = [&](WorkPtr work) {
-    if (stopped()) return work;
-    maker.draw(*work);
-    clocks.render += work->painted.render_s;
-    return work;
-  };
-  const auto compose_stage = [&](WorkPtr work) {
-    if (stopped()) return work;
-    const Timed timed(clocks.composite);
-    maker.compose(*work);
-    maker.describe(*work);
-    return work;
-  };
-  const auto write_stage = [&](const WorkPtr& work) {
-    if (stopped()) return;  // a frame that was not painted is not written
-    const Timed timed(clocks.write);
-    write(*work, outputs, tally);
-    if (options.progress) options.progress({tally.frames, maker.info().frame_count_estimate});
-  };
-
+  const Stages stages(maker, outputs, options, clocks, tally);
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
   // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
@@ -81,15 +97,21 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
   const auto in_order = tbb::filter_mode::serial_in_order;
   const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
   const auto compose_mode = maker.composes_in_order() ? in_order : draw_mode;
+  const auto stage = [](tbb::filter_mode mode, const auto& run) {
+    return tbb::make_filter<WorkPtr, WorkPtr>(mode, run);
+  };
   arena.execute([&] {
-    tbb::parallel_pipeline(in_flight,
-                           tbb::make_filter<void, WorkPtr>(in_order, decode_stage) &
-                               tbb::make_filter<WorkPtr, WorkPtr>(in_order, locate_stage) &
-                               tbb::make_filter<WorkPtr, WorkPtr>(draw_mode, draw_stage) &
-                               tbb::make_filter<WorkPtr, WorkPtr>(compose_mode, compose_stage) &
-                               tbb::make_filter<WorkPtr, void>(in_order, write_stage));
+    tbb::parallel_pipeline(
+        in_flight,
+        tbb::make_filter<void, WorkPtr>(
+            in_order, [&](tbb::flow_control& control) { return stages.decode(control); }) &
+            stage(in_order, [&](WorkPtr work) { return stages.locate(std::move(work)); }) &
+            stage(draw_mode, [&](WorkPtr work) { return stages.draw(std::move(work)); }) &
+            stage(compose_mode, [&](WorkPtr work) { return stages.compose(std::move(work)); }) &
+            tbb::make_filter<WorkPtr, void>(in_order,
+                                            [&](const WorkPtr& work) { stages.write(work); }));
   });
-  if (stopped()) throw Interrupted();
+  if (stages.is_stopped()) throw Interrupted();
   return tally;
 }
 

@@ -188,6 +188,39 @@ std::optional<PixelBox> search_bounds(const Moment& moment) {
   return all;
 }
 
+namespace {
+
+// The motion of an actor during the exposure; none if the shutter is instant.
+Twist twist_of(const World& world,
+               const Actor& actor,
+               const std::optional<trajectory::State>& state,
+               double time_s) {
+  if (!state || world.shutter.is_instant()) return {};
+  return {state->velocity_in_world_mps,
+          turning(actor.path, time_s, [](const trajectory::State& then, double) {
+            return then.world_from_body;
+          })};
+}
+
+// Where a camera with the given shake stands, looks and moves.
+projection::Sight sight_of(const World& world,
+                           const trajectory::State& camera,
+                           double time_s,
+                           const Shake& shake) {
+  const Rigid world_from_cam = world_from_shaken_cam(camera, shake, 0);
+  projection::Sight sight{&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
+  if (world.shutter.is_instant()) return sight;
+  sight.shutter = world.shutter;
+  sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
+  sight.camera = {camera.velocity_in_world_mps,
+                  turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
+                    return world_from_shaken_cam(state, shake, dt_s).rotation;
+                  })};
+  return sight;
+}
+
+}  // namespace
+
 Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
   const auto camera = world.camera.at(time_s);
   if (!camera)
@@ -198,26 +231,11 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
   moment.frame = frame;
   moment.time_s = time_s;
   moment.camera = *camera;
-  const Rigid world_from_cam = world_from_shaken_cam(*camera, shake, 0);
-  moment.sight = {&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
-  if (!world.shutter.is_instant()) {
-    moment.sight.shutter = world.shutter;
-    moment.sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
-    moment.sight.camera = {
-        camera->velocity_in_world_mps,
-        turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
-          return world_from_shaken_cam(state, shake, dt_s).rotation;
-        })};
-  }
+  moment.sight = sight_of(world, *camera, time_s, shake);
   for (const Actor& actor : world.actors) {
     const auto state = actor.path.at(time_s);
     moment.states.push_back(state);
-    Twist twist;
-    if (state && !world.shutter.is_instant())
-      twist = {state->velocity_in_world_mps,
-               turning(actor.path, time_s, [](const trajectory::State& then, double) {
-                 return then.world_from_body;
-               })};
+    const Twist twist = twist_of(world, actor, state, time_s);
     moment.twists.push_back(twist);
     moment.boxes.push_back(
         state ? projection::exact_box(

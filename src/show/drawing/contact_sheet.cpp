@@ -100,6 +100,38 @@ void draw_inset(cv::Mat& tile,
           colour);
 }
 
+// Outlines the visible intruders. Returns their outlines, in tile pixels.
+std::vector<PixelBox> outline_intruders(cv::Mat& canvas,
+                                        const annotation::Frame& truth,
+                                        double scale) {
+  std::vector<PixelBox> boxes;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const PixelBox v = *annotation::box_to_show(truth.intruders[i]);
+    outline(
+        canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
+    boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
+  }
+  return boxes;
+}
+
+// Draws an enlarged inset of each visible intruder where it hides neither a box nor another inset.
+void draw_insets(cv::Mat& canvas,
+                 const image::Picture& picture,
+                 const annotation::Frame& truth,
+                 const std::vector<PixelBox>& boxes) {
+  const int side = boxes.size() > 2 ? canvas.rows / 4 : canvas.rows * 2 / 5;
+  std::vector<PixelBox> insets;
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+    if (!truth.intruders[i].visible_box_px) continue;
+    const auto place = inset_place(canvas, side, boxes[seen++], boxes, insets);
+    if (!place) continue;
+    insets.push_back(*place);
+    draw_inset(canvas, picture, truth.intruders[i], *place, intruder_colour(i));
+  }
+}
+
 // The picture with a line of text below it.
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
   const double scale = static_cast<double>(kTileWidthPx) / picture.width;
@@ -111,24 +143,8 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
                               scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
   view(small).copyTo(canvas);
-  std::vector<PixelBox> boxes;
-  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
-    if (!truth.intruders[i].visible_box_px) continue;
-    const PixelBox v = *annotation::box_to_show(truth.intruders[i]);
-    outline(
-        canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
-    boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
-  }
-  const int side = boxes.size() > 2 ? height / 4 : height * 2 / 5;
-  std::vector<PixelBox> insets;
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
-    if (!truth.intruders[i].visible_box_px) continue;
-    const auto place = inset_place(canvas, side, boxes[seen++], boxes, insets);
-    if (!place) continue;
-    insets.push_back(*place);
-    draw_inset(canvas, picture, truth.intruders[i], *place, intruder_colour(i));
-  }
+  const std::vector<PixelBox> boxes = outline_intruders(canvas, truth, scale);
+  draw_insets(canvas, picture, truth, boxes);
   text(tile,
        fmt::format("frame {}   {:.2f} s{}",
                    truth.frame,
