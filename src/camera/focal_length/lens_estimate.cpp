@@ -12,22 +12,31 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr double kFarShare =
-    0.09;                        // of the image's width: corners have moved so far, a pair is made
-constexpr int kMostFrames = 40;  // of a pair, apart
-constexpr std::size_t kMostPairs = 40;
-constexpr std::size_t kFewestPairs = 4;
-constexpr int kFewestPoints = 30;
+// The limits below are chosen by judgement, but for kMaxMisfitRatio (docs/lenses.md).
+// A pair of frames is used when the median corner has moved by this share of the image's width: a
+// smaller turn says little about the lens.
+constexpr double kMinCornerShiftShare = 0.09;
+// The largest number of frames between the two of a pair.
+constexpr int kMaxPairSpanFrames = 40;
+constexpr std::size_t kMaxPairs = 40;
+constexpr std::size_t kMinPairs = 4;
+// The least number of corners that are tracked through a pair.
+constexpr int kMinPairCorners = 30;
 constexpr double kOutlierPx = 2.5;
-constexpr double kShortest = 0.25;  // focal lengths that are tried, in widths of the image
+// The shortest and longest focal length that is tried, in widths of the image.
+constexpr double kShortest = 0.25;
 constexpr double kLongest = 6.0;
-constexpr double kFits = 1.02;  // of the least mean squared misfit: a lens that fits as well
+// A lens fits as well as the best where its mean squared misfit is below this multiple of the
+// least.
+constexpr double kMaxMisfitRatio = 1.02;
 constexpr double kIntervalStep = 1.05;
-constexpr double kMostSigma = 0.12;  // of the focal length, for an estimate that is certain
-constexpr double kMostOff = 0.25;    // the same of the longest focal length that fits as well
+// The limits of a certain estimate, as shares of the focal length: its uncertainty, and the excess
+// of the longest focal length that fits as well.
+constexpr double kMaxSigmaShare = 0.12;
+constexpr double kMaxExcessShare = 0.25;
 
 struct Match {
-  Pixel before, after;  // ours
+  Pixel before, after;  // pixels with the corner origin
 };
 using Pair = std::vector<Match>;
 
@@ -38,7 +47,7 @@ lens::Lens candidate(bool fisheye, double focal_px, const lens::ImageSize& size)
   return lens::Lens(lens::Pinhole{focal, centre}, size);
 }
 
-// Mean squared miss of a pair's points in pixels, each cut off at kOutlierPx.
+// The mean squared residual of a pair's points, px^2, each cut off at kOutlierPx.
 double miss_of(const Pair& pair, const lens::Lens& lens) {
   std::vector<Bearings> bearings;
   std::vector<const Match*> known;
@@ -48,7 +57,7 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
     if (a && b) bearings.push_back({*a, *b}), known.push_back(&m);
   }
   constexpr double kCut = kOutlierPx * kOutlierPx;
-  const auto fit = fit_rotation(bearings, kOutlierPx / lens.focal_px(), kFewestPoints / 2, 1);
+  const auto fit = fit_rotation(bearings, kOutlierPx / lens.focal_px(), kMinPairCorners / 2, 1);
   if (!fit) return kCut;
   double sum = kCut * double(pair.size() - known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -93,8 +102,8 @@ Best search(const std::vector<Pair>& pairs,
   return best;
 }
 
-// From the best focal length in steps of `factor` as far as the lens fits as well, within what the
-// search tries.
+// The end of the interval of focal lengths that fit as well: steps from the best focal length by
+// `factor` while the lens fits, within the range of the search.
 template <typename Fits>
 double end_of_fit(double focal_px, double factor, const lens::ImageSize& size, const Fits& fits) {
   const double low = kShortest * size.width;
@@ -122,7 +131,7 @@ struct LensEstimator::Impl {
   }
 
   void add(const cv::Mat& grey, bool begins_shot) {
-    if (pairs.size() >= kMostPairs) return;
+    if (pairs.size() >= kMaxPairs) return;
     Pyramid pyramid = pyramid_of(grey);
     if (previous.empty() || begins_shot) {
       begin(grey);
@@ -142,11 +151,11 @@ struct LensEstimator::Impl {
     begun = kept_begun, now = kept_now;
     previous = std::move(pyramid);
     ++frames;
-    if (static_cast<int>(now.size()) < kFewestPoints || frames > kMostFrames) {
+    if (static_cast<int>(now.size()) < kMinPairCorners || frames > kMaxPairSpanFrames) {
       begin(grey);
       return;
     }
-    if (median(std::move(far)) < kFarShare * size.width) return;
+    if (median(std::move(far)) < kMinCornerShiftShare * size.width) return;
     Pair pair;
     for (std::size_t i = 0; i < now.size(); ++i)
       pair.push_back({{begun[i].x + 0.5, begun[i].y + 0.5}, {now[i].x + 0.5, now[i].y + 0.5}});
@@ -169,9 +178,9 @@ void LensEstimator::add(const image::Picture& picture, bool begins_shot) {
 std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) const {
   const auto& pairs = impl_->pairs;
   const lens::ImageSize& size = impl_->size;
-  if (pairs.size() < kFewestPairs) {
+  if (pairs.size() < kMinPairs) {
     why = "the camera turns far enough to tell only " + std::to_string(pairs.size()) +
-          " times; it takes " + std::to_string(kFewestPairs);
+          " times; it takes " + std::to_string(kMinPairs);
     return std::nullopt;
   }
   const Best pinhole = search(pairs, 0, 1, false, size);
@@ -188,14 +197,15 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   const Best even = search(pairs, 0, 2, result.fisheye, size);
   result.sigma_px = std::max(0.004 * best.focal_px, std::abs(odd.focal_px - even.focal_px) / 2);
   const auto fits = [&](double focal_px) {
-    return miss_of(pairs, 0, 1, candidate(result.fisheye, focal_px, size)) < kFits * best.miss;
+    return miss_of(pairs, 0, 1, candidate(result.fisheye, focal_px, size)) <
+           kMaxMisfitRatio * best.miss;
   };
   result.low_px = std::min(end_of_fit(best.focal_px, 1 / kIntervalStep, size, fits),
                            best.focal_px - result.sigma_px);
   result.high_px = std::max(end_of_fit(best.focal_px, kIntervalStep, size, fits),
                             best.focal_px + result.sigma_px);
-  result.is_certain = result.sigma_px <= kMostSigma * best.focal_px &&
-                      result.high_px < (1 + kMostOff) * best.focal_px;
+  result.is_certain = result.sigma_px <= kMaxSigmaShare * best.focal_px &&
+                      result.high_px < (1 + kMaxExcessShare) * best.focal_px;
   if (!result.is_certain)
     why = "the way the picture turns fits every focal length from " +
           std::to_string(static_cast<int>(result.low_px)) + " to " +

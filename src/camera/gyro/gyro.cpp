@@ -14,12 +14,12 @@ namespace {
 struct Element {
   std::string_view key;
   char type = 0;
-  std::size_t size = 0;  // of one structure
+  std::size_t size = 0;  // of one structure, in bytes
   std::size_t count = 0;
   std::span<const std::uint8_t> data;
 };
 
-// Visits the elements of one level; stops at what does not fit.
+// Visits the elements of one level. Stops at the first element that does not fit into `bytes`.
 template <typename Visit>
 void each_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
   constexpr std::size_t kHead = 8;
@@ -39,7 +39,7 @@ void each_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
   }
 }
 
-// Big-endian; 's' and 'l' are GPMF's 16 and 32 bits.
+// The number at byte offset `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
 double number_at(const Element& e, std::size_t at) {
   std::uint32_t value = 0;
   const std::size_t width = e.type == 's' ? 2 : 4;
@@ -67,7 +67,7 @@ std::vector<Vector3> rates_of(std::span<const std::uint8_t> stream) {
   return rates;
 }
 
-// Mean rate of the gyro over a span of time; empty where it was not running.
+// The mean rate of the gyroscope over a span of time; empty where it has no samples there.
 std::optional<Vector3> mean_rate(const std::vector<GyroSample>& gyro,
                                  double begin_s,
                                  double end_s) {
@@ -95,7 +95,7 @@ std::vector<Step> steps_of(const std::vector<FrameMotion>& motion) {
     if (!motion[k].rotation || !good(motion[k].state) || !good(motion[k - 1].state)) continue;
     const double dt = motion[k].time_s - motion[k - 1].time_s;
     if (!(dt > 0)) continue;
-    // The scene turns against the camera.
+    // A rotation of the scene in the camera is the inverse of the camera's own rotation.
     const Vector3 turned =
         vector_from_rotation(*motion[k].rotation * motion[k - 1].rotation->conjugate());
     steps.push_back({motion[k - 1].time_s, motion[k].time_s, -turned / dt});
@@ -114,8 +114,8 @@ std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
     pairs.push_back({*rate, s.rate});
     mean_gyro += *rate, mean_cam += s.rate;
   }
-  constexpr std::size_t kFewest = 40;
-  if (pairs.size() < kFewest) return std::nullopt;
+  constexpr std::size_t kMinSteps = 40;  // chosen by judgement: a second and a third at 30 frames/s
+  if (pairs.size() < kMinSteps) return std::nullopt;
   mean_gyro /= double(pairs.size());
   mean_cam /= double(pairs.size());
   for (Bearings& b : pairs) b.in_reference -= mean_gyro, b.in_cam -= mean_cam;
@@ -177,7 +177,8 @@ std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
                                          const GyroFit& fit) {
   std::vector<FrameMotion> result = motion;
   for (std::size_t k = 1; k < motion.size(); ++k) {
-    // Measured against its own past where that is linked; else from where the bridge has led.
+    // The rotation against the previous frame is measured where both are linked; otherwise the
+    // motion continues from the end of the bridge.
     if (motion[k].state == State::kMeasured && motion[k - 1].state != State::kCut) {
       if (motion[k - 1].state != State::kBridged) {
         result[k].rotation =
@@ -185,7 +186,7 @@ std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
                 .normalized();
         continue;
       }
-      continue;  // linked again across the gap by what was seen
+      continue;  // the estimator itself linked the frames across the gap
     }
     const auto rate =
         mean_rate(gyro, motion[k - 1].time_s + fit.offset_s, motion[k].time_s + fit.offset_s);

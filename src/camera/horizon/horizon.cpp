@@ -12,8 +12,12 @@ namespace airtruth::motion {
 namespace {
 
 constexpr int kAcross = 56;  // blocks along the longer side
-constexpr double kLeastShare = 0.06;
-constexpr double kLeastSeparation = 2.2;
+// Both limits are chosen by judgement; a line that passes them must also be sharp
+// (HorizonFinder::kSharp).
+// The least share of the blocks on either side of the plane.
+constexpr double kMinSideShare = 0.06;
+// The least distance between the mean features of the two sides, in standard deviations.
+constexpr double kMinSeparationSigmas = 2.2;
 // Least number of blocks for a covariance of four features. Chosen by judgement.
 constexpr std::size_t kMinBlocks = 40;
 
@@ -30,7 +34,8 @@ Vector3 up_of(double pitch_rad, double roll_rad) {
   return cam_from_body() * (body_from_world * Vector3(0, 0, -1));
 }
 
-// How far apart the two sides are, squared, in their common covariance; 0 where one is too small.
+// The squared distance between the mean features of the two sides, in their common covariance; 0
+// where one side has too few blocks.
 double parted(const std::vector<Sample>& samples, const Vector3& up) {
   Feature sum[2] = {Feature::Zero(), Feature::Zero()};
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
@@ -42,18 +47,18 @@ double parted(const std::vector<Sample>& samples, const Vector3& up) {
     squares += s.feature * s.feature.transpose();
   }
   const double n = count[0] + count[1];
-  if (std::min(count[0], count[1]) < kLeastShare * n) return 0;
+  if (std::min(count[0], count[1]) < kMinSideShare * n) return 0;
   const Feature low = sum[0] / count[0];
   const Feature high = sum[1] / count[1];
   Eigen::Matrix4d within =
       squares / n - count[0] / n * low * low.transpose() - count[1] / n * high * high.transpose();
-  within.diagonal().array() += 1.0;  // a code value
+  within.diagonal().array() += 1.0;  // a variance of one code value keeps it invertible
   const Feature apart = high - low;
-  // Fisher's criterion, with the weight of an even split.
+  // Fisher's criterion (1936), weighted so that an even split has the weight 1.
   return apart.dot(within.ldlt().solve(apart)) * 4 * count[0] * count[1] / (n * n);
 }
 
-// Is that side the sky? It is smoother, and mostly brighter and bluer.
+// Whether that side is the sky, which is smoother, and mostly brighter and bluer, than the ground.
 bool is_sky(const std::vector<Sample>& samples, const Vector3& up) {
   Feature sum[2] = {Feature::Zero(), Feature::Zero()};
   double count[2] = {0, 0};
@@ -119,7 +124,7 @@ Quaternion cam_from_level(const Vector3& up_in_cam) {
 }
 
 YawPitchRoll attitude_from_up(const Vector3& up_in_cam) {
-  // up in body: (sin pitch, -sin roll cos pitch, -cos roll cos pitch)
+  // The up direction in body axes is (sin pitch, -sin roll cos pitch, -cos roll cos pitch).
   const Vector3 up = cam_from_body().conjugate() * up_in_cam.normalized();
   return {
       0, degrees(std::asin(std::clamp(up.x(), -1.0, 1.0))), degrees(std::atan2(-up.y(), -up.z()))};
@@ -144,7 +149,7 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
   for (const Block& b : blocks_) samples.push_back({b.ray, feature_of(picture, b.x, b.y, step_)});
   if (samples.size() < kMinBlocks) return std::nullopt;
   const Parting best = best_parting(samples);
-  if (std::sqrt(best.value) < kLeastSeparation) return std::nullopt;
+  if (std::sqrt(best.value) < kMinSeparationSigmas) return std::nullopt;
   Vector3 up = up_of(best.pitch, best.roll);
   if (!is_sky(samples, up)) up = -up;
   const HorizonEdge edge = horizon_edge(picture, lens_, mask(), up);

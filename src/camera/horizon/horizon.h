@@ -11,31 +11,41 @@
 
 namespace airtruth::motion {
 
-// Sky and ground as the two sides of a plane through the camera, that a lens bends as it bends all
-// else: the plane that parts the colours of the picture best (Ettinger et al. 2002, "Vision-guided
-// flight stability and control for micro air vehicles", with Fisher's criterion for their
-// determinants, and planes for their lines). Haze draws that plane down into the ground, so it is
-// then moved to the line near it across which the picture steps most evenly (horizon_edge.h).
+// Finds the horizon in one picture. Sky and ground are the two sides of a plane through the camera,
+// so the horizon may be a curve in the picture of a wide lens. find() first takes the plane that
+// separates the colours of the picture best: the method of Ettinger et al. 2002 ("Vision-guided
+// flight stability and control for micro air vehicles"), with Fisher's criterion in place of their
+// determinants and planes in place of their lines. In haze that plane lies below the horizon,
+// within the ground. It is therefore moved to the line near it where luma steps most evenly
+// (horizon_edge.h).
+//
+// Example: a level pinhole of 640 x 480 pixels with a vertical field of view of 60 degrees is
+// pitched up by 5 degrees. The horizon crosses the middle column at y = 240 + 240 / tan(30 deg)
+// tan(5 deg) = 276.4 px, and find() gives the up direction (0, -cos 5 deg, sin 5 deg) in cam.
 class HorizonFinder {
  public:
   HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft);
 
-  // Least sharpness of a horizon. 92 % of the frames of two real flights over hills and fields have
-  // more, as virtual flights have in clear air; in haze of 13 km visibility they have 0.6 to 0.75.
-  // Clear and clouded skies without a horizon have 0.4 at most, rows of trees 0.36 to 0.65.
+  // The least sharpness of a horizon. 92 % of the frames of two real flights over hills and fields
+  // have more. Virtual flights have more in clear air, and 0.6 to 0.75 in haze of 13 km visibility.
+  // Clear and cloudy skies without a horizon have 0.4 at most, rows of trees 0.36 to 0.65.
   static constexpr double kSharp = 0.6;
   struct Found {
+    // A unit vector.
     Vector3 up_in_cam{0, -1, 0};
-    double separation = 0;  // of sky and ground, in standard deviations; of find() alone
-    // Share of the line across which the picture steps as an edge does (horizon_edge.h). Below
-    // kSharp the plane is only the one that parts the colours, as a coast, a bank of clouds or a
-    // sky that brightens downwards do too, and is no horizon.
+    // The distance between the colours of sky and ground, in standard deviations; follow() leaves
+    // it at 0.
+    double separation = 0;
+    // The share of the line, 0..1, across which luma steps as at an edge (horizon_edge.h). Below
+    // kSharp the plane only separates two colours, as a coast, a bank of clouds or a sky that
+    // brightens downwards do, and is no horizon.
     double sharpness = 0;
     bool is_sharp() const { return sharpness >= kSharp; }
   };
-  // Empty where no plane parts the picture clearly, or less than 6 % lies on one side.
+  // The result is empty where no plane separates the picture clearly (by 2.2 standard deviations),
+  // or where less than 6 % of the picture lies on one side of the best plane.
   std::optional<Found> find(const image::Picture& picture) const;
-  // The same within a degree and a half of where it is expected, twenty times as fast.
+  // Searches within 1.5 degrees of an expected direction only, which takes a twentieth of the time.
   Found follow(const image::Picture& picture, const Vector3& expected_up_in_cam) const;
 
  private:
@@ -50,9 +60,9 @@ class HorizonFinder {
   std::vector<Block> blocks_;
 };
 
-// Attitude of a camera that sees up in that direction, its yaw taken as 0.
+// The attitude of a camera in which up has this direction. Its yaw is 0.
 YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
-Quaternion cam_from_level(
-    const Vector3& up_in_cam);  // level: north-east-down with the camera's yaw
+// cam_from_level, where level is the north-east-down frame turned to the camera's yaw.
+Quaternion cam_from_level(const Vector3& up_in_cam);
 
 }  // namespace airtruth::motion

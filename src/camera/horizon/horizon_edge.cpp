@@ -10,28 +10,34 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kColumns = 180;  // of azimuth, where the picture is seen
-constexpr int kFewestColumns = 30;
-constexpr float kLargestStep = 6;  // code values
+// The number of azimuths at which the horizon is looked for.
+constexpr int kColumns = 180;
+// The least number of azimuths at which the line lies in the picture. Chosen by judgement.
+constexpr int kMinColumns = 30;
+// A step of luma beyond this many code values adds little, so that weak steps all along a line
+// outweigh a strong step in one place.
+constexpr float kLargestStep = 6;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 struct Sweep {
-  double low_deg, high_deg;  // of elevation over the guess
+  double low_deg, high_deg;  // the range of elevations above the guess
   double step_deg;
-  double across_deg;     // on either side, that is compared
-  double most_tilt_deg;  // of a plane to the guess
+  double across_deg;     // the height of the band on either side of the line that is averaged
+  double most_tilt_deg;  // the largest tilt of a plane against the guess
 };
-// Haze hides up to a dozen degrees of ground: a first guess lies below the horizon.
+// The first guess lies below the horizon, because haze hides up to a dozen degrees of ground. The
+// search therefore reaches higher than it reaches down.
 constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
 constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
-// The line alone.
+// One line only, for its sharpness.
 constexpr Sweep kLine{0, 0, 0.04, 0.2, 0};
-// The sky whose slope is taken from a step: beyond what is compared, where an edge's own softness
-// has ended.
+// The band of sky whose slope is subtracted from a step, in degrees above the averaged band. The
+// gap between the two leaves out the softness of the edge itself.
 constexpr double kSkyFromDeg = 0.3, kSkyToDeg = 1.1;
-constexpr float kLeastStepCodes = 1;  // across the line, beyond the slope of the sky
+// The least step of luma across the line, beyond the slope of the sky, in code values.
+constexpr float kMinStepCodes = 1;
 
-// Bilinear; not a number outside, and on the own aircraft.
+// Bilinear interpolation; NaN outside the picture and on the own aircraft.
 float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
   const double x = p.x() - 0.5;
   const double y = p.y() - 0.5;
@@ -49,7 +55,7 @@ float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, co
 }
 
 // The step of luma from below to above, by azimuth and elevation, and the step that the slope of
-// the sky above makes over the same angle: 0 where that is not seen.
+// the sky above makes over the same angle. The latter is 0 where that sky is outside the picture.
 struct Unrolled {
   std::vector<double> azimuth_rad;
   std::vector<float> step, sky;  // [column][row]
@@ -59,7 +65,7 @@ struct Unrolled {
   }
 };
 
-// The mean over so many rows on either side of luma above less luma below.
+// The mean of `across` rows above a row less the mean of as many rows below it.
 float step_at(const std::vector<float>& luma, int row, int across) {
   float sum = 0;
   for (int k = 1; k <= across; ++k)
@@ -90,7 +96,7 @@ Rows rows_of(const Sweep& sweep) {
           rows(sweep.across_deg + kSkyToDeg)};
 }
 
-// Level: x ahead along the camera's own axis as far as it is level, y right, z down.
+// The axes of level are x ahead along the optical axis, y right and z down.
 Unrolled unroll(const image::Picture& picture,
                 const lens::Lens& lens,
                 const image::Mask* own_aircraft,
@@ -130,9 +136,9 @@ struct Line {
   float sum = 0;
 };
 
-// A step less what the slope of the sky makes of it; never of the other sign, or a strong edge
-// would cast one below itself. What is more than kLargestStep counts for little, which puts the
-// line of a strong edge into its middle.
+// A step without the share that the slope of the sky explains. The result never has the opposite
+// sign, because a strong edge would otherwise produce a second one below itself. The excess over
+// kLargestStep has a small weight, which puts the line into the middle of a strong edge.
 float edge_of(float step, float sky) {
   constexpr float kShareOfMore = 0.02f;
   if (std::isnan(step)) return kNothing;
@@ -161,7 +167,7 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
         sum += edge;
         ++seen;
       }
-      if (seen < kFewestColumns || std::abs(sum) <= std::abs(best.sum)) continue;
+      if (seen < kMinColumns || std::abs(sum) <= std::abs(best.sum)) continue;
       best = {pitch, roll, sum};
     }
   return best;
@@ -171,15 +177,16 @@ double sharpness_of(const Unrolled& line) {
   int seen = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < line.azimuth_rad.size(); ++i) {
     if (std::isnan(line.step[i])) continue;
-    const float least = std::abs(line.sky[i]) + kLeastStepCodes;
+    const float least = std::abs(line.sky[i]) + kMinStepCodes;
     ++seen;
     up += line.step[i] > least ? 1 : 0;
     down += line.step[i] < -least ? 1 : 0;
   }
-  return seen < kFewestColumns ? 0 : double(std::max(up, down)) / seen;
+  return seen < kMinColumns ? 0 : double(std::max(up, down)) / seen;
 }
 
-// Level axes: ahead is the optical axis laid level. Empty where it looks straight up or down.
+// The level axes whose x axis is the horizontal part of the optical axis. The result is empty where
+// the camera looks straight up or down.
 std::optional<Quaternion> cam_from_level_axes(const Vector3& up_in_cam) {
   const Vector3 down = -up_in_cam.normalized();
   Vector3 ahead = Vector3::UnitZ() - down * down.z();
@@ -198,7 +205,7 @@ Vector3 swept(const image::Picture& picture,
   const auto cam_from_level = cam_from_level_axes(up_in_cam);
   if (!cam_from_level) return up_in_cam;
   const Line line = best_line(unroll(picture, lens, own_aircraft, *cam_from_level, sweep), sweep);
-  // A plane whose elevation is pitch cos(azimuth) + roll sin(azimuth).
+  // The elevation of this plane is pitch cos(azimuth) + roll sin(azimuth).
   const Vector3 up =
       Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1);
   return *cam_from_level * up.normalized();

@@ -10,21 +10,22 @@ namespace airtruth::motion {
 
 struct HorizonEdge {
   Vector3 up_in_cam{0, -1, 0};
-  // Share of the line, 0..1, across which luma steps by a code value more than the slope of the sky
-  // above makes it step, the same way all along. A slope alone, however steep, is no edge.
+  // The share of the line, 0..1, across which luma steps in the same direction by a code value more
+  // than the slope of the sky above explains. A slope alone is no edge, however steep it is.
   double sharpness = 0;
 };
 
-// The plane near a first guess of it along which luma steps most, less what the slope of the sky
-// above makes it step: the picture is unrolled into elevation over azimuth about the guess, where
-// planes near it are sines, and the step is summed along each, cut off at a few code values so that
-// a weak step all along counts more than strong ones here and there. Coarse first, then about what
-// was found.
+// Finds the plane near a first guess along which luma steps most. The picture is resampled to
+// elevation over azimuth about the guess, where planes near the guess are sines. At each place the
+// step that the slope of the sky explains is subtracted. The steps along each plane are summed,
+// each cut off at 6 code values, so that weak steps all along count more than strong steps in a few
+// places. The search is coarse first (6 degrees below the guess to 16 above) and then fine (1.5
+// degrees).
 HorizonEdge horizon_edge(const image::Picture& picture,
                          const lens::Lens& lens,
                          const image::Mask* own_aircraft,
                          const Vector3& guess_up_in_cam);
-// The second step alone, for a guess that is good to a degree.
+// The fine search alone, for a guess that is within a degree of the horizon.
 HorizonEdge horizon_edge_beside(const image::Picture& picture,
                                 const lens::Lens& lens,
                                 const image::Mask* own_aircraft,

@@ -8,12 +8,13 @@
 namespace airtruth::motion {
 namespace {
 
-// A horizon is off by its hills, and by much the same half a second later: its error counts as
-// ten independent ones would together.
+// The variance of one sighting, rad^2. A detected horizon is off by 0.3 degrees (hills), and the
+// error is nearly the same half a second later. The factor 10 counts ten correlated sightings as
+// one independent sighting.
 const double kSightingVariance = 10 * std::pow(radians(0.3), 2);
-constexpr double kGate = 4;  // standard deviations
+constexpr double kGate = 4;  // standard deviations beyond which a sighting is discarded
 
-// The shortest turn that carries one unit vector to another.
+// The shortest rotation that maps one unit vector to another.
 Quaternion turn_between(const Vector3& from, const Vector3& to) {
   const Vector3 axis = from.cross(to);
   const double sine = axis.norm();
@@ -21,7 +22,7 @@ Quaternion turn_between(const Vector3& from, const Vector3& to) {
   return rotation_from_vector(std::atan2(sine, from.dot(to)) / sine * axis);
 }
 
-// Angles about x and y of the shortest turn that carries z to v.
+// The angles about x and y of the shortest rotation that maps the z axis to v.
 Eigen::Vector2d angles_of(const Vector3& v) {
   const double sine = std::hypot(v.x(), v.y());
   const double angle = std::atan2(sine, v.z());
@@ -45,7 +46,7 @@ bool HorizonHold::see(const Quaternion& cam_from_reference, const Vector3& up_in
   const Vector3 up = (cam_from_reference.conjugate() * up_in_cam).normalized();
   if (!reference_from_up_) {
     reference_from_up_ = turn_between(Vector3::UnitZ(), up);
-    covariance_(0, 0) = 1;  // any direction, until the first sighting has been weighed in
+    covariance_(0, 0) = 1;  // the first sighting may have any direction
   }
   const Eigen::Vector2d seen = angles_of(reference_from_up_->conjugate() * up);
   const Eigen::Vector2d expected = state_.colwise().sum();

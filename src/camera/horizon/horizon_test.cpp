@@ -9,8 +9,8 @@
 
 #include "foundation/base/seed.h"
 
-// A horizon is a line that is sharp from side to side. Pictures are drawn ray by ray from a level
-// that is known; what parts in two colours without such a line is refused.
+// A horizon is a line that is sharp over the whole width. The tests draw pictures ray by ray from a
+// known attitude, and check that a boundary between two colours without such a line is refused.
 namespace airtruth::motion {
 namespace {
 
@@ -24,7 +24,7 @@ Vector3 up_of(double pitch_deg, double roll_deg) {
   return cam_from_body() * (world_from_camera_body.conjugate() * Vector3(0, 0, -1));
 }
 
-// A colour of a place, by its azimuth and elevation over the level in degrees.
+// The colour of a direction, by its azimuth and elevation above the level in degrees.
 struct Paint {
   double luma, cb, cr;
 };
@@ -84,21 +84,21 @@ TEST(Horizon, ASharpLineIsFoundWithItsRollAndItsPlace) {
     const YawPitchRoll attitude = attitude_from_up(found->up_in_cam);
     EXPECT_NEAR(attitude.roll_deg, roll_deg, 0.15);
     EXPECT_NEAR(attitude.pitch_deg, pitch_deg, 0.15);
-    // Where a level line 5 degrees below the axis crosses the middle column:
-    // 240 + 240 / tan(30 deg) tan(5 deg) = 276.4 px.
+    // A level line crosses the middle column of a camera that is pitched up by 5 degrees at 240 +
+    // 240 / tan(30 deg) tan(5 deg) = 276.4 px.
     if (roll_deg == 0) {
       const Vector3& up = found->up_in_cam;
       const double y_px = 240 - 240 / std::tan(radians(30)) * up.z() / up.y();
       EXPECT_NEAR(y_px, 276.4, 1.0);
     }
-    // Followed from a degree beside it, it is the same.
+    // A search that starts one degree beside it finds the same line.
     const auto followed = finder.follow(picture, up_of(pitch_deg + 0.7, roll_deg - 0.5));
     EXPECT_TRUE(followed.is_sharp());
     EXPECT_LT(degrees(std::acos(std::min(1.0, followed.up_in_cam.dot(found->up_in_cam)))), 0.15);
   }
 }
 
-// Half a degree of hills and a haze that takes half of the step leave a horizon.
+// Hills of half a degree and haze that halves the step leave a detectable horizon.
 TEST(Horizon, LowHillsInHazeAreAHorizonStill) {
   const image::Picture picture = drawn(4, 8, 2, [](double azimuth_deg, double elevation_deg) {
     const double hills_deg = 0.25 + 0.25 * std::sin(azimuth_deg / 3);
@@ -112,8 +112,8 @@ TEST(Horizon, LowHillsInHazeAreAHorizonStill) {
   EXPECT_NEAR(attitude_from_up(found->up_in_cam).pitch_deg, 4, 0.7);
 }
 
-// Sky that brightens downwards, or ground that fades into it over degrees: a slope is no edge,
-// however steep it is.
+// A sky that brightens downwards, or ground that fades into the sky over some degrees, has a slope
+// but no edge.
 TEST(Horizon, ABroadGradientIsRefused) {
   for (const double width_deg : {70.0, 40.0, 24.0}) {
     EXPECT_TRUE(is_refused(drawn(3, 10, 1, [&](double, double elevation_deg) {
@@ -126,8 +126,8 @@ TEST(Horizon, ABroadGradientIsRefused) {
   }
 }
 
-// Level sea on one side under haze of nearly its colour, land with houses on the other, its skyline
-// rising to that side.
+// A coast: on one side a level sea under haze of nearly its colour, on the other land with houses,
+// whose skyline rises to that side.
 Paint coast(double azimuth_deg, double elevation_deg, double slope, double side) {
   const Paint sea{150, 136, 120}, haze{175, 134, 122};
   const double inland_deg = side * azimuth_deg + 4;
@@ -142,7 +142,7 @@ Paint coast(double azimuth_deg, double elevation_deg, double slope, double side)
   return mixed(haze, kSky, std::min(1.0, elevation_deg / 15));
 }
 
-// The plane that parts the colours of a coast is neither the sea's nor the skyline's.
+// The plane that separates the colours of a coast is neither the sea's horizon nor the skyline.
 TEST(Horizon, ACoastIsRefused) {
   for (const double slope : {0.2, 0.3, 0.4})
     for (const double side : {-1.0, 1.0}) {
@@ -153,7 +153,7 @@ TEST(Horizon, ACoastIsRefused) {
     }
 }
 
-// Where the land is lower, the line that is taken is the sea's, which is level here.
+// Where the land is lower than the sea's horizon, the detected line is the sea's, which is level.
 TEST(Horizon, OfALowCoastTheSeaIsFound) {
   const image::Picture picture = drawn(0, 0, 1, [](double azimuth_deg, double elevation_deg) {
     return coast(azimuth_deg, elevation_deg, 0.12, 1);
@@ -163,7 +163,7 @@ TEST(Horizon, OfALowCoastTheSeaIsFound) {
   EXPECT_NEAR(attitude_from_up(found->up_in_cam).roll_deg, 0, 1);
 }
 
-// A bank of clouds, tilted: soft over six degrees, or sharp in tufts of two degrees.
+// A tilted bank of clouds, either soft over six degrees or sharp in tufts of two degrees.
 TEST(Horizon, ATiltedBankOfCloudsIsRefused) {
   const Paint cloud{215, 128, 128}, blue{140, 150, 110};
   EXPECT_TRUE(is_refused(drawn(2, 20, 1, [&](double, double elevation_deg) {

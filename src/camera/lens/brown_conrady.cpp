@@ -16,8 +16,8 @@ Coefficients coefficients(const BrownConrady& lens) {
   return k;
 }
 
-// Where an undistorted point (x/z, y/z) goes, and how the map stretches there. The derivative is
-// symmetric: the map is a gradient.
+// The distorted point of an undistorted point (x/z, y/z) and the derivative of the map there. The
+// derivative is symmetric, because the map is a gradient.
 struct Distorted {
   Pixel value;
   double xx, xy, yy;
@@ -61,16 +61,17 @@ Pixel in_direction(int i, double radius) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-// The tangential terms tilt the curve: the valid field ends where the map folds in any direction.
+// The tangential terms make the curve depend on the direction: the valid field ends where the map
+// folds in any direction.
 bool folds(const Coefficients& k, double angle_rad) {
   const double radius = std::tan(angle_rad);
   const double flat = kFlat / (1 + radius * radius);  // per radian, where the map is per tangent
   const Distorted along = distort(radial_part(k), {radius, 0});
-  constexpr double kNearPole = 1e-3;  // beyond it the rational curve runs off to infinity
-  if (!(along.denominator > kNearPole) || !(along.least_stretch() > flat)) return true;
+  constexpr double kMinDenominator = 1e-3;  // chosen; a smaller one is near a pole of the curve
+  if (!(along.denominator > kMinDenominator) || !(along.least_stretch() > flat)) return true;
   const Pixel tilt(k[3], k[2]);
   if (tilt.isZero(0)) return false;
-  // Against the tilt the curve falls off first.
+  // The map folds first in the direction against the tangential terms.
   if (!(distort(k, -radius * tilt.normalized()).least_stretch() > flat)) return true;
   for (int i = 0; i < kDirections; ++i)
     if (!(distort(k, in_direction(i, radius)).least_stretch() > flat)) return true;
@@ -79,7 +80,7 @@ bool folds(const Coefficients& k, double angle_rad) {
 
 double max_angle(const Coefficients& k) {
   constexpr int kSteps = 4000;
-  constexpr double kLimit = kPi / 2 - 1e-3;  // tan() beyond is of no use to any image
+  constexpr double kLimit = kPi / 2 - 1e-3;  // chosen: no image reaches a larger angle
   for (int i = 1; i <= kSteps; ++i) {
     if (!folds(k, kLimit * i / kSteps)) continue;
     double low = kLimit * (i - 1) / kSteps;
@@ -112,7 +113,8 @@ struct Guess {
 
 double small(const Pixel& target) { return 1e-12 * (1 + target.norm()); }
 
-// Newton's method, each step shortened until it comes nearer and held within the valid field.
+// Newton's method. Each step is shortened until the residual decreases, and stays in the valid
+// field.
 Guess newton(const Coefficients& k, const Pixel& target, Pixel n, double limit, int steps) {
   Distorted at = distort(k, n);
   double miss = (at.value - target).norm();
@@ -129,7 +131,7 @@ Guess newton(const Coefficients& k, const Pixel& target, Pixel n, double limit, 
         at = there;
         miss = left;
       } else if (miss <= small(target)) {
-        break;  // as near as rounding lets it come
+        break;  // rounding allows no further decrease
       }
     }
     if (miss == tried) break;
@@ -137,7 +139,7 @@ Guess newton(const Coefficients& k, const Pixel& target, Pixel n, double limit, 
   return {n, miss};
 }
 
-// From the axis to the target in a straight line through the image, which stays within the field.
+// Follows the straight line from the axis to the target in the image, which stays within the field.
 Guess walk(const Coefficients& k, const Pixel& target, double limit) {
   constexpr int kParts = 16;
   Guess guess{Pixel::Zero(), 0};
@@ -154,7 +156,7 @@ Field field_of(const BrownConrady& lens) {
   const double limit = std::tan(field.max_angle_rad);
   for (int i = 0; i < kDirections; ++i)
     field.max_radius = std::max(field.max_radius, distort(k, in_direction(i, limit)).value.norm());
-  field.max_radius *= 1.01;  // between the directions
+  field.max_radius *= 1.01;  // a margin for the directions between those that are tried
   return field;
 }
 

@@ -8,8 +8,8 @@
 
 #include "camera/lens/lens.h"
 
-// What both file kinds come down to, still in the file's own image size and OpenCV's
-// integer-centred pixels.
+// The content that both kinds of calibration files have in common, in the file's own image size and
+// in OpenCV's integer-centred pixels.
 namespace airtruth::lens {
 
 struct Calibration {
@@ -17,7 +17,7 @@ struct Calibration {
   std::array<double, 9> camera_matrix{};  // row by row
   std::vector<double> distortion;
   ImageSize size;
-  double max_angle_rad = kPi;  // of a fisheye, where the file states it
+  double max_angle_rad = kPi;  // where the file of a fisheye states it
   std::string camera;          // "GoPro Hero3+Black"; empty where the file names none
 };
 

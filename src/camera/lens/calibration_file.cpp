@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 16u << 20;
 constexpr double kAspectTolerance = 0.01;
-// As the keys of [lens] in a scene (world/scene/limits.h).
-constexpr double kLeastFocal_px = 1;
+// The limits of the keys of [lens] in a scene (world/scene/limits.h).
+constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
 constexpr double kLargestCoefficient = 1e6;
 
@@ -37,7 +37,7 @@ void check_matrix(const Calibration& c, const std::string& file) {
                     "; expected 0 (no lens model here has skew)",
                 {file});
   for (const std::size_t i : {std::size_t{0}, std::size_t{4}})
-    if (!(m[i] >= kLeastFocal_px && m[i] <= kFarthest_px))
+    if (!(m[i] >= kMinFocal_px && m[i] <= kFarthest_px))
       throw Error(
           "the camera matrix has a focal length of " + shown(m[i]) + "; expected 1 to 1e6 pixels",
           {file});
@@ -103,13 +103,13 @@ Calibration parsed(std::string_view text, const std::filesystem::path& name) {
 
 bool has_size(const Calibration& c) { return c.size.width > 0 && c.size.height > 0; }
 
-// Of the same aspect ratio, or of no size at all.
+// Accepts a size of the same aspect ratio as the calibration's, and a calibration without a size.
 Lens lens_from(const Calibration& c, const std::string& file, ImageSize size) {
   const ImageSize from = has_size(c) ? c.size : size;
   const Pixel scale(static_cast<double>(size.width) / from.width,
                     static_cast<double>(size.height) / from.height);
   const Pixel focal(c.camera_matrix[0] * scale.x(), c.camera_matrix[4] * scale.y());
-  // OpenCV's (0, 0) is the middle of the first pixel; ours is its corner.
+  // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
   const Pixel centre((c.camera_matrix[2] + 0.5) * scale.x(),
                      (c.camera_matrix[5] + 0.5) * scale.y());
   const std::vector<double> distortion = trimmed(c.distortion, c.fisheye, file);
@@ -138,14 +138,15 @@ std::string how_to_crop(const std::filesystem::path& path, ImageSize size) {
 std::string profiles_that_fit(const std::filesystem::path& path,
                               const Calibration& c,
                               ImageSize size) {
-  constexpr std::size_t kMostRead = 1000;
-  constexpr std::size_t kMostNamed = 3;
+  // Chosen: reading more files would delay the message, and more names would not fit on its line.
+  constexpr std::size_t kMaxFilesRead = 1000;
+  constexpr std::size_t kMaxProfilesNamed = 3;
   if (c.camera.empty()) return "";
   std::vector<std::filesystem::path> files;
   std::error_code failed;
   for (std::filesystem::directory_iterator at(path.has_parent_path() ? path.parent_path() : ".",
                                               failed);
-       !failed && at != std::filesystem::directory_iterator() && files.size() < kMostRead;
+       !failed && at != std::filesystem::directory_iterator() && files.size() < kMaxFilesRead;
        at.increment(failed))
     if (at->path().extension() == ".json" && at->is_regular_file(failed))
       files.push_back(at->path());
@@ -156,10 +157,10 @@ std::string profiles_that_fit(const std::filesystem::path& path,
     try {
       const Calibration other = parsed(read_file(file, kMaxBytes), file);
       if (other.camera != c.camera || !same_aspect(other.size, size)) continue;
-      if (++count <= kMostNamed)
+      if (++count <= kMaxProfilesNamed)
         named +=
             (named.empty() ? "" : ", ") + file.filename().string() + " (" + words(other.size) + ")";
-    } catch (const Error&) {  // another JSON file, or a profile that cannot be honoured
+    } catch (const Error&) {  // another kind of JSON file, or a profile that no lens model fits
     }
   }
   return named.empty() ? "" : "; of the same camera and the video's aspect ratio: " + named;

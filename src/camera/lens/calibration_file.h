@@ -14,8 +14,9 @@ namespace airtruth::lens {
 // 4-coefficient model said to be fisheye. The lens is scaled to `size` where the calibration was
 // made at another size of the same aspect ratio (within 1 %); another aspect ratio is an Error,
 // which names the profiles of the same camera in the file's folder that have the video's.
-// Fields that no model here can honour (non-zero skew, thin prism or tilt coefficients, a digital
-// lens, an anamorphic stretch, ...) are an Error that names the field. Errors carry the file, and
+// Throws Error, which names the field, for a property that no model here has: skew, thin prism or
+// tilt coefficients other than 0, a digital lens, an anamorphic stretch and others. An Error states
+// the file, and the line where the format has lines.
 // the line where the format tells it.
 Lens read_calibration(const std::filesystem::path& path, ImageSize size);
 

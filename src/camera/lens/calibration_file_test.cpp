@@ -47,7 +47,7 @@ TEST(Gyroflow, ScalesToAnotherSizeOfTheSameShapeAlone) {
   EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}), testing::HasSubstr("same aspect ratio"));
 }
 
-// A camera that cuts 1280x720 out of the middle of its 1280x960: a ray lands 120 rows higher.
+// A camera crops 1280x720 from the middle of its 1280x960 picture: a ray moves up by 120 rows.
 TEST(Calibration, CroppedKeepsTheDirectionOfEveryPixelThatIsLeft) {
   const Lens whole = parse_calibration(profile(), "a.json", kProfileSize);
   const Lens wide = cropped(whole, {1280, 720});
@@ -72,7 +72,7 @@ TEST(Calibration, WhatIsWrittenIsReadAsTheSameLens) {
     const Vector3 ray(0.3, -0.2, 1);
     EXPECT_TRUE(read.pixel_from_cam(ray)->isApprox(*lens.pixel_from_cam(ray), 1e-12));
   }
-  // OpenCV itself reads it.
+  // OpenCV itself can read the file.
   cv::FileStorage storage(opencv_calibration(brown, "a note"),
                           cv::FileStorage::READ | cv::FileStorage::MEMORY);
   cv::Mat matrix;
@@ -137,10 +137,10 @@ TEST(Gyroflow, ReadsARealProfile) {
   const Lens lens = read_calibration(
       std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kProfileSize);
   EXPECT_STREQ(lens.name(), "fisheye");
-  EXPECT_NEAR(lens.horizontal_fov_deg(), 120, 5);  // what its note of origin says
+  EXPECT_NEAR(lens.horizontal_fov_deg(), 120, 5);  // as stated where the profile was published
 }
 
-// What OpenCV writes, we read: both file kinds, through OpenCV's own writer.
+// Both kinds of files as OpenCV's own writer makes them.
 TEST(OpenCv, ReadsWhatFileStorageWrites) {
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
   const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
@@ -175,7 +175,7 @@ TEST(OpenCv, ReadsAMatrixOfRowsOverSeveralLines) {
   EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
 }
 
-// As PyYAML writes ROS's camera_info by default: lists by dashes, words in quotes.
+// ROS's camera_info as PyYAML writes it by default: lists with dashes and quoted words.
 TEST(OpenCv, ReadsListsByDashesAndQuotedWords) {
   const std::string text =
       "image_width: 1280\nimage_height: 960  # pixels\ndistortion_model: \"plumb_bob\"\n"
@@ -185,7 +185,7 @@ TEST(OpenCv, ReadsListsByDashesAndQuotedWords) {
   EXPECT_EQ(std::get<BrownConrady>(lens.model()).focal_px, Pixel(900, 905));
 }
 
-// A stranger's file can fail to load and nothing else: depth, aliases of aliases, size.
+// A hostile file (nesting, aliases of aliases, size) fails to load without further harm.
 TEST(OpenCv, HostileYamlFailsToLoad) {
   const auto repeated = [](const std::string& part, std::size_t times) {
     std::string text;

@@ -26,7 +26,7 @@ Numbers numbers_of(const Lens& lens) {
       lens.model());
 }
 
-// 1 as "1.0": OpenCV's YAML and TOML tell whole numbers from others.
+// Writes 1 as "1.0", because YAML and TOML distinguish whole numbers from other numbers.
 std::string text_of(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
@@ -71,7 +71,7 @@ std::string opencv_calibration(const Lens& lens, const std::string& note) {
   std::string line = note;
   std::replace_if(
       line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  // OpenCV's (0, 0) is the middle of the first pixel; ours is its corner.
+  // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
   const std::vector<double> matrix = {n.focal_px.x(),
                                       0,
                                       n.principal_point_px.x() - 0.5,

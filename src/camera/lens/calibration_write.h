@@ -7,17 +7,18 @@
 
 namespace airtruth::lens {
 
-// The lens of the middle of a picture, cut to another aspect ratio and scaled to `size` without
-// squeezing: the largest part of that shape, as cameras cut 16:9 out of 4:3. Directions keep their
-// place in the scene; the principal point moves with the cut.
+// The lens of a picture that is cropped in the middle to another aspect ratio and then scaled to
+// `size` with square pixels, as cameras crop 16:9 from a 4:3 sensor. The crop is the largest that
+// fits. The direction of each remaining pixel is unchanged; the principal point moves with the
+// crop.
 Lens cropped(const Lens& lens, ImageSize size);
 
-// An OpenCV calibration file (YAML) that read_calibration() reads as the same lens to the last
-// digit that doubles have, but for the angle at which a fisheye's own file says that its curve
-// ends: OpenCV has no field for it. `note` becomes a comment of one line.
+// The text of an OpenCV calibration file (YAML). read_calibration() reads the same lens from it
+// exactly, except for the angle at which a fisheye's calibration ends, for which OpenCV has no
+// field. `note` becomes a comment of one line.
 std::string opencv_calibration(const Lens& lens, const std::string& note);
 
-// The lens as a scene's [lens] table, a line a key.
+// The lens as the [lens] table of a scene, one key per line.
 std::string scene_table(const Lens& lens);
 
 }  // namespace airtruth::lens

@@ -19,8 +19,9 @@ double slope(const Fisheye& lens, double theta) {
   return 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
 }
 
-// theta in [0, limit] with curve(theta) = radius: Newton, kept inside a shrinking bracket, and
-// bisection where Newton's step does not shrink twofold (it may circle around a bend of the curve).
+// The theta in [0, limit] with curve(theta) = radius. Newton's method runs within a shrinking
+// bracket. Bisection replaces a step that does not halve the bracket, because Newton's method may
+// circle around a bend of the curve.
 double inverse(const Fisheye& lens, double radius, double limit) {
   double low = 0;
   double high = limit;
@@ -40,7 +41,7 @@ double inverse(const Fisheye& lens, double radius, double limit) {
   return theta;
 }
 
-// The largest angle up to which the curve rises from the axis on.
+// The largest angle up to which the curve rises everywhere.
 double max_angle(const Fisheye& lens) {
   constexpr int kSteps = 20000;
   for (int i = 1; i <= kSteps; ++i) {
@@ -69,7 +70,7 @@ std::optional<Pixel> project(const Fisheye& lens, const Vector3& p, const Field&
   const double theta = std::atan2(side, p.z());
   if (!(p.squaredNorm() > 0) || !(theta <= field.max_angle_rad)) return std::nullopt;
   if (side == 0) {
-    // Straight behind, every side is as near as any other: no one pixel.
+    // A point straight behind the camera has no direction from the axis, and so no unique pixel.
     if (p.z() < 0) return std::nullopt;
     return lens.principal_point_px;
   }

@@ -9,7 +9,7 @@
 namespace airtruth::lens {
 namespace {
 
-// What changes where a ray lands and no lens model here can follow.
+// Refuses properties that change the position of a ray and that no lens model here has.
 void refuse_what_cannot_be_honoured(const JsonObject& profile) {
   for (const char* key : {"input_horizontal_stretch", "input_vertical_stretch"})
     if (profile.maybe_number(key).value_or(1) != 1)
@@ -29,7 +29,8 @@ void refuse_what_cannot_be_honoured(const JsonObject& profile) {
     profile.fail("crop", "1; a crop cannot be honoured");
 }
 
-// Gyroflow's limit is a radius on the plane at distance 1, tan(angle); 0 says that there is none.
+// The limit in a Gyroflow profile is a radius on the plane at distance 1, tan(angle); 0 means that
+// there is none.
 double stated_max_angle(const JsonObject& fisheye) {
   const char* key = "radial_distortion_limit";
   const double limit = fisheye.maybe_number(key).value_or(0);
@@ -37,7 +38,7 @@ double stated_max_angle(const JsonObject& fisheye) {
   return limit == 0 ? kPi : std::atan(limit);
 }
 
-// Brand and model, without what would break a message's line.
+// The brand and the model, without characters that would break a message's line.
 std::string camera_of(const JsonObject& profile) {
   std::string camera;
   for (const char* key : {"camera_brand", "camera_model"}) {

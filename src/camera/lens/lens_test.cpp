@@ -43,7 +43,7 @@ TEST(Fisheye, EquidistantMapsAngleToRadius) {
   const Lens lens = fisheye_from_vertical_fov(180, kSize);
   const double focal = 480 / (kPi / 2);
   EXPECT_NEAR(lens.focal_px(), focal, 1e-9);
-  const auto pixel = lens.pixel_from_cam({0, 1, 0});  // 90 degrees down: the lower border
+  const auto pixel = lens.pixel_from_cam({0, 1, 0});  // 90 degrees down is the lower border
   ASSERT_TRUE(pixel);
   EXPECT_NEAR(pixel->y(), 960, 1e-9);
   EXPECT_TRUE(lens.pixel_from_cam({1, 0, -1}));  // 135 degrees from the axis
@@ -72,7 +72,7 @@ TEST(EveryLens, RoundTripsOverItsWholeValidField) {
   }
 }
 
-// Calibrations that nobody chose: up to the very edge of the field, where the curve has gone flat.
+// Random coefficients test the very edge of the field, where the slope of the curve reaches 0.
 TEST(EveryLens, RoundTripsForRandomCoefficients) {
   Random random(7);
   double worst = 0;
@@ -98,7 +98,7 @@ TEST(EveryLens, RoundTripsForRandomCoefficients) {
   EXPECT_LT(worst, 1e-9);
 }
 
-// Newton's method alone circles around the bend of this curve for ever.
+// Newton's method alone would circle around the bend of this curve for ever.
 TEST(Fisheye, InverseDoesNotCircle) {
   const Lens lens(Fisheye{{500, 510}, {640, 480}, {0.2700, 0.1117, -0.0664, 0.0017}}, kSize);
   for (int i = 1; i < 5000; ++i) {
@@ -126,7 +126,8 @@ TEST(EveryLens, HasNoPixelBeyondItsField) {
   }
 }
 
-// OpenCV's pixels are integer-centred: (0, 0) is the middle of the first pixel, ours is its corner.
+// OpenCV's pixels are integer-centred: its (0, 0) is the centre of the first pixel, airtruth's is
+// the corner.
 TEST(EveryLens, ProjectsAsOpenCvDoes) {
   Random random(3);
   for (const Lens& lens : every_lens()) {

@@ -60,7 +60,7 @@ std::string trimmed(std::string text) {
 }
 
 // Appends the scalars of a value, a list, or a list of lists to `text`. An alias can stand for a
-// list that stands for many others: what is appended is bounded, and so is the depth.
+// list of aliases, so both the length of the text and the depth are bounded.
 void append(const YAML::Node& node, int depth, std::string& text) {
   if (text.size() > kLongestValue_bytes) return;
   if (node.IsScalar()) text += (text.empty() ? "" : " ") + node.Scalar();

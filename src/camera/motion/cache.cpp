@@ -12,12 +12,12 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kEstimatorVersion = 8;  // raise it whenever the estimator's numbers change
+constexpr int kEstimatorVersion = 8;  // increase it when the estimator's results change
 
 }  // namespace
 
 std::string CacheKey::file_name() const {
-  // Smoothing comes after measuring and is no part of what is kept.
+  // Smoothing is applied after the measurement, so the cached motion does not depend on it.
   return sha256_of(fmt::format("{} {} {} {} {} {} {} {} {} {} {}",
                                kEstimatorVersion,
                                video_sha256,
@@ -39,10 +39,11 @@ constexpr std::string_view kToTheEnd = " to the end";
 
 struct Kept {
   std::vector<FrameMotion> motion;
-  bool to_the_end = false;  // of the video
+  bool to_the_end = false;  // whether the motion covers the rest of the video
 };
 
-// "SHA-256 of the rest[ to the end]", then the rest.
+// The first line is the SHA-256 of the rest of the file, followed by " to the end" where it
+// applies.
 std::optional<Kept> kept(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;
@@ -55,7 +56,7 @@ std::optional<Kept> kept(const fs::path& file) {
     const std::string head = text.substr(0, line);
     if (head != hash && head != hash + std::string(kToTheEnd)) return std::nullopt;
     return Kept{motion_from_csv(body, file), head != hash};
-  } catch (const Error&) {  // not whole, or not ours: measured anew
+  } catch (const Error&) {  // incomplete, or another kind of file: the motion is measured again
     return std::nullopt;
   }
 }

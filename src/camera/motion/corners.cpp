@@ -54,8 +54,8 @@ cv::Mat allowed_area(int width, int height, const image::Mask* own_aircraft) {
   return allowed;
 }
 
-// Searched at half size, where it is four times cheaper and as good, since Lucas-Kanade tracks
-// whatever stands at the point.
+// Corners are searched at half size, which is four times faster. The position need not be exact,
+// since Lucas-Kanade tracks the surroundings of any point.
 std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
                                         const Options& options,
@@ -78,7 +78,7 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
   std::vector<cv::Point2f> chosen;
   const auto choose = [&](const std::vector<cv::Point2f>& from, int in_cell, int most) {
     std::vector<int> taken(kGrid * kGrid, 0);
-    for (const cv::Point2f& c : from) {  // best first
+    for (const cv::Point2f& c : from) {  // strongest first
       const int column =
           std::min(kGrid - 1, static_cast<int>(c.x * kGrid / static_cast<float>(grey.cols)));
       const int row =

@@ -7,9 +7,11 @@
 
 namespace airtruth::motion {
 
-// Weights of the ideal differentiator under a Hann window: (-1)^(j + 1) / j for the frames j after
-// and before, 1 to reach, per frame. A shake of 10 Hz in 30 frames/s keeps 0.98 of its rate, where
-// a plain difference keeps 0.41; with one frame to each side it is that difference.
+// The weights of the ideal differentiator under a Hann window: the derivative per frame at frame 0
+// is the sum over j = 1..reach of weight(j) (x[j] - x[-j]), with weight(j) = (-1)^(j + 1) / j times
+// the window. `reach` is at least 1. A shake of 10 Hz at 30 frames/s keeps 0.98 of its rate at a
+// large reach, where the plain difference (x[1] - x[-1]) / 2, which is used for reach = 1, keeps
+// 0.41.
 inline double differentiator_weight(int j, int reach) {
   if (reach == 1) return 0.5;
   const double window = 0.5 * (1 + std::cos(kPi * j / (reach + 1)));

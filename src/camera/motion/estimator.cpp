@@ -9,13 +9,13 @@
 namespace airtruth::motion {
 namespace {
 
-// Looks for the horizon every half a second, and more often while it is needed.
+// Detects the horizon every half a second, and more often while the rotation is uncertain.
 class HorizonWatch {
  public:
   HorizonWatch(const lens::Lens& lens, const image::Mask* own_aircraft)
       : finder_(lens, own_aircraft) {}
 
-  // Returns where up is then, in the reference of what was measured; empty where it is not known.
+  // Returns the up direction in the reference of the measured rotation; empty where it is unknown.
   std::optional<Vector3> hold(FrameMotion& motion,
                               const image::Picture& picture,
                               double stray_rad) {
@@ -28,7 +28,7 @@ class HorizonWatch {
       const Quaternion before = hold_.held(*motion.rotation);
       const auto found = look(picture, *motion.rotation);
       if (found && found->is_sharp()) hold_.see(*motion.rotation, found->up_in_cam);
-      // Put right by so much at once, it does not go on from the frame before.
+      // After a correction of this size the frame does not continue the frame before it.
       if (hold_.held(*motion.rotation).angularDistance(before) > kLostRad)
         motion.state = State::kCut;
     }

@@ -9,8 +9,9 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr double kMinSpan =
-    0.35;  // share of the image's sides that the inliers' hull must cover for a homography
+// The least extent of the inliers for a homography, as a share of the image's sides (span_of).
+// Chosen by judgement, as are the two constants below.
+constexpr double kMinSpan = 0.35;
 constexpr double kMinInlierShare = 0.35;
 constexpr double kLooser = 3;
 
@@ -21,7 +22,7 @@ Homography eigen_from(const cv::Mat& h) {
   return result;
 }
 
-// Side of a square with the hull's area over the side of one with the image's.
+// The square root of the hull's area over the image's area.
 double span_of(const std::vector<cv::Point2f>& points, cv::Size image) {
   if (points.size() < 3) return 0;
   std::vector<cv::Point2f> hull;
@@ -29,7 +30,8 @@ double span_of(const std::vector<cv::Point2f>& points, cv::Size image) {
   return std::sqrt(cv::contourArea(hull) / (double(image.width) * image.height));
 }
 
-// Orientation kept at every corner, and no corner flung away or the picture crushed.
+// Whether the map keeps the orientation at every corner of the image, and moves and scales it as
+// little as a camera does between two key frames.
 bool plausible(const Homography& h, cv::Size image) {
   if (!h.allFinite()) return false;
   const double reach = 1.5 * std::hypot(image.width, image.height);
@@ -40,7 +42,7 @@ bool plausible(const Homography& h, cv::Size image) {
     const Vector3 q = h * Vector3(corner.x(), corner.y(), 1);
     if (!(q.z() > 0.2 && q.z() < 5)) return false;
     if ((Pixel(q.x() / q.z(), q.y() / q.z()) - corner).norm() > reach) return false;
-    // Determinant of the local map.
+    // The determinant of the local linear map.
     const double local = h.determinant() / (q.z() * q.z() * q.z());
     if (!(local > 0.2 && local < 5)) return false;
   }
@@ -105,8 +107,8 @@ std::optional<ModelFit> fit_model(const std::vector<cv::Point2f>& key,
                                   cv::Size image,
                                   const Options& options) {
   if (static_cast<int>(key.size()) < options.min_inliers) return std::nullopt;
-  // One plane is no exact model of a wide lens or of near ground: a second, looser look before
-  // giving up. The larger rms_px says that it was needed.
+  // A plane map is not exact for a wide lens or near ground, so a second fit with a larger limit
+  // follows before the function gives up. A larger rms_px shows that it was needed.
   for (double limit_px : {options.ransac_px, kLooser * options.ransac_px})
     if (const auto fit = fit_within(key, moved, image, options, limit_px)) return fit;
   return std::nullopt;

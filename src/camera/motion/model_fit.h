@@ -10,6 +10,7 @@
 
 namespace airtruth::motion {
 
+// The map from a key frame to a later frame, with its inliers among the corners.
 struct ModelFit {
   Homography frame_from_key = Homography::Identity();  // OpenCV's integer-centred pixels
   std::vector<bool> is_inlier;
@@ -17,11 +18,14 @@ struct ModelFit {
   double rms_px = 0;
 };
 
-// The plane motion that carries `key` to `moved`: RANSAC, refined on its inliers by least squares
-// (Levenberg-Marquardt). A homography where the inliers span the image; where they lie in a part of
-// it (clouds along a horizon), a similarity inside that part's evidence, since a homography
-// extrapolated from a thin band runs wild. Empty where there are too few inliers, or where the
-// result is no motion that a camera makes between two key frames.
+// Fits the plane map from the corners `key` to their positions `moved`: RANSAC (Fischler and Bolles
+// 1981), then least squares on the inliers (Levenberg-Marquardt). Both vectors have the same size,
+// and all positions are OpenCV's integer-centred pixels. The fit is a homography where the hull of
+// the inliers covers enough of the image (the square root of its share of the area is at least
+// 0.35). Otherwise, for example with clouds along a horizon, it is a similarity, since a homography
+// from a thin band of points extrapolates badly. The result is empty where there are fewer than
+// options.min_inliers inliers, or where the map is no motion that a camera makes between two key
+// frames.
 std::optional<ModelFit> fit_model(const std::vector<cv::Point2f>& key,
                                   const std::vector<cv::Point2f>& moved,
                                   cv::Size image,

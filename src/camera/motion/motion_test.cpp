@@ -39,7 +39,7 @@ cv::Mat wall() {
   return grey;
 }
 
-// Where frame k lies: drift, shake, roll and a little perspective, in OpenCV's pixels.
+// The position of frame k: drift, shake, roll and a little perspective, in OpenCV's pixels.
 Homography frame_from_wall(double k) {
   Homography h = Homography::Identity();
   const double a = 0.01 * std::sin(0.3 * k);
@@ -124,9 +124,9 @@ TEST(Estimator, SaysWhenItDoesNotKnow) {
   EXPECT_EQ(bridged.state, State::kBridged);
   EXPECT_EQ(bridged.inliers, 0);
   EXPECT_TRUE(bridged.frame_from_reference.isApprox(
-      before.frame_from_reference));  // carried on, not identity
+      before.frame_from_reference));  // the motion continues; it is not the identity
   EXPECT_FALSE(bridged.frame_from_reference.isIdentity(1e-3));
-  // Linked again across the gap.
+  // The frame after the gap is linked to the frames before it.
   const FrameMotion after = estimator.next(frame(texture, 7), 7 / 30.0);
   EXPECT_EQ(after.state, State::kMeasured);
   EXPECT_LT(corner_error(after.frame_from_reference,
@@ -146,7 +146,7 @@ TEST(Estimator, FlagsACut) {
   EXPECT_EQ(estimator.next(frame(other, 5), 5 / 30.0).state, State::kMeasured);
 }
 
-// A picture of sky alone has no corners whose loss would reveal a cut.
+// The loss of corners would reveal a cut, but a picture of sky alone has no corners.
 TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
   Estimator estimator(kWidth, kHeight, {});
   for (int k = 0; k < 4; ++k) estimator.next(blank(), k / 30.0);
@@ -155,8 +155,8 @@ TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
   EXPECT_EQ(estimator.next(blank(), 6 / 30.0).state, State::kBridged);
 }
 
-// Something bright that suddenly covers a third of the view changes the picture as a cut does; the
-// rest of it goes on.
+// A bright object that suddenly covers a third of the view changes the picture as a cut does, while
+// the rest of the picture continues.
 TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
   const cv::Mat texture = wall();
   Estimator estimator(kWidth, kHeight, {});
@@ -171,7 +171,7 @@ TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
             1.5);
 }
 
-// Two shots, each with its shake and drift: what is smoothed of each is what it is by itself.
+// Two shots, each with its own shake and drift: smoothing both at once equals smoothing each alone.
 TEST(Smoothed, DoesNotRunAcrossACut) {
   const cv::Mat texture = wall();
   cv::Mat other;

@@ -9,9 +9,9 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr double kMinKeptShare = 0.4;  // of a key frame's corners, before a new key frame is made
+constexpr double kMinKeptShare = 0.4;  // with fewer corners of the key frame, a new one is made
 
-// OpenCV's integer-centred pixels to ours: p_ours = p_cv + 0.5.
+// Converts a map between OpenCV's integer-centred pixels to airtruth's: p_airtruth = p_cv + 0.5.
 Homography ours_from_cv(const Homography& h) {
   Homography to = Homography::Identity();
   to(0, 2) = to(1, 2) = 0.5;
@@ -39,8 +39,8 @@ class Planar : public Follower {
 
   Options options_;
   cv::Mat allowed_;
-  // The key frame: its corners, where they are now, and its place against the first frame (OpenCV's
-  // pixels).
+  // The key frame: its corners, their positions in the latest frame, and its map from the first
+  // frame (OpenCV's pixels).
   std::vector<cv::Point2f> key_corners_;
   std::vector<cv::Point2f> now_corners_;
   Homography key_from_first_ = Homography::Identity();
@@ -57,7 +57,8 @@ void Planar::make_key(const cv::Mat& grey) {
   key_from_first_ = now_from_first_;
 }
 
-// `key` keeps the corners that survive, `moved` where they are now.
+// Tracks the corners into the frame. `key` keeps those that were found, and `moved` their
+// positions.
 void Planar::track(const Pyramid& now,
                    std::vector<cv::Point2f>& key,
                    std::vector<cv::Point2f>& moved) const {
@@ -72,7 +73,7 @@ void Planar::track(const Pyramid& now,
 
 FrameMotion Planar::bridged(State state) const {
   FrameMotion motion;
-  motion.frame_from_reference = ours_from_cv(now_from_first_);  // carried on, and said so
+  motion.frame_from_reference = ours_from_cv(now_from_first_);  // the state says that it is held
   motion.state = state;
   return motion;
 }
@@ -81,7 +82,7 @@ FrameMotion Planar::measured(const ModelFit& fit,
                              const std::vector<cv::Point2f>& key,
                              const std::vector<cv::Point2f>& moved,
                              const cv::Mat& grey) {
-  // h33 passes through 0 where the camera turns away from the first frame; the determinant does
+  // h33 passes through 0 where the camera turns away from the first frame. The determinant does
   // not.
   const Homography composed = fit.frame_from_key * key_from_first_;
   now_from_first_ = composed / std::cbrt(composed.determinant());
@@ -91,7 +92,7 @@ FrameMotion Planar::measured(const ModelFit& fit,
   motion.rms_px = fit.rms_px;
   motion.state = State::kMeasured;
   bridged_in_row_ = 0;
-  // Outliers are let go: what does not follow the far plane now will not follow it later.
+  // Outliers are dropped: a corner that does not follow the far plane now will not follow it later.
   key_corners_.clear();
   now_corners_.clear();
   for (std::size_t i = 0; i < key.size(); ++i) {
@@ -112,7 +113,7 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
     make_key(grey);
     return {};
   }
-  // A damaged frame's samples are not trusted; the next whole one is linked to the last whole one.
+  // The samples of a damaged frame are unreliable. The next intact frame is linked to the last one.
   if (damaged) return bridged(State::kBridged);
   std::vector<cv::Point2f> key;
   std::vector<cv::Point2f> moved;
@@ -129,7 +130,7 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   const CornerLoss loss = corner_loss(
       fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers, begins_shot);
   if (loss.starts_anew) {
-    // Start anew from here; what is known of the place is carried on.
+    // Tracking starts anew from this frame; the position of the last linked frame is kept.
     previous_ = std::move(now);
     key_corners_ = now_corners_ = fresh;
     key_count_ = fresh.size();

@@ -15,7 +15,7 @@ constexpr int kReachWidth = 640;
 constexpr int kReachHeight = 480;
 constexpr double kFocalPx = 500;
 
-// A pinhole that has turned right: H = K R K^-1, with h33 = 1 as the estimator has it.
+// A pinhole that turns right: H = K R K^-1, scaled to h33 = 1 as the estimator does.
 FrameMotion turned(int frame, double yaw_deg) {
   Homography k;
   k << kFocalPx, 0, kReachWidth / 2.0, 0, kFocalPx, kReachHeight / 2.0, 0, 0, 1;
@@ -54,7 +54,7 @@ TEST(Reach, ARotationHasNone) {
   EXPECT_EQ(within_reach({motion}, kReachWidth, kReachHeight)[0].state, State::kMeasured);
 }
 
-// A turn at a steady rate has no shake, also where h33 changes its sign.
+// A turn at a steady rate has no shake, even where h33 changes its sign.
 TEST(Reach, TheSmoothedReferenceNeedsNone) {
   std::vector<FrameMotion> all;
   for (int k = 0; k < 120; ++k) all.push_back(turned(k, 0.25 + 1.5 * k));
@@ -66,7 +66,7 @@ TEST(Reach, TheSmoothedReferenceNeedsNone) {
       EXPECT_LT((apply(steady[k].frame_from_reference, p) - p).norm(), 0.05) << k;
 }
 
-// Rows of a panel that a line of this colour crosses, but for columns near one frame.
+// The number of rows of a panel that a line of this colour crosses, without columns near one frame.
 int rows_of_line(const image::Rgb8& picture, int left_out_x) {
   int top = picture.height;
   int bottom = 0;

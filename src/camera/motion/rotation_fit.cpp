@@ -14,11 +14,12 @@ namespace {
 constexpr int kTrials = 300;
 constexpr int kRefinements = 12;
 constexpr double kMinTurnShare = 0.15;
-constexpr double kMinSpreadRad = 0.02;  // of the inliers about their own middle, rms
+constexpr double kMinSpreadRad = 0.02;  // rms distance of the inliers from their mean direction
 constexpr double kShortestBaseRad = 0.05;
-constexpr int kFarSteps = 4;  // of kRefinements, in which near points do not count
+constexpr int kFarSteps = 4;  // of kRefinements: the steps that use far points alone
 
-// From two directions: the axes of their common plane, before and after (Black 1964, "TRIAD").
+// The rotation from two directions, by the axes of their common plane before and after (Black 1964,
+// "TRIAD").
 std::optional<Quaternion> from_pair(const Bearings& p, const Bearings& q) {
   const auto axes = [](const Vector3& a, const Vector3& b) -> std::optional<Matrix3> {
     const Vector3 normal = a.cross(b);
@@ -52,7 +53,8 @@ std::vector<Bearings> far_of(const std::vector<Bearings>& bearings) {
   return result;
 }
 
-// The best of kTrials pairs; empty where fewer than min_inliers, or kMinTurnShare of all, agree.
+// The best rotation of kTrials pairs. It is empty where fewer than min_inliers points or fewer than
+// kMinTurnShare of all points agree with it.
 std::optional<Matrix3> consensus(const std::vector<Bearings>& bearings,
                                  double limit_rad,
                                  int min_inliers,
@@ -118,7 +120,7 @@ std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
   RotationFit fit;
   fit.cam_from_reference = Quaternion(*start);
   std::vector<double> weights(n);
-  double scale = limit_rad;  // narrows to what the points themselves are worth
+  double scale = limit_rad;  // shrinks to the measured noise of the points
   const double noise_rad = limit_rad / 4;
   for (int step = 0; step < kRefinements; ++step) {
     const Matrix3 r = fit.cam_from_reference.toRotationMatrix();

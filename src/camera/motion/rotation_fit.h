@@ -9,7 +9,7 @@
 
 namespace airtruth::motion {
 
-// A point seen twice, as unit vectors.
+// The directions of a point in two frames, as unit vectors.
 struct Bearings {
   Vector3 in_reference;
   Vector3 in_cam;

@@ -35,7 +35,7 @@ TEST(RotationFit, HoldsBesideFortyPerCentOfOutliers) {
   EXPECT_FALSE(fit_rotation({bearings.begin(), bearings.begin() + 5}, 2e-3, 12, 1));
 }
 
-// Level ground 30 m below a camera that flies half a metre ahead, and a fifth as many far points.
+// Level ground 30 m below a camera that flies `way_m` ahead, and a fifth as many far points.
 std::vector<Bearings> flown_over(const Quaternion& turned, double way_m, bool is_told) {
   Random random(8);
   const Vector3 up(0, -1, 0);  // camera axes
@@ -64,7 +64,7 @@ TEST(RotationFit, NearGroundDoesNotPullIt) {
   std::printf("pulled by near ground: %.3f mrad; far alone: %.3f mrad\n", pulled_mrad, far_mrad);
   EXPECT_GT(pulled_mrad, 2 * far_mrad);
   EXPECT_LT(far_mrad, 0.25);             // an eighth of the limit
-  EXPECT_LT(error_mrad(0, true), 0.03);  // at rest all of it counts
+  EXPECT_LT(error_mrad(0, true), 0.03);  // at rest there is no parallax, and all points count
 }
 
 std::vector<FrameMotion> shaken(int count) {
@@ -96,7 +96,7 @@ TEST(ShakeOf, KeepsTheRateOfFastShake) {
     worst = std::max(worst, (shake.rate_radps - truth).norm() / truth.norm());
   }
   EXPECT_LT(worst, 0.1);
-  // Nothing is told across a cut.
+  // No rate is known across a cut.
   auto cut = motion;
   cut[30].state = State::kCut;
   cut[30].rotation = turn(90, 0, 0);
@@ -111,7 +111,7 @@ TEST(Motion, RotationsSurviveACsvAndAreSmoothed) {
   Options options;
   options.smoothing_s = 0.3;
   const auto smooth = smoothed(motion, options);
-  // The steady turn is gone, the shake is left.
+  // Smoothing removes the steady turn and leaves the shake.
   EXPECT_LT(degrees(smooth[45].rotation->angularDistance(Quaternion::Identity())), 1.0);
   EXPECT_THROW(
       motion_from_csv("frame,time_s,qw,qx,qy,qz,inliers,rms_px,state\n0,0,2,0,0,0,1,0,measured\n",
@@ -139,13 +139,13 @@ std::vector<std::uint8_t> together(std::vector<std::uint8_t> a,
   return a;
 }
 
-// A packet as GoPro's specification of GPMF has it.
+// The angle between the measured and the true up direction.
 double off_level_deg(const Quaternion& measured, const Quaternion& truth, const Vector3& up) {
   return degrees(std::acos(std::clamp((measured * up).dot(truth * up), -1.0, 1.0)));
 }
 
-// A key frame a second for two hours, each tied on a fiftieth of a degree wrong: a walk of more
-// than a degree, beside horizons that are seen to a third of a degree.
+// A key frame per second for two hours, each linked with an error of a fiftieth of a degree, drifts
+// by more than a degree in all. The horizons are accurate to a third of a degree.
 TEST(HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
   Random random(5);
   const auto noise = [&](double sigma_deg) {
@@ -178,9 +178,9 @@ TEST(HorizonHold, PutsRightWhatWasLostAndForgetsWhatCannotBe) {
   const Vector3 up = Vector3(0, -1, 0.1).normalized();
   HorizonHold hold;
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(hold.see(Quaternion::Identity(), up));
-  // Something else that is straight and level nowhere near.
+  // A line in another place, which is straight and level as well.
   EXPECT_FALSE(hold.see(Quaternion::Identity(), turn(0, 0, 25) * up));
-  // Not followed for a while, carried on: 20 degrees one way and 6 another were missed.
+  // Tracking stopped for a while, and the rotation missed 20 degrees of yaw and 6 degrees of pitch.
   const Quaternion truth = turn(6, 0, 20);
   hold.stray(0.5);
   EXPECT_GT(off_level_deg(hold.held(Quaternion::Identity()), truth, up), 5);
@@ -201,7 +201,7 @@ TEST(Gpmf, AGyroStreamIsRead) {
   EXPECT_DOUBLE_EQ(samples[0].time_s, 2.25);
   EXPECT_TRUE(samples[0].rate_radps.isApprox(Vector3(1, -1, 0.5)));
   EXPECT_TRUE(samples[1].rate_radps.isApprox(Vector3(0, 0, 2)));
-  // Cut anywhere, it is read up to there or not at all.
+  // A packet that is cut off anywhere is read up to that place or not at all.
   for (std::size_t n = 0; n < packet.size(); ++n) gyro_from_gpmf(std::span(packet).first(n), 0, 1);
 }
 

@@ -13,13 +13,13 @@ constexpr int kReach = 8;
 
 bool is_away(const FrameMotion& motion) { return motion.state == State::kTurnedAway; }
 
-// Does frame i go on from the frame before it? Not after a cut, and not where motion that is held
-// meets motion that is measured.
+// Whether frame i continues the frame before it. It does not after a cut, nor where a held motion
+// is next to a measured one.
 bool goes_on(const std::vector<FrameMotion>& motion, std::size_t i) {
   return motion[i].state != State::kCut && is_away(motion[i]) == is_away(motion[i - 1]);
 }
 
-// How far frames around k are linked to it, at even times; at most kReach to each side.
+// The number of frames on each side of k that are linked to it at equal intervals; at most kReach.
 int linked_reach(const std::vector<FrameMotion>& motion, std::size_t k) {
   int reach = 0;
   const double step_s = k + 1 < motion.size() ? motion[k + 1].time_s - motion[k].time_s : 0;
@@ -60,7 +60,7 @@ Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
     }
     return shake;
   }
-  // At an end: the one neighbour that there is.
+  // At an end of the linked frames only one neighbour remains.
   if (k + 1 < motion.size() && goes_on(motion, k + 1))
     add(k + 1, 1 / (motion[k + 1].time_s - now.time_s));
   else if (k > 0 && goes_on(motion, k))

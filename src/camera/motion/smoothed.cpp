@@ -11,25 +11,25 @@ namespace airtruth::motion {
 namespace {
 
 Homography unit_determinant(const Homography& h) {
-  // The cube root keeps the sign: h33 = 1 makes -H of an H that has turned past a right angle.
+  // The cube root keeps the sign. A scale of h33 = 1 turns H into -H beyond a turn of 90 degrees.
   const double d = h.determinant();
   return d != 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
 }
 
-// Consecutive frames: b_from_a of neighbours, from the composed maps.
+// The map between neighbouring frames, b_from_a, from the composed maps.
 Homography step(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
   return unit_determinant(motion[to].frame_from_reference *
                           motion[from].frame_from_reference.inverse());
 }
 
-// How frame `to` is turned against `from`, as a rotation vector.
+// The rotation of frame `to` against frame `from`, as a rotation vector.
 Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
   const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
   return turned.angle() * turned.axis();
 }
 
-// The same on the group of rotations, where every frame of the window can be held against k at
-// once.
+// The same on the group of rotations. Here every frame of the window is compared with frame k
+// directly.
 void smooth_rotations(const std::vector<FrameMotion>& against_first,
                       double sigma_s,
                       std::vector<FrameMotion>& result) {
@@ -57,11 +57,11 @@ void smooth_rotations(const std::vector<FrameMotion>& against_first,
 
 }  // namespace
 
-// Around frame k its neighbours i are seen through i_from_k. The steady camera is the one to which
-// the weighted mean of log(i_from_k) is zero: steady_from_k = exp(sum w_i log(i_from_k)), a
-// first-order mean on the group of homographies (Fletcher 2004); the frame's shake is the inverse.
-// Only maps between frames close in time are used, so that a long turn never meets a homography
-// that is no longer one, and nothing is smoothed across a cut.
+// The neighbours i of frame k are compared with it by i_from_k. The steady camera is the one for
+// which the weighted mean of log(i_from_k) is zero: steady_from_k = exp(sum w_i log(i_from_k)), a
+// first-order mean on the group of homographies (Fletcher 2004). The frame's shake is the inverse.
+// Only maps between frames that are close in time are used, since no homography describes a long
+// turn. Nothing is smoothed across a cut.
 std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
                                   const Options& options) {
   check(options.smoothing_s > 0, "smoothing takes time");
@@ -85,7 +85,7 @@ std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
         if (std::abs(dt) > 2.5) return;
         i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
         const double weight = std::exp(-0.5 * dt * dt);
-        // log of a matrix near the identity, to second order in the step from it: enough within the
+        // The logarithm of a matrix near the identity, to second order. This is exact enough in the
         // window.
         const Homography e = i_from_k - Homography::Identity();
         const Homography log = e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3)

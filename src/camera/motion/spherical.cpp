@@ -8,26 +8,29 @@
 #include "camera/motion/follower.h"
 #include "camera/motion/rotation_fit.h"
 
-// The camera's turning on the sphere. Far points keep their bearings in the reference camera; a
-// frame's rotation is the one that carries them to where their corners are seen. Corners are found
-// again in each frame from the key frame that they were taken from, not from the frame before, so
-// that nothing drifts while a key frame lasts; several key frames stay in play, and each new one is
-// tied to all that it sees, and they to it (sliding window).
+// The rotation of the camera from far points, whose directions in the reference camera are
+// constant. The rotation of a frame is the one that maps these directions to the detected corners.
+// Corners are tracked from the key frame that they were selected in, not from the previous frame,
+// so that no drift accumulates while a key frame is in use. Several key frames are in use at a
+// time, and each new one is linked to all whose corners it shows (a sliding window).
 namespace airtruth::motion {
 namespace {
 
-constexpr std::size_t kMostKeys = 5;
+// All constants are chosen by judgement; decision 0016 has the drift that results.
+constexpr std::size_t kMaxKeyFrames = 5;
 constexpr std::size_t kFromOlderKey = 110;  // corners of a key frame that is not the newest
-constexpr std::size_t kStepCorners = 150;   // from the frame before, for the first guess
-constexpr double kMinProvenShare = 0.4;     // of the newest key frame's far points
-constexpr double kLargestTurnRad = 0.2;  // from a key frame: beyond it its patches look different
-constexpr int kMostMisses = 3;           // in a row, before a corner is let go
-constexpr int kSweeps = 4;               // of the sliding window
-constexpr double kStepLimit = 3;         // times ransac_px, for the first guess
-constexpr double kUnknownTurnRad = 0.5;  // of a camera that was not followed for a while
+constexpr std::size_t kStepCorners = 150;   // corners of the previous frame, for the first guess
+// A new key frame is made where a smaller share of the newest one's far points is found, or beyond
+// kLargestTurnRad from it, where the patches around its corners look different.
+constexpr double kMinProvenShare = 0.4;
+constexpr double kLargestTurnRad = 0.2;
+constexpr int kMaxMissesInRow = 3;       // a corner that is missed more often is dropped
+constexpr int kSweeps = 4;               // passes over the sliding window
+constexpr double kStepLimit = 3;         // the limit of an inlier of the first guess, in ransac_px
+constexpr double kUnknownTurnRad = 0.5;  // the error of the rotation after tracking was lost
 
 struct Landmark {
-  cv::Point2f corner;  // in its key frame
+  cv::Point2f corner;  // the position in its key frame
   Vector3 in_key_cam;
   int misses = 0;
 };
@@ -35,13 +38,13 @@ struct Landmark {
 struct Key {
   Pyramid pyramid;
   std::vector<Landmark> landmarks;
-  std::size_t proven = 0;  // landmarks that were far points, when first looked for
+  std::size_t proven = 0;  // landmarks that were inliers in the first frame after it
   Quaternion cam_from_reference = Quaternion::Identity();
   int id = 0;
   std::int64_t frame = 0;
 };
 
-// What two key frames have both seen, each in its own camera.
+// The landmarks that two key frames share, in each one's own camera.
 struct Link {
   int from = 0;  // ids
   int to = 0;
@@ -100,7 +103,7 @@ class Spherical : public Follower {
     return lens_.ray_from_pixel({p.x + 0.5, p.y + 0.5});
   }
 
-  // Empty where no horizon is known.
+  // Whether a corner is far. The function is empty where no horizon is known.
   std::function<bool(const cv::Point2f&)> far_corners() const {
     if (!up_in_reference_) return {};
     return
@@ -115,7 +118,7 @@ class Spherical : public Follower {
     return {in_reference, in_cam, nearness_of(in_reference, *up_in_reference_, frames)};
   }
 
-  // From the frame before: how far did the camera turn, roughly?
+  // A rough rotation of the camera, from the corners of the previous frame.
   std::optional<Quaternion> step(const Pyramid& now,
                                  std::size_t& survivors,
                                  std::vector<Bearings>& pairs) const {
@@ -167,7 +170,7 @@ class Spherical : public Follower {
     return sightings;
   }
 
-  // The fit with its inliers among the first `count` alone.
+  // The fit restricted to the first `count` bearings.
   std::optional<RotationFit> of_first(RotationFit fit,
                                       const std::vector<Bearings>& all,
                                       std::size_t count) const {
@@ -223,7 +226,7 @@ class Spherical : public Follower {
       motion.rotation = now_from_reference_ = keys_.back().cam_from_reference;
     } else {
       for (Key& key : keys_)
-        std::erase_if(key.landmarks, [](const Landmark& l) { return l.misses >= kMostMisses; });
+        std::erase_if(key.landmarks, [](const Landmark& l) { return l.misses >= kMaxMissesInRow; });
     }
     previous_ = std::move(now);
     return motion;
@@ -266,7 +269,7 @@ class Spherical : public Follower {
       previous_corners_.push_back(key.landmarks[i].corner);
     keys_.push_back(std::move(key));
     for (Link& link : links) links_.push_back(std::move(link));
-    if (keys_.size() > kMostKeys) {
+    if (keys_.size() > kMaxKeyFrames) {
       const int gone = keys_.front().id;
       keys_.pop_front();
       std::erase_if(links_, [gone](const Link& l) { return l.from == gone || l.to == gone; });
@@ -274,8 +277,8 @@ class Spherical : public Follower {
     refine_keys();
   }
 
-  // The oldest key frame stays; every other is turned to agree best with all that it shares sights
-  // with.
+  // Fits the rotation of every key frame but the oldest to the landmarks that it shares with
+  // others.
   void refine_keys() {
     const auto find = [&](int id) {
       return std::find_if(keys_.begin(), keys_.end(), [id](const Key& k) { return k.id == id; });
@@ -302,7 +305,7 @@ class Spherical : public Follower {
 
   FrameMotion unmeasured(State state) const {
     FrameMotion motion;
-    motion.rotation = now_from_reference_;  // carried on, and said so
+    motion.rotation = now_from_reference_;  // the last known rotation; the state says so
     motion.state = state;
     return motion;
   }

@@ -14,7 +14,8 @@ cv::Mat mat_of(const image::Plane& plane) {
           static_cast<std::size_t>(plane.stride)};
 }
 
-// H for a plane whose samples are 2^sx by 2^sy pixels, in OpenCV's integer-centred samples.
+// The map H for a plane whose samples have 2^sx by 2^sy pixels, in OpenCV's integer-centred
+// samples.
 cv::Matx33d plane_map(const Homography& h, int sx, int sy) {
   Homography pixel_from_sample = Homography::Identity();
   pixel_from_sample(0, 0) = 1 << sx;
@@ -29,7 +30,7 @@ cv::Matx33d plane_map(const Homography& h, int sx, int sy) {
 
 namespace {
 
-// warp(source, target, sx, sy, black) for each plane.
+// Calls warp(source, target, sx, sy, black) for each plane, where `black` fills what has no source.
 template <typename Warp>
 image::Picture each_plane(const image::Picture& picture, const Warp& warp) {
   image::Picture result = image::make_picture(picture.width, picture.height, picture.colour);
@@ -64,8 +65,8 @@ image::Picture stabilised(const image::Picture& picture, const Homography& frame
 image::Picture stabilised(const image::Picture& picture,
                           const lens::Lens& lens,
                           const Quaternion& cam_from_reference) {
-  // Where each pixel of the reference is in the frame, in our pixels; far away where the lens has
-  // no answer.
+  // The position in the frame, in airtruth's pixels, of each pixel of the reference. Where the lens
+  // has no image, the position is far outside the frame, so that the pixel becomes black.
   constexpr float kNowhere = -1e4F;
   cv::Mat map(picture.height, picture.width, CV_32FC2);
   for (int y = 0; y < picture.height; ++y)
