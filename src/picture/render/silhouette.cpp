@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <variant>
 
 #include "picture/render/marking.h"
 
@@ -18,20 +17,6 @@ constexpr std::size_t kMostTriangles = 192;
 // Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
 // and rays then do all the work.
 constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 25;
-constexpr double kMarginPx = 0.02;
-// A side shorter than this many pixels counts as straight under any lens.
-constexpr double kStraightPx = 4;
-
-std::optional<Pixel> frame_pixel(const View& view,
-                                 const Homography& frame_from_nominal,
-                                 const Quaternion& cam_from_world,
-                                 const Vector3& from_eye_in_world) {
-  const auto nominal = view.lens->pixel_from_cam(cam_from_world * from_eye_in_world);
-  if (!nominal) return std::nullopt;
-  const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
-  if (!(h.z() > 0)) return std::nullopt;
-  return Pixel(h.x() / h.z(), h.y() / h.z());
-}
 
 }  // namespace
 
@@ -51,20 +36,6 @@ struct Silhouette::Pencil {
     const double still = triangle.side[side].dot(direction[k][corner]);
     return moves ? still + triangle.edge[side].dot(moment[k][corner]) : still;
   }
-};
-
-struct Silhouette::Eye {
-  View view;
-  Matrix3 world_from_body;
-  Vector3 eye_in_body;
-  Homography frame_from_nominal;
-  Quaternion cam_from_world;
-
-  std::optional<Pixel> pixel(const Vector3& in_world) const {
-    return frame_pixel(view, frame_from_nominal, cam_from_world, in_world);
-  }
-  bool is_pinhole() const { return std::holds_alternative<lens::Pinhole>(view.lens->model()); }
-  double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
 
 Silhouette::Silhouette(const TracedIntruder& actor,
@@ -88,206 +59,102 @@ Silhouette::Silhouette(const TracedIntruder& actor,
   sort_by_pixel(reaches);
 }
 
+// A vertex is projected when the first triangle asks for it.
+class Silhouette::Vertices {
+ public:
+  Vertices(const TracedIntruder& actor, std::size_t part, const std::vector<Eye>& eyes)
+      : mesh_(actor.placed.model->mesh),
+        body_from_part_(actor.placed.body_from_part[part]),
+        eyes_(eyes),
+        seen_(eyes.size(), std::vector<Seen>(mesh_.positions.size())),
+        known_(mesh_.positions.size(), false),
+        corners_(eyes.size()) {}
+
+  Vector3 in_body(std::uint32_t vertex) const {
+    return Vector3((body_from_part_ * mesh_.positions[vertex]).cast<double>());
+  }
+
+  // The triangle's corners at each moment.
+  const std::vector<Corners>& look_at(const aircraft::Triangle& triangle) {
+    const auto& vertex = triangle.vertex;
+    for (const std::uint32_t v : vertex) project(v);
+    for (std::size_t e = 0; e < eyes_.size(); ++e)
+      corners_[e] = {&seen_[e][vertex[0]], &seen_[e][vertex[1]], &seen_[e][vertex[2]]};
+    return corners_;
+  }
+
+  // The corners of the triangle that was looked at last, at the middle moment.
+  const Corners& middle() const { return corners_[eyes_.size() / 2]; }
+
+ private:
+  void project(std::uint32_t vertex) {
+    if (known_[vertex]) return;
+    known_[vertex] = true;
+    for (std::size_t e = 0; e < eyes_.size(); ++e) {
+      Seen& result = seen_[e][vertex];
+      result.in_world = eyes_[e].world_from_body * (in_body(vertex) - eyes_[e].eye_in_body);
+      const auto pixel = eyes_[e].pixel(result.in_world);
+      result.pixel =
+          pixel ? *pixel : Pixel(Pixel::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
+  }
+
+  const aircraft::Mesh& mesh_;
+  const Eigen::Affine3f& body_from_part_;
+  const std::vector<Eye>& eyes_;
+  std::vector<std::vector<Seen>> seen_;
+  std::vector<bool> known_;
+  std::vector<Corners> corners_;
+};
+
+std::optional<Silhouette::Triangle> Silhouette::triangle_of(
+    const Vertices& vertices, const aircraft::Triangle& source) const {
+  const Vector3& a = vertices.middle()[0]->in_world;
+  const Vector3& b = vertices.middle()[1]->in_world;
+  const Vector3& c = vertices.middle()[2]->in_world;
+  Triangle triangle{{a.cross(b), b.cross(c), c.cross(a)}, {}, true};
+  const double turn = a.dot(triangle.side[1]);
+  if (turn == 0 && !actor_.moves) return std::nullopt;
+  if (actor_.moves) {
+    const std::array<Vector3, 3> p = {vertices.in_body(source.vertex[0]),
+                                      vertices.in_body(source.vertex[1]),
+                                      vertices.in_body(source.vertex[2])};
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.side[k] = p[k].cross(p[(k + 1) % 3]);
+      triangle.edge[k] = p[(k + 1) % 3] - p[k];
+    }
+  }
+  if (turn < 0)
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.side[k] = -triangle.side[k];
+      triangle.edge[k] = -triangle.edge[k];
+    }
+  return triangle;
+}
+
 void Silhouette::add_part(const TracedIntruder& actor,
                           std::size_t part,
                           const std::vector<Eye>& eyes,
                           std::vector<Reach>& reaches) {
   const Model::Impl& model = *actor.placed.model;
-  const aircraft::Mesh& mesh = model.mesh;
-  const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
-  std::vector<std::vector<Seen>> seen(eyes.size(), std::vector<Seen>(mesh.positions.size()));
-  std::vector<bool> known(mesh.positions.size(), false);
-  const auto in_body = [&](std::uint32_t vertex) {
-    return Vector3((actor.placed.body_from_part[part] * mesh.positions[vertex]).cast<double>());
-  };
-  const auto look_at = [&](std::uint32_t vertex) {
-    if (known[vertex]) return;
-    known[vertex] = true;
-    for (std::size_t e = 0; e < eyes.size(); ++e) {
-      Seen& result = seen[e][vertex];
-      result.in_world = eyes[e].world_from_body * (in_body(vertex) - eyes[e].eye_in_body);
-      const auto pixel = eyes[e].pixel(result.in_world);
-      result.pixel = pixel ? *pixel : Pixel(nowhere.head<2>());
-    }
-  };
+  const aircraft::Part& mesh_part = model.mesh.parts[part];
   // Rays handle a part that spins during the exposure.
-  const bool spins = actor.moves && mesh.parts[part].spins;
+  const bool spins = actor.moves && mesh_part.spins;
   const std::optional<Reach> disc =
-      spins ? std::optional(reach_of_disc(mesh, mesh.parts[part], eyes)) : std::nullopt;
-  const auto& source = mesh.parts[part].triangles;
-  std::vector<std::array<const Seen*, 3>> corners(eyes.size());
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    const auto& vertex = source[i].vertex;
-    for (const std::uint32_t v : vertex) look_at(v);
-    for (std::size_t e = 0; e < eyes.size(); ++e)
-      corners[e] = {&seen[e][vertex[0]], &seen[e][vertex[1]], &seen[e][vertex[2]]};
+      spins ? std::optional(reach_of_disc(patch_, model.mesh, mesh_part, eyes)) : std::nullopt;
+  Vertices vertices(actor, part, eyes);
+  for (std::size_t i = 0; i < mesh_part.triangles.size(); ++i) {
+    const std::vector<Corners>& corners = vertices.look_at(mesh_part.triangles[i]);
     const Reach reach = spins             ? *disc
-                        : eyes.size() > 1 ? reach_over_time(corners, eyes)
-                                          : reach_of(corners[0], eyes[0]);
-    if (reach.x0 >= reach.x1 || reach.y0 >= reach.y1) continue;
-    const auto& middle = corners[eyes.size() / 2];
-    const Vector3& a = middle[0]->in_world;
-    const Vector3& b = middle[1]->in_world;
-    const Vector3& c = middle[2]->in_world;
-    Triangle triangle{
-        {a.cross(b), b.cross(c), c.cross(a)}, {}, model.opaque[part][i] != 0 && !spins};
-    const double turn = a.dot(triangle.side[1]);
-    // The triangle is seen edge-on.
-    if (turn == 0 && !actor.moves) continue;
-    if (actor.moves) {
-      const std::array<Vector3, 3> p = {in_body(vertex[0]), in_body(vertex[1]), in_body(vertex[2])};
-      for (std::size_t k = 0; k < 3; ++k) {
-        triangle.side[k] = p[k].cross(p[(k + 1) % 3]);
-        triangle.edge[k] = p[(k + 1) % 3] - p[k];
-      }
-    }
-    if (turn < 0)
-      for (std::size_t k = 0; k < 3; ++k) {
-        triangle.side[k] = -triangle.side[k];
-        triangle.edge[k] = -triangle.edge[k];
-      }
-    triangles_.push_back(triangle);
+                        : eyes.size() > 1 ? reach_over_time(patch_, corners, eyes)
+                                          : reach_of(patch_, corners[0], eyes[0]);
+    if (reach.empty()) continue;
+    auto triangle = triangle_of(vertices, mesh_part.triangles[i]);
+    if (!triangle) continue;
+    triangle->opaque = model.opaque[part][i] != 0 && !spins;
+    triangles_.push_back(*triangle);
     reaches.push_back(reach);
   }
-}
-
-// The reach of a spinning part at any angle: that of an octahedron about a sphere about its hub.
-Silhouette::Reach Silhouette::reach_of_disc(const aircraft::Mesh& mesh,
-                                            const aircraft::Part& part,
-                                            const std::vector<Eye>& eyes) const {
-  float radius_m = 0;
-  for (const aircraft::Triangle& triangle : part.triangles)
-    for (const std::uint32_t v : triangle.vertex)
-      radius_m = std::max(radius_m, (mesh.positions[v] - part.centre_in_body).norm());
-  const double reach_m = std::sqrt(3.0) * static_cast<double>(radius_m);
-  BoxBounds bounds;
-  for (const Eye& eye : eyes)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vector3 in_body = part.centre_in_body.cast<double>();
-        in_body[axis] += side * reach_m;
-        const auto pixel = eye.pixel(eye.world_from_body * (in_body - eye.eye_in_body));
-        if (!pixel) return {patch_.x, patch_.y, patch_.right(), patch_.bottom()};
-        bounds.add(*pixel);
-      }
-  const Box box = *bounds.box();
-  return reach_within(patch_, {box.x, box.y}, {box.right(), box.bottom()}, 1);
-}
-
-// The union of the reaches at each moment. Between moments the corners follow parabolas, which
-// deviate from their chords by an eighth of the second difference.
-Silhouette::Reach Silhouette::reach_over_time(
-    const std::vector<std::array<const Seen*, 3>>& corners, const std::vector<Eye>& eyes) const {
-  Reach all{patch_.right(), patch_.bottom(), patch_.x, patch_.y};
-  for (std::size_t e = 0; e < eyes.size(); ++e) {
-    const Reach r = reach_of(corners[e], eyes[e]);
-    if (r.x0 >= r.x1 || r.y0 >= r.y1) {
-      // The triangle is outside the patch at this moment, but its path may cross the patch.
-      for (const Seen* corner : corners[e]) {
-        if (!corner->pixel.allFinite()) continue;
-        const Reach point = reach_within(patch_, corner->pixel, corner->pixel, 1);
-        all = {std::min(all.x0, point.x0),
-               std::min(all.y0, point.y0),
-               std::max(all.x1, point.x1),
-               std::max(all.y1, point.y1)};
-      }
-      continue;
-    }
-    all = {std::min(all.x0, r.x0),
-           std::min(all.y0, r.y0),
-           std::max(all.x1, r.x1),
-           std::max(all.y1, r.y1)};
-  }
-  double bulge = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Pixel second = corners[0][k]->pixel - 2 * corners[1][k]->pixel + corners[2][k]->pixel;
-    if (second.allFinite()) bulge = std::max(bulge, second.cwiseAbs().maxCoeff() / 8);
-  }
-  if (all.x0 >= all.x1 || all.y0 >= all.y1) return {};
-  const int more = static_cast<int>(std::ceil(std::min(bulge, 1e4)));
-  return {std::max(all.x0 - more, patch_.x),
-          std::max(all.y0 - more, patch_.y),
-          std::min(all.x1 + more, patch_.right()),
-          std::min(all.y1 + more, patch_.bottom())};
-}
-
-// Bounds of the picture of the part of a triangle in front of a pinhole's plane. Empty where no
-// part is, or where a point of it has no pixel.
-BoxBounds Silhouette::bounds_before_plane(const std::array<const Seen*, 3>& corners,
-                                          const Eye& eye,
-                                          bool& all_have_pictures) {
-  double size = 0;
-  for (const Seen* corner : corners) size = std::max(size, corner->in_world.norm());
-  const double near = 1e-7 * size;
-  BoxBounds bounds;
-  const auto add = [&](const Vector3& point) {
-    const auto pixel = eye.pixel(point);
-    if (pixel) bounds.add(*pixel);
-    all_have_pictures = all_have_pictures && pixel;
-  };
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3& from = corners[k]->in_world;
-    const Vector3& to = corners[(k + 1) % 3]->in_world;
-    const double from_depth = eye.depth(from) - near;
-    const double to_depth = eye.depth(to) - near;
-    if (from_depth >= 0) add(from);
-    if ((from_depth < 0) != (to_depth < 0))
-      add(from + from_depth / (from_depth - to_depth) * (to - from));
-  }
-  return bounds;
-}
-
-// A box about the triangle's picture. Under a wide lens the sides may bend by at most twice the
-// deviation of their middles.
-Silhouette::Reach Silhouette::reach_of(const std::array<const Seen*, 3>& corners,
-                                       const Eye& eye) const {
-  const Reach whole{patch_.x, patch_.y, patch_.right(), patch_.bottom()};
-  Pixel low = corners[0]->pixel;
-  Pixel high = low;
-  for (const Seen* corner : corners) {
-    if (!corner->pixel.allFinite()) {
-      if (!eye.is_pinhole()) return whole;
-      bool all_have_pictures = true;
-      const auto box = bounds_before_plane(corners, eye, all_have_pictures).box();
-      if (!all_have_pictures) return whole;
-      return box ? reach_within(patch_, {box->x, box->y}, {box->right(), box->bottom()}, kMarginPx)
-                 : Reach{};
-    }
-    low = low.cwiseMin(corner->pixel);
-    high = high.cwiseMax(corner->pixel);
-  }
-  double margin = kMarginPx;
-  if ((high - low).maxCoeff() > kStraightPx) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Seen& from = *corners[k];
-      const Seen& to = *corners[(k + 1) % 3];
-      // The middle of the side's picture, which differs from the picture of the side's middle: each
-      // point is weighted by its nearness.
-      const Vector3 middle = from.in_world.normalized() + to.in_world.normalized();
-      const auto pixel = eye.pixel(middle);
-      if (!pixel) return whole;
-      const Pixel along = to.pixel - from.pixel;
-      const Pixel off = *pixel - from.pixel;
-      const double length = along.norm();
-      const double bend =
-          length > 0 ? std::abs(along.x() * off.y() - along.y() * off.x()) / length : 0;
-      margin = std::max(margin, 2 * bend + kMarginPx);
-    }
-  }
-  return reach_within(patch_, low, high, margin);
-}
-
-Silhouette::Reach Silhouette::reach_within(const PixelBox& patch,
-                                           const Pixel& low,
-                                           const Pixel& high,
-                                           double margin) {
-  const auto bounded = [](double value, int from, int to) {
-    return static_cast<int>(std::clamp(value, double(from), double(to)));
-  };
-  return {bounded(std::floor(low.x() - margin), patch.x, patch.right()),
-          bounded(std::floor(low.y() - margin), patch.y, patch.bottom()),
-          bounded(std::ceil(high.x() + margin), patch.x, patch.right()),
-          bounded(std::ceil(high.y() + margin), patch.y, patch.bottom())};
 }
 
 void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "picture/render/reach.h"
 #include "picture/render/tracer.h"
 
 // Finds the outline of an opaque aircraft without rays. Seen from the eye, a direction d lies
@@ -63,38 +65,18 @@ class Silhouette {
     std::array<Vector3, 3> edge;
     bool opaque = true;
   };
-  // A range of the patch's pixels, [x0, x1) by [y0, y1).
-  struct Reach {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  };
-  struct Seen {
-    // The vector from the eye.
-    Vector3 in_world;
-    // The point in the frame; not finite where the lens has none.
-    Pixel pixel;
-  };
 
-  // The view, as the projection of a point uses it.
-  struct Eye;
+  // The vertices of one part at the moments of the eyes.
+  class Vertices;
   // The rays of a pixel, as the sides use them.
   struct Pencil;
-  static BoxBounds bounds_before_plane(const std::array<const Seen*, 3>& corners,
-                                       const Eye& eye,
-                                       bool& all_have_pictures);
-  static Reach reach_within(const PixelBox& patch,
-                            const Pixel& low,
-                            const Pixel& high,
-                            double margin);
-  Reach reach_of(const std::array<const Seen*, 3>& corners, const Eye& eye) const;
   void add_part(const TracedIntruder& actor,
                 std::size_t part,
                 const std::vector<Eye>& eyes,
                 std::vector<Reach>& reaches);
-  Reach reach_over_time(const std::vector<std::array<const Seen*, 3>>& corners,
-                        const std::vector<Eye>& eyes) const;
-  Reach reach_of_disc(const aircraft::Mesh& mesh,
-                      const aircraft::Part& part,
-                      const std::vector<Eye>& eyes) const;
+  // Empty where the triangle is seen edge-on.
+  std::optional<Triangle> triangle_of(const Vertices& vertices,
+                                      const aircraft::Triangle& source) const;
   Pencil pencil_of(int x, int y) const;
   template <typename Side, typename ProductsOf, typename SideOf, typename Place>
   void cover_by(int x,

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace airtruth::render {
+namespace {
+
+constexpr double kMarginPx = 0.02;
+// A side shorter than this many pixels counts as straight under any lens.
+constexpr double kStraightPx = 4;
+
+Reach reach_within(const PixelBox& patch, const Pixel& low, const Pixel& high, double margin) {
+  const auto bounded = [](double value, int from, int to) {
+    return static_cast<int>(std::clamp(value, double(from), double(to)));
+  };
+  return {bounded(std::floor(low.x() - margin), patch.x, patch.right()),
+          bounded(std::floor(low.y() - margin), patch.y, patch.bottom()),
+          bounded(std::ceil(high.x() + margin), patch.x, patch.right()),
+          bounded(std::ceil(high.y() + margin), patch.y, patch.bottom())};
+}
+
+// Bounds of the picture of the part of a triangle in front of a pinhole's plane. Empty where no
+// part is, or where a point of it has no pixel.
+BoxBounds bounds_before_plane(const Corners& corners, const Eye& eye, bool& all_have_pictures) {
+  double size = 0;
+  for (const Seen* corner : corners) size = std::max(size, corner->in_world.norm());
+  const double near = 1e-7 * size;
+  BoxBounds bounds;
+  const auto add = [&](const Vector3& point) {
+    const auto pixel = eye.pixel(point);
+    if (pixel) bounds.add(*pixel);
+    all_have_pictures = all_have_pictures && pixel;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3& from = corners[k]->in_world;
+    const Vector3& to = corners[(k + 1) % 3]->in_world;
+    const double from_depth = eye.depth(from) - near;
+    const double to_depth = eye.depth(to) - near;
+    if (from_depth >= 0) add(from);
+    if ((from_depth < 0) != (to_depth < 0))
+      add(from + from_depth / (from_depth - to_depth) * (to - from));
+  }
+  return bounds;
+}
+
+}  // namespace
+
+std::optional<Pixel> Eye::pixel(const Vector3& from_eye_in_world) const {
+  const auto nominal = view.lens->pixel_from_cam(cam_from_world * from_eye_in_world);
+  if (!nominal) return std::nullopt;
+  const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
+  if (!(h.z() > 0)) return std::nullopt;
+  return Pixel(h.x() / h.z(), h.y() / h.z());
+}
+
+bool Eye::is_pinhole() const { return std::holds_alternative<lens::Pinhole>(view.lens->model()); }
+
+Reach reach_of(const PixelBox& patch, const Corners& corners, const Eye& eye) {
+  const Reach whole{patch.x, patch.y, patch.right(), patch.bottom()};
+  Pixel low = corners[0]->pixel;
+  Pixel high = low;
+  for (const Seen* corner : corners) {
+    if (!corner->pixel.allFinite()) {
+      if (!eye.is_pinhole()) return whole;
+      bool all_have_pictures = true;
+      const auto box = bounds_before_plane(corners, eye, all_have_pictures).box();
+      if (!all_have_pictures) return whole;
+      return box ? reach_within(patch, {box->x, box->y}, {box->right(), box->bottom()}, kMarginPx)
+                 : Reach{};
+    }
+    low = low.cwiseMin(corner->pixel);
+    high = high.cwiseMax(corner->pixel);
+  }
+  double margin = kMarginPx;
+  if ((high - low).maxCoeff() > kStraightPx) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Seen& from = *corners[k];
+      const Seen& to = *corners[(k + 1) % 3];
+      // The middle of the side's picture, which differs from the picture of the side's middle: each
+      // point is weighted by its nearness.
+      const Vector3 middle = from.in_world.normalized() + to.in_world.normalized();
+      const auto pixel = eye.pixel(middle);
+      if (!pixel) return whole;
+      const Pixel along = to.pixel - from.pixel;
+      const Pixel off = *pixel - from.pixel;
+      const double length = along.norm();
+      const double bend =
+          length > 0 ? std::abs(along.x() * off.y() - along.y() * off.x()) / length : 0;
+      margin = std::max(margin, 2 * bend + kMarginPx);
+    }
+  }
+  return reach_within(patch, low, high, margin);
+}
+
+Reach reach_over_time(const PixelBox& patch,
+                      const std::vector<Corners>& corners,
+                      const std::vector<Eye>& eyes) {
+  Reach all{patch.right(), patch.bottom(), patch.x, patch.y};
+  for (std::size_t e = 0; e < eyes.size(); ++e) {
+    const Reach r = reach_of(patch, corners[e], eyes[e]);
+    if (r.empty()) {
+      // The triangle is outside the patch at this moment, but its path may cross the patch.
+      for (const Seen* corner : corners[e]) {
+        if (!corner->pixel.allFinite()) continue;
+        const Reach point = reach_within(patch, corner->pixel, corner->pixel, 1);
+        all = {std::min(all.x0, point.x0),
+               std::min(all.y0, point.y0),
+               std::max(all.x1, point.x1),
+               std::max(all.y1, point.y1)};
+      }
+      continue;
+    }
+    all = {std::min(all.x0, r.x0),
+           std::min(all.y0, r.y0),
+           std::max(all.x1, r.x1),
+           std::max(all.y1, r.y1)};
+  }
+  double bulge = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pixel second = corners[0][k]->pixel - 2 * corners[1][k]->pixel + corners[2][k]->pixel;
+    if (second.allFinite()) bulge = std::max(bulge, second.cwiseAbs().maxCoeff() / 8);
+  }
+  if (all.empty()) return {};
+  const int more = static_cast<int>(std::ceil(std::min(bulge, 1e4)));
+  return {std::max(all.x0 - more, patch.x),
+          std::max(all.y0 - more, patch.y),
+          std::min(all.x1 + more, patch.right()),
+          std::min(all.y1 + more, patch.bottom())};
+}
+
+Reach reach_of_disc(const PixelBox& patch,
+                    const aircraft::Mesh& mesh,
+                    const aircraft::Part& part,
+                    const std::vector<Eye>& eyes) {
+  float radius_m = 0;
+  for (const aircraft::Triangle& triangle : part.triangles)
+    for (const std::uint32_t v : triangle.vertex)
+      radius_m = std::max(radius_m, (mesh.positions[v] - part.centre_in_body).norm());
+  const double reach_m = std::sqrt(3.0) * static_cast<double>(radius_m);
+  BoxBounds bounds;
+  for (const Eye& eye : eyes)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Vector3 in_body = part.centre_in_body.cast<double>();
+        in_body[axis] += side * reach_m;
+        const auto pixel = eye.pixel(eye.world_from_body * (in_body - eye.eye_in_body));
+        if (!pixel) return {patch.x, patch.y, patch.right(), patch.bottom()};
+        bounds.add(*pixel);
+      }
+  const Box box = *bounds.box();
+  return reach_within(patch, {box.x, box.y}, {box.right(), box.bottom()}, 1);
+}
+
+}  // namespace airtruth::render
