@@ -2,7 +2,6 @@
 #include "benchmark/experiment/run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "benchmark/experiment/follower.h"
 #include "benchmark/experiment/frames.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/labelled/labelled_set.h"
@@ -23,7 +23,6 @@
 namespace airtruth::experiment {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 using evaluation::Mark;
 using evaluation::Trajectory;
@@ -32,76 +31,6 @@ using evaluation::Trajectory;
 constexpr std::int64_t kSkip = 5;
 // Crashes allowed in a run with restarts; after them each start counts as a failure.
 constexpr int kMostCrashes = 3;
-
-tracking::TrackerOptions tracker_options(const RunOptions& options, std::uint64_t seed) {
-  return {
-      .seed = seed, .start_s = options.start_s, .answer_s = options.answer_s, .stop = options.stop};
-}
-
-// A tracker for one run, with its answers and its times. A failed tracker gives no more answers.
-class Follower {
- public:
-  Follower(const std::string& command, const RunOptions& options, std::uint64_t seed)
-      : command_(command), options_(tracker_options(options, seed)) {}
-
-  // Starts the tracker on a picture. Returns false where it failed.
-  bool begin(const image::Picture& picture, const Box& box) {
-    return guarded([&] {
-      if (!tracker_) tracker_ = tracking::make_tracker(command_, options_);
-      tracker_->load(picture);
-      const auto start = Clock::now();
-      tracker_->init(box);
-      seconds_ = std::chrono::duration<double>(Clock::now() - start).count();
-    });
-  }
-
-  std::optional<Box> next(const image::Picture& picture) {
-    std::optional<Box> box;
-    seconds_ = 0;
-    if (!tracker_) return box;
-    guarded([&] {
-      tracker_->load(picture);
-      const auto start = Clock::now();
-      const tracking::Answer answer = tracker_->update();
-      seconds_ =
-          answer.seconds.value_or(std::chrono::duration<double>(Clock::now() - start).count());
-      if (!answer.lost) box = answer.box_px;
-      ++answers;
-      spent += seconds_;
-    });
-    return box;
-  }
-
-  bool is_broken() const { return !tracker_; }
-  double seconds() const { return seconds_; }
-  const std::string& fault() const { return fault_; }
-  std::string log() const { return log_ + (tracker_ ? tracker_->log() : ""); }
-
-  std::int64_t answers = 0;
-  double spent = 0;
-
- private:
-  bool guarded(const auto& work) {
-    try {
-      work();
-      return true;
-    } catch (const tracking::TrackerFailed& error) {
-      fault_ = error.what();
-      seconds_ = 0;
-      if (tracker_) log_ += tracker_->log();
-      log_ += "airtruth: the tracker " + fault_ + "\n";
-      tracker_.reset();
-      return false;
-    }
-  }
-
-  std::string command_;
-  tracking::TrackerOptions options_;
-  std::unique_ptr<tracking::Tracker> tracker_;
-  double seconds_ = 0;
-  std::string fault_;
-  std::string log_;
-};
 
 // A run's frames and times as they come.
 struct Record {
@@ -262,8 +191,8 @@ class Running {
     write_file(file, text_of(record.frames));
     const std::lock_guard lock(mutex_);
     ++summary_.made;
-    summary_.frames += follower.answers;
-    summary_.seconds += follower.spent;
+    summary_.frames += follower.answers();
+    summary_.seconds += follower.spent_s();
     if (follower.fault().empty()) return;
     ++summary_.broken;
     airtruth::warn(

@@ -91,27 +91,36 @@ void blur(std::vector<float>& values, int width, int height, const std::vector<f
   blur(values, width, height, kernel, kernel);
 }
 
+namespace {
+
+// A layer without pixels yet, whose patch is larger by `more` on each side, within the frame.
+image::Layer grown(const image::Layer& layer, int more, int frame_width, int frame_height) {
+  image::Layer result;
+  const PixelBox& p = layer.patch;
+  result.patch = *intersection({p.x - more, p.y - more, p.width + 2 * more, p.height + 2 * more},
+                               {0, 0, frame_width, frame_height});
+  result.pixels.resize(static_cast<std::size_t>(result.patch.width) *
+                       static_cast<std::size_t>(result.patch.height));
+  result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
+  result.area_alone_px = layer.area_alone_px;
+  result.area_seen_px = layer.area_seen_px;
+  result.area_free_px = layer.area_free_px;
+  return result;
+}
+
+}  // namespace
+
 image::Layer spread(
     const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height) {
   if (layer.empty()) return layer;
   const int reach = sigma_px > 0 ? std::max(1, reach_of(sigma_px)) : 0;
   const int more = reach + margin_px;
   if (more == 0) return layer;
-  image::Layer result;
-  const PixelBox& p = layer.patch;
-  result.patch = *intersection({p.x - more, p.y - more, p.width + 2 * more, p.height + 2 * more},
-                               {0, 0, frame_width, frame_height});
-  const int width = result.patch.width;
-  const int height = result.patch.height;
-  result.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
-  result.area_alone_px = layer.area_alone_px;
-  result.area_seen_px = layer.area_seen_px;
-  result.area_free_px = layer.area_free_px;
+  image::Layer result = grown(layer, more, frame_width, frame_height);
   const std::vector<float> kernel = gaussian(sigma_px);
   const auto through = [&](const auto& get) {
     std::vector<float> plane = placed(layer, result, get);
-    blur(plane, width, height, kernel);
+    blur(plane, result.patch.width, result.patch.height, kernel);
     return plane;
   };
   const auto alpha = through([&](std::size_t i) { return layer.pixels[i].alpha; });
