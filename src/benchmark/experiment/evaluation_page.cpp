@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "benchmark/experiment/evaluation_plots.h"
 #include "benchmark/experiment/evaluation_tables.h"
 #include "foundation/base/base64.h"
 #include "foundation/base/files.h"
@@ -114,6 +115,9 @@ void write_page(const Assessment& assessment, const fs::path& out) {
                                       [](const ScoredSequence& s) { return s.score.has_value(); });
     data["trackers"].push_back(json);
   }
+  data["plots"] = Json::object();
+  for (const auto& [name, plot] : evaluation_plots(assessment))
+    data["plots"][name] = plot::to_json(plot);
   for (const TrackerPair& comparison : assessment.comparisons)
     data["comparisons"].push_back(json_of(comparison));
   std::vector<html::PageBlob> pictures;

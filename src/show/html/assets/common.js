@@ -14,13 +14,42 @@ const airtruth = (() => {
     if (name) made.className = name;
     return made;
   };
+  // Of truth alone: the ink of the page in plots, white with a black rim on pictures.
+  const ink = dark ? '#ffffff' : '#000000';
+  // Draws a plot as the program describes it (show/plot/plot.h). Its legend is the page's ranking.
+  const drawPlot = (canvas, plot) => {
+    const named = plot.x.names.length > 0;
+    const bars = plot.series.some((one) => one.kind === 'bars');
+    const colourOf = (one) => (one.colour === null ? ink : plotStyles.colours[one.colour % plotStyles.colours.length]);
+    const dataset = (one) => ({
+      label: one.name,
+      data: named ? one.y : one.y.map((y, k) => ({ x: one.x[k], y })),
+      borderColor: colourOf(one),
+      backgroundColor: colourOf(one),
+      borderWidth: bars ? 0 : 1.5 * one.width,
+      borderDash: plotStyles.dashes[one.dash],
+      pointRadius: one.kind === 'line' ? 0 : 2.5,
+      showLine: one.kind !== 'points',
+    });
+    const axisOf = (axis) => ({
+      title: { display: axis.label !== '', text: axis.label },
+      ...(axis.low === null ? {} : { min: axis.low }),
+      ...(axis.high === null ? {} : { max: axis.high }),
+    });
+    const x = named ? { ticks: { autoSkip: false, minRotation: 90, font: { size: 9 } }, grid: { display: false } } : { type: 'linear', ...axisOf(plot.x) };
+    return new Chart(canvas, {
+      type: bars ? 'bar' : named ? 'line' : 'scatter',
+      data: { labels: named ? plot.x.names : undefined, datasets: plot.series.map(dataset) },
+      options: { plugins: { legend: { display: false } }, scales: { x, y: axisOf(plot.y) } },
+    });
+  };
   return {
     byId: (id) => document.getElementById(id),
-    // The first six are told apart with every kind of colour vision; the others come with dashes.
-    colours: ['#0072B2', '#E69F00', '#D55E00', '#56B4E9', '#AA3377', '#009E73', '#5D3A9B', '#8C564B', '#7F7F7F', '#B8B000', '#F4A6C8', '#2E4E8E'],
-    dash: (index) => [[], [7, 3], [2, 3]][Math.min(2, Math.floor(index / 6))],
-    // Of truth alone: the ink of the page in plots, white with a black rim on pictures.
-    ink: dark ? '#ffffff' : '#000000',
+    // Both tables are those of the figures for a paper (show/plot/style.h).
+    colours: plotStyles.colours,
+    dash: (index) => plotStyles.dashes[Math.min(plotStyles.dashes.length - 1, Math.floor(index / 6))],
+    ink,
+    drawPlot,
     element,
     least: (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null),
     most: (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null),

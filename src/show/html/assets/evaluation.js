@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, bins, colours, counted, dash, element, ink, most, number, line, axis, legend } = airtruth;
+  const { byId, colours, counted, dash, drawPlot, element, ink, most, number, line, axis, legend } = airtruth;
   const trackers = data.trackers;
   trackers.forEach((tracker, k) => {
     tracker.colour = colours[k % colours.length];
@@ -116,48 +116,17 @@
     ], vot.some((t) => t.restart) ? 4 : 7);
   };
 
-  // The ranking says which colour is whose.
+  // The ranking shows which colour is whose.
   const none = { display: false };
-  const plot = (id, sets, x, y) =>
-    new Chart(byId(id), { type: 'scatter', data: { datasets: sets }, options: { plugins: { legend: none }, scales: { x, y } } });
-
-  const drawCurves = () => {
-    const curve = (name, step) =>
-      scored.map((t) => line(t.name, t.overall[name].map((v, k) => ({ x: k * step, y: v })), t.colour, { borderDash: t.dash }));
-    const share = { min: 0, max: 1 };
-    plot('success', curve('success', 0.05), axis('overlap', share), axis('share of frames', share));
-    plot('precision', curve('precision', 1), axis('centre error, px'), axis('share of frames', share));
-    plot('normalised', curve('normalised_precision', 0.01), axis('centre error over size'), axis('share of frames', share));
-    const runs = trackers.flatMap((t) => [['restart', []], ['multistart', [5, 3]]].filter(([part]) => t[part]).map(([part, dash]) =>
-      line(`${t.name}, ${part}`, t[part].eao_curve.map((v, k) => ({ x: k, y: v })).slice(1), t.colour, { borderDash: dash })));
-    if (runs.length) {
-      byId('eao-place').hidden = false;
-      byId('eao-caption').textContent = `Expected average overlap by length; the score is the mean over ${data.eao_range.join(' to ')} frames`;
-      plot('eao', runs, axis('frames'), axis('overlap', share));
+  const drawPlots = () => {
+    for (const id of ['success', 'precision', 'normalised', 'eao', 'by-range_m', 'by-size_px', 'by-contrast', 'by-background']) {
+      const plot = data.plots[id.replace('by-', '')];
+      const figure = byId(id).closest('figure');
+      figure.hidden = !plot;
+      if (!plot) continue;
+      figure.querySelector('figcaption').textContent = plot.title;
+      drawPlot(byId(id), plot);
     }
-  };
-
-  const drawBreakdowns = () => {
-    for (const key of ['range_m', 'size_px', 'contrast']) {
-      const edges = [...new Set(scored.flatMap((t) => t.breakdown[key].map((bin) => bin.from)))].sort((a, b) => a - b);
-      if (!edges.length) { byId(`by-${key}`).closest('figure').hidden = true; continue; }
-      const label = (from) => {
-        const bin = scored.flatMap((t) => t.breakdown[key]).find((b) => b.from === from);
-        return bin.to === null ? `≥ ${from}` : `${from}–${bin.to}`;
-      };
-      const value = (t, from) => (t.breakdown[key].find((b) => b.from === from) || { overlap: null }).overlap;
-      new Chart(byId(`by-${key}`), {
-        type: 'line',
-        data: { labels: edges.map(label), datasets: scored.map((t) => line(t.name, edges.map((e) => value(t, e)), t.colour, { pointRadius: 2.5, borderDash: t.dash })) },
-        options: { plugins: { legend: none }, scales: { x: bins(), y: { min: 0, title: { display: true, text: 'overlap' } } } },
-      });
-    }
-    const names = [...new Set(scored.flatMap((t) => Object.keys(t.breakdown.background)))].sort();
-    new Chart(byId('by-background'), {
-      type: 'bar',
-      data: { labels: names, datasets: scored.map((t) => ({ label: t.name, backgroundColor: t.colour, data: names.map((n) => (t.breakdown.background[n] || { overlap: null }).overlap) })) },
-      options: { plugins: { legend: none }, scales: { x: bins(), y: { beginAtZero: true, title: { display: true, text: 'overlap' } } } },
-    });
   };
 
   const drawPairs = () => {
@@ -403,8 +372,7 @@
   document.title = byId('title').textContent;
   byId('summary').textContent = `${counted(trackers.length, 'tracker')}, ${counted(data.sequences.length, 'sequence')}, ${counted(data.frames, 'frame')}; made by airtruth ${data.version}`;
   drawRanking();
-  drawCurves();
-  drawBreakdowns();
+  drawPlots();
   drawPairs();
   player.begin();
 })();
