@@ -109,6 +109,38 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   return unique;
 }
 
+// Gives each clip its video, its numbers of frames and a name of its own.
+void complete(std::vector<exchange::Clip>& clips,
+              const fs::path& source,
+              const ImportOptions& options) {
+  std::set<std::string> taken;
+  for (exchange::Clip& clip : clips) {
+    auto video = options.videos.find(clip.name);
+    if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
+    if (video != options.videos.end()) clip.media = video->second;
+    if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    require_utf8(clip.media);
+    match_pictures(clip, options.warn);
+    ask_video(clip, options.warn);
+    clip.name = free_name(clip.name, taken);
+    expect_rate(clip, source);
+  }
+}
+
+// Returns the record of the clip.
+Json write_clip(const exchange::Clip& clip, const ImportOptions& options, const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
+  Json record = record_of(clip, options);
+  write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
+  // Categories come unchanged from the labels and may be invalid UTF-8.
+  write_file(folder / "sequence.json",
+             record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+             Flush::kLater);
+  return record;
+}
+
 }  // namespace
 
 ImportSummary import_set(const fs::path& source,
@@ -124,31 +156,11 @@ ImportSummary import_set(const fs::path& source,
   };
   std::vector<exchange::Clip> clips =
       exchange::read_clips(options.format, source, read, options.warn);
-  std::set<std::string> taken;
-  for (exchange::Clip& clip : clips) {
-    auto video = options.videos.find(clip.name);
-    if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
-    if (video != options.videos.end()) clip.media = video->second;
-    if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
-    require_utf8(clip.media);
-    match_pictures(clip, options.warn);
-    ask_video(clip, options.warn);
-    clip.name = free_name(clip.name, taken);
-    expect_rate(clip, source);
-  }
+  complete(clips, source, options);
   // All input is read before the first file is written.
   ImportSummary summary;
   for (const exchange::Clip& clip : clips) {
-    const fs::path folder = out / "sequences" / clip.name;
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
-    const Json record = record_of(clip, options);
-    write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
-    // Categories come unchanged from the labels and may be invalid UTF-8.
-    write_file(folder / "sequence.json",
-               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
-               Flush::kLater);
+    const Json record = write_clip(clip, options, out / "sequences" / clip.name);
     ++summary.clips;
     summary.frames += std::ssize(clip.frames);
     summary.labels += record.at("labels").get<std::int64_t>();
