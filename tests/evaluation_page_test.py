@@ -139,7 +139,6 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   }
   id('play').click(); // from its end on: begins again
   for (let k = 0; k < 12; ++k) { await wait(63); out.pairs.push([named(), numberOn(id('whole'))]); }
-  out.colours = frame.contentWindow.eval('[airtruth.ink, ...airtruth.colours.slice(0, 6)]');
   out.found = frame.contentWindow.found;
   document.getElementById('result').textContent = JSON.stringify(out);
 })().catch((error) => { document.getElementById('result').textContent = JSON.stringify({ broken: String(error) }); });
@@ -177,7 +176,7 @@ def numbered(airtruth, browser, root):
         seen = {p[0] for p in out.get("pairs", [])}
         if not {0, 199} <= seen or len(seen) < 8:
             faults.append(f"frames seen: {sorted(seen)}")
-        nearest = nearest_colours(out["colours"])
+        nearest = nearest_colours(["#000000", *first_colours(6)])
         if nearest[0] < 15:
             faults.append(f"colours too near to each other: {nearest}")
         if faults:
@@ -200,6 +199,16 @@ def lab(colour, vision):
            (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883)
     x, y, z = (v ** (1 / 3) if v > 216 / 24389 else v * 24389 / 27 / 116 + 16 / 116 for v in xyz)
     return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+
+def first_colours(count):
+    """The first colours of series, from kColours in show/plot/plot.h."""
+    header = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src", "show", "plot", "plot.h")
+    with open(header, encoding="utf-8") as file:
+        table = file.read().split("kColours = ", 1)[1].split(";", 1)[0]
+    triples = re.findall(r"\{(\d+), (\d+), (\d+)\}", table)
+    assert len(triples) == 12, triples
+    return ["#%02x%02x%02x" % tuple(map(int, triple)) for triple in triples[:count]]
 
 
 def nearest_colours(colours):

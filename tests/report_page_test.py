@@ -78,7 +78,7 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
     .filter((chart) => {
       const names = chart.scales[chart.options.indexAxis];
       return names.ticks.length !== chart.data.labels.length || names.ticks.some((tick) => !tick.label);
-    }).map((chart) => chart.canvas.id);
+    }).map((chart) => chart.canvas.dataset.plot);
   out.injected = page.querySelectorAll('h2 *, #title *, #card dd *, #card b, option *').length;
   out.links = [];
   for (const a of page.querySelectorAll('.links a')) out.links.push((await fetch(a.getAttribute('href'), { method: 'HEAD' })).status);

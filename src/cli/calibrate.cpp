@@ -15,11 +15,13 @@
 #include "foundation/base/output_check.h"
 #include "measure/calibration/calibration.h"
 #include "measure/calibration/join.h"
+#include "measure/calibration/plot.h"
 #include "measure/calibration/profile.h"
 #include "measure/own_aircraft/own_aircraft.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/frame/mask_picture.h"
+#include "show/plot/gnuplot.h"
 
 namespace airtruth::cli {
 namespace {
@@ -121,6 +123,7 @@ calibration::Options options_of(const CalibrateArguments& arguments,
 void calibrate(const CalibrateArguments& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
+  if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   const calibration::CameraProfile profile = arguments.profile.empty()
                                                  ? calibration::usual_camera()
                                                  : calibration::camera_profile(arguments.profile);
@@ -141,7 +144,12 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   const calibration::Calibration found =
       calibration::with_profile(calibration::joined(std::move(measured)), profile);
   write_file(arguments.out, calibration::toml_from(found));
-  if (!arguments.plot.empty()) video::write_still(arguments.plot, calibration::plot(found));
+  if (!arguments.plot.empty())
+    video::write_still(arguments.plot,
+                       plot::picture_of({.plots = calibration::plots_of(found),
+                                         .columns = 2,
+                                         .height = 10,
+                                         .legend = plot::Legend::kAbove}));
   report_missing(found, console);
   report_sources(found, console);
   report_count(found, arguments.out, console);

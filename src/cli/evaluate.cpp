@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
-#include "show/plot/plot.h"
 
 namespace airtruth::cli {
 namespace {
@@ -133,7 +132,7 @@ void run_evaluate(Evaluate arguments, Context& context) {
           "--eao-range {} {} goes backward", arguments.eao_range[0], arguments.eao_range[1]));
     options.eao_range = {arguments.eao_range[0], arguments.eao_range[1]};
   }
-  if (!arguments.figures.empty()) plot::check_gnuplot(arguments.figures);
+  if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
   if (!arguments.against.empty()) experiment::check_evaluation(arguments.against);
   check_output_folder(arguments.out);
   options.with_film = !arguments.no_page;

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "camera/lens/calibration_file.h"
-#include "camera/motion/plot.h"
 #include "camera/motion/reach.h"
 #include "camera/motion/stabilise.h"
 #include "cli/commands.h"
@@ -17,6 +16,8 @@
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "sequence/setup/motion_source.h"
+#include "show/motion_plot/motion_plot.h"
+#include "show/plot/gnuplot.h"
 #include "world/scene/choices.h"
 
 namespace airtruth::cli {
@@ -72,6 +73,7 @@ void check_outputs(const MotionArguments& arguments) {
   for (const std::string& file : {arguments.out, arguments.stabilised})
     check_output_file(file, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
+  if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
 }
 
@@ -130,7 +132,10 @@ void measure(const MotionArguments& arguments, Context& context) {
             : motion::within_reach(std::move(all), info.width, info.height);
   write_file(arguments.out, motion::csv_from_motion(all));
   if (!arguments.plot.empty())
-    video::write_still(arguments.plot, motion::plot(all, info.width, info.height));
+    video::write_still(arguments.plot,
+                       plot::picture_of({.plots = motion::plots_of(all, info.width, info.height),
+                                         .height = 12,
+                                         .legend = plot::Legend::kAbove}));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
   report_frames(all, arguments.out, console);
 }

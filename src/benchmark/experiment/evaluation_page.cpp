@@ -15,6 +15,7 @@
 #include "foundation/base/files.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
+#include "show/plot/plot_json.h"
 
 namespace airtruth::experiment {
 namespace {
@@ -95,6 +96,40 @@ Json sequence_json(const Assessment& assessment, std::size_t index, std::size_t 
           {"trackers", trackers}};
 }
 
+Json plots_json(const Assessment& assessment) {
+  Json plots = Json::object();
+  for (const auto& [name, plot] : evaluation_plots(assessment)) plots[name] = plot::json_of(plot);
+  return plots;
+}
+
+Json trackers_json(const Assessment& assessment) {
+  Json trackers = Json::array();
+  for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
+    const ScoredTracker& tracker = assessment.trackers[k];
+    Json json = json_of(tracker);
+    json["style"] = plot::json_of(plot::style_of(k));
+    json["sequences"] = std::count_if(tracker.sequences.begin(),
+                                      tracker.sequences.end(),
+                                      [](const ScoredSequence& s) { return s.score.has_value(); });
+    trackers.push_back(json);
+  }
+  return trackers;
+}
+
+// The pictures of all sequences, under the names by which the page finds them.
+std::vector<html::PageBlob> pictures_of(const Assessment& assessment) {
+  std::vector<html::PageBlob> pictures;
+  for (std::size_t i = 0; i < assessment.truths.size(); ++i) {
+    const auto& stills = assessment.truths[i].stills;
+    for (std::size_t k = 0; k < stills.size(); ++k) {
+      pictures.push_back({fmt::format("whole-{}-{}", i, k), base64_of(stills[k].whole)});
+      if (!stills[k].close.empty())
+        pictures.push_back({fmt::format("close-{}-{}", i, k), base64_of(stills[k].close)});
+    }
+  }
+  return pictures;
+}
+
 }  // namespace
 
 void write_page(const Assessment& assessment, const fs::path& out) {
@@ -105,36 +140,19 @@ void write_page(const Assessment& assessment, const fs::path& out) {
                {"version", kVersion},
                {"frames", frames},
                {"eao_range", {assessment.eao_range.first, assessment.eao_range.second}},
-               {"trackers", Json::array()},
+               {"plots", plots_json(assessment)},
+               {"trackers", trackers_json(assessment)},
                {"comparisons", Json::array()},
                {"sequences", Json::array()}};
-  for (const ScoredTracker& tracker : assessment.trackers) {
-    Json json = json_of(tracker);
-    json["sequences"] = std::count_if(tracker.sequences.begin(),
-                                      tracker.sequences.end(),
-                                      [](const ScoredSequence& s) { return s.score.has_value(); });
-    data["trackers"].push_back(json);
-  }
-  data["plots"] = Json::object();
-  for (const auto& [name, plot] : evaluation_plots(assessment))
-    data["plots"][name] = plot::to_json(plot);
   for (const TrackerPair& comparison : assessment.comparisons)
     data["comparisons"].push_back(json_of(comparison));
-  std::vector<html::PageBlob> pictures;
-  for (std::size_t i = 0; i < assessment.truths.size(); ++i) {
+  for (std::size_t i = 0; i < assessment.truths.size(); ++i)
     data["sequences"].push_back(sequence_json(assessment, i, step));
-    const auto& stills = assessment.truths[i].stills;
-    for (std::size_t k = 0; k < stills.size(); ++k) {
-      pictures.push_back({fmt::format("whole-{}-{}", i, k), base64_of(stills[k].whole)});
-      if (!stills[k].close.empty())
-        pictures.push_back({fmt::format("close-{}-{}", i, k), base64_of(stills[k].close)});
-    }
-  }
   write_file(out / "report.html",
              html::page_of("airtruth evaluation",
                            html::evaluation_body(),
                            data.dump(-1, ' ', false, Json::error_handler_t::replace),
-                           pictures,
+                           pictures_of(assessment),
                            html::evaluation_js()));
 }
 

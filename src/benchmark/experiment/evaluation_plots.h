@@ -1,30 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "benchmark/experiment/assess.h"
 #include "show/plot/plot.h"
 
-// The plots of an evaluation, described once for its page and for the figures of a paper.
+// The plots of an evaluation as values. report.html and the figures for a paper draw the same ones.
 namespace airtruth::experiment {
 
-// Plots over all sequences by name: success, precision, normalised, eao, range_m, size_px, contrast
-// and background. A plot without data is left out.
-std::vector<std::pair<std::string, plot::Plot>> evaluation_plots(const Assessment& assessment);
+struct NamedPlot {
+  std::string name;
+  plot::Plot plot;
+};
 
-// Mean AUC with its 95 % interval, the first tracker on top; none without scores. The page shows a
-// table that can be sorted in its place.
-std::optional<plot::Plot> ranking_plot(const Assessment& assessment);
+// success, precision, normalised, eao, range_m, size_px, contrast and background: those of them for
+// which the assessment holds values. Every tracker has one style in all of them.
+std::vector<NamedPlot> evaluation_plots(const Assessment& assessment);
 
-// X, Y and the error of the centre over the frames of the sequence assessment.truths[index].
+// The mean AUC of each tracker with its 95 % interval over sequences, the best on top. Without
+// series if no tracker has a one-pass run.
+plot::Plot ranking_plot(const Assessment& assessment);
+
+// X, Y and the error of the centre over the frames of assessment.truths[index], in px, as in Figure
+// 11 of the E-Vision paper.
 std::vector<plot::Plot> sequence_plots(const Assessment& assessment, std::size_t index);
 
-// A tracker's answers on a sequence; nullptr where the tracker was not run.
-const ScoredSequence* scored(const Assessment& assessment, std::size_t tracker, std::size_t truth);
+// The run of a tracker (index in assessment.trackers) on a sequence (index in assessment.truths);
+// nullptr if it was not run.
+const ScoredSequence* scored_sequence(const Assessment& assessment,
+                                      std::size_t tracker,
+                                      std::size_t truth);
 
 }  // namespace airtruth::experiment

@@ -18,4 +18,8 @@ void write_figures(const Assessment& assessment,
                    const std::filesystem::path& out,
                    const std::string& format);
 
+// Throws Error for any other format, and where the program gnuplot is missing, before any work
+// begins.
+void check_figures(const std::string& format);
+
 }  // namespace airtruth::experiment

@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "camera/motion/plot.h"
-
 namespace airtruth::motion {
 namespace {
 
@@ -64,33 +62,6 @@ TEST(Reach, TheSmoothedReferenceNeedsNone) {
   for (std::size_t k = 10; k + 10 < steady.size(); ++k)
     for (const Pixel& p : {Pixel(0, 0), Pixel(640, 480), Pixel(320, 240)})
       EXPECT_LT((apply(steady[k].frame_from_reference, p) - p).norm(), 0.05) << k;
-}
-
-// The number of rows of a panel that a line of this colour crosses, without columns near one frame.
-int rows_of_line(const image::Rgb8& picture, int left_out_x) {
-  int top = picture.height;
-  int bottom = 0;
-  for (int y = 40; y < 290; ++y)
-    for (int x = 91; x < 1470; ++x) {
-      const std::uint8_t* p = picture.at(x, y);
-      const bool is_blue = p[0] < 80 && p[1] > 80 && p[1] < 160 && p[2] > 140;
-      if (!is_blue || std::abs(x - left_out_x) < 30) continue;
-      top = std::min(top, y);
-      bottom = std::max(bottom, y);
-    }
-  return bottom - top;
-}
-
-TEST(Plot, OneFrameFarOffDoesNotPressTheOthersFlat) {
-  std::vector<FrameMotion> all;
-  for (int k = 0; k < 300; ++k) {
-    FrameMotion motion = turned(k, 0);
-    motion.frame_from_reference(0, 2) = 10 * std::sin(0.1 * k);
-    if (k == 150) motion.frame_from_reference(0, 2) = 1.36e6;
-    all.push_back(motion);
-  }
-  const image::Rgb8 picture = plot(all, kReachWidth, kReachHeight);
-  EXPECT_GT(rows_of_line(picture, 780), 60);  // of 250; a linear axis leaves 0
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 
 #include "dataset/page/card.h"
 #include "dataset/page/portrait.h"
+#include "dataset/page/totals.h"
 #include "foundation/base/base64.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -19,73 +19,17 @@
 #include "foundation/base/output_check.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
+#include "show/plot/plot_json.h"
 
 namespace airtruth::dataset {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A histogram over stated edges; values beyond them count in the first and the last bin.
-struct Histogram {
-  std::vector<double> edges;
-  std::vector<std::int64_t> counts;
-
-  explicit Histogram(std::vector<double> e) : edges(std::move(e)), counts(edges.size() - 1) {}
-  void add(double value) {
-    const auto above = std::upper_bound(edges.begin(), edges.end(), value) - edges.begin();
-    ++counts[static_cast<std::size_t>(
-        std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(counts) - 1))];
-  }
-  Json json() const { return {{"edges", edges}, {"counts", counts}}; }
-};
-
-std::vector<double> steps(double from, double to, double step) {
-  std::vector<double> edges;
-  for (int i = 0; from + i * step <= to + 1e-9; ++i) edges.push_back(from + i * step);
-  return edges;
-}
-
-constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
-
 // Upper bound for the stills of all sequences together; a still takes about 13 kB of the page.
 constexpr std::size_t kMostStills = 1500;
 constexpr std::size_t kMostStillsOfOne = 60;
 constexpr std::size_t kLeastStillsOfOne = 4;
-
-// Counts over the whole set, made from the thinned series.
-struct Totals {
-  std::int64_t frames = 0;
-  std::array<std::int64_t, 5> by_state{};
-  std::int64_t without_box = 0;
-  std::int64_t frames_with_intruder = 0;
-  // Sequences that show no intruder in any frame.
-  std::int64_t negative_sequences = 0;
-  std::map<std::string, std::int64_t> boxes_by_class;
-  std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCells);
-  Histogram range_m{
-      {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
-  Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
-  Histogram azimuth_deg{steps(-90, 90, 10)};
-  Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
-
-  void add(const Portrait& portrait) {
-    frames += portrait.facts.frames;
-    for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
-    without_box += portrait.without_box;
-    frames_with_intruder += portrait.frames_with_intruder;
-    negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
-    for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
-    for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
-    for (const Portrait::Intruder& intruder : portrait.intruders)
-      for (const Portrait::Point& point : intruder.points) {
-        if (!point.width_px) continue;
-        size_px.add(std::max(*point.width_px, *point.height_px));
-        if (point.range_m) range_m.add(*point.range_m);
-        if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
-      }
-    for (const double value : portrait.film.contrasts) contrast.add(value);
-  }
-};
 
 template <typename T>
 Json json_of(const std::optional<T>& value) {
@@ -238,10 +182,18 @@ std::string title_of(const Json& card, const fs::path& set) {
   return named.has_filename() ? named.filename().string() : named.parent_path().filename().string();
 }
 
+Json colours() {
+  Json colours = Json::array();
+  for (std::size_t i = 0; i < plot::kColours.size(); ++i)
+    colours.push_back(plot::json_of(plot::style_of(i)).at("colour"));
+  return colours;
+}
+
 // The counts over all sequences, as the page reads them.
 Json json_of(const Totals& totals) {
+  Json plots = Json::object();
+  for (const auto& [name, plot] : overview_plots(totals)) plots[name] = plot::json_of(plot);
   return {{"frames", totals.frames},
-          {"states", totals.by_state},
           {"without_box", totals.without_box},
           {"frames_with_intruder", totals.frames_with_intruder},
           {"negative_sequences", totals.negative_sequences},
@@ -250,11 +202,9 @@ Json json_of(const Totals& totals) {
            {{"columns", Portrait::kCellColumns},
             {"rows", Portrait::kCellRows},
             {"counts", totals.centres}}},
-          {"histograms",
-           {{"range_m", totals.range_m.json()},
-            {"size_px", totals.size_px.json()},
-            {"azimuth_deg", totals.azimuth_deg.json()},
-            {"contrast", totals.contrast.json()}}}};
+          {"plots", plots},
+          // Of intruders, in their order.
+          {"colours", colours()}};
 }
 
 // The pictures of all films, under the names by which the page finds them.

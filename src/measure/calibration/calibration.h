@@ -97,10 +97,6 @@ std::string toml_from(const Calibration& calibration);
 // The measured values as the camera model of a scene.
 scene::CameraModel model_of(const Calibration& calibration);
 
-// One picture with four plots: noise curve, edge profile, horizon over time, and a frame with its
-// sky tinted.
-image::Rgb8 plot(const Calibration& calibration);
-
 // The name and the focal length of a lens, such as "fisheye 562.7 px", for messages and files.
 std::string lens_words(const lens::Lens& lens);
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "show/html/page_assets.h"
-#include "show/plot/style.h"
 
 namespace airtruth::html {
 namespace {
@@ -39,8 +38,7 @@ std::string page_of(std::string_view title,
   page += "<script type=\"application/json\" id=\"data\">" + in_script(json) + "</script>\n";
   for (const PageBlob& blob : blobs)
     page += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", blob.id, blob.text);
-  const std::string styles = "const plotStyles = " + plot::styles_json() + ";";
-  for (const std::string_view part : {chart_js(), std::string_view(styles), common_js(), script}) {
+  for (const std::string_view part : {chart_js(), common_js(), script}) {
     page += "<script>\n";
     page += part;
     page += "\n</script>\n";

@@ -14,9 +14,8 @@ struct PageBlob {
 };
 
 // Builds one self-contained HTML page that needs no network: the common style sheet, `body`, `json`
-// in the element "data", the blobs, Chart.js, the colours and dashes of show/plot/style.h, the
-// common script (assets/common.js) and `script`. `json` is escaped, so that a user's text cannot
-// end its element.
+// in the element "data", the blobs, Chart.js, the common script (assets/common.js) and `script`.
+// `json` is escaped, so that a user's text cannot end its element.
 std::string page_of(std::string_view title,
                     std::string_view body,
                     std::string_view json,

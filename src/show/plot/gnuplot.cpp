@@ -1,187 +1,278 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "show/plot/gnuplot.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "show/plot/plot.h"
-#include "show/plot/style.h"
+#include "picture/video/still.h"
 
 namespace airtruth::plot {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kBarsWidth = 0.8;  // of all bars at one name, where the names are 1 apart
-
-// The size of the terminal in its own unit, for a height on a width of 16.
-struct Terminal {
-  std::string text;
-  double per_height;
-};
-const std::map<std::string, Terminal>& terminals() {
-  static const std::map<std::string, Terminal> all = {
-      {"png", {"pngcairo size 1600,{:.0f} font 'sans,22' linewidth 2", 100}},
-      {"pdf", {"pdfcairo size 16cm,{:.1f}cm font 'sans,11' linewidth 1.5", 1}},
-      {"svg", {"svg size 800,{:.0f} font 'sans,12' linewidth 1.5", 50}}};
-  return all;
-}
-
-// In gnuplot's plain quotes, within which only the quote itself is special; a line end would end
-// the command.
+// Text in gnuplot's single quotes. A line end would end the command, and a quote the text: gnuplot
+// 5.4 does not read a doubled quote at its beginning. A typographic apostrophe stands for it.
 std::string quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) {
+  for (const char c : text)
+    if (c == '\'')
+      result += "\u2019";
+    else
+      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  return result + "'";
+}
+
+// A path, or a file name that this project chooses, in gnuplot's single quotes. It does not begin
+// with a quote, so that quotes can be doubled. gnuplot does not find a path with a line end.
+std::string quoted_path(const std::string& path) {
+  std::string result = "'";
+  for (const char c : path) {
     if (c == '\'') result += '\'';
     result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
   return result + "'";
 }
 
+std::string hex(const Colour& c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]); }
+
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN";
 }
 
-std::string head(const std::vector<Plot>& panels,
-                 const std::string& name,
-                 const std::string& format,
-                 double height) {
-  const Terminal& terminal = terminals().at(format);
-  const bool legend =
-      std::any_of(panels.begin(), panels.end(), [](const Plot& plot) { return plot.legend; });
-  return "set encoding utf8\nset terminal " +
-         fmt::format(fmt::runtime(terminal.text), height * terminal.per_height) +
-         " noenhanced\nset output " + quoted(name + "." + format) +
-         "\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\n"
-         // One column, beside the plot however many series there are.
-         "set key at screen 0.99, screen 0.98 right top vertical maxrows 60 samplen 2 spacing "
-         "0.9\n" +
-         fmt::format("set rmargin {}\n", legend ? 26 : 4) +
-         (panels.size() > 1 ? "set lmargin 9\n" : "");
-}
-
-std::string axis_commands(const char* axis, const Axis& is) {
-  const double margin = axis[0] == 'x' ? 0.5 : 0.7;
-  const auto limit = [](const std::optional<double>& value) {
-    return value ? number(*value) : std::string("*");
-  };
-  std::string text = fmt::format("set {}label {}\n", axis, quoted(is.label));
-  if (is.names.empty())
-    return text + fmt::format("set {}range [{}:{}]\n", axis, limit(is.low), limit(is.high));
-  text += fmt::format("set {}tics (", axis);
-  for (std::size_t k = 0; k < is.names.size(); ++k)
-    text += fmt::format("{}{} {}", k > 0 ? ", " : "", quoted(is.names[k]), k);
-  text += axis[0] == 'x' ? ") rotate by 30 right\n" : ")\n";
-  return text + fmt::format("set {}range [{}:{}]\n",
-                            axis,
-                            -margin,
-                            static_cast<double>(is.names.size()) - 1 + margin);
-}
-
-// Lines "x y" or "x y x_low x_high". Bars stand beside each other: `shift` is theirs.
-std::string data_lines(const Series& series, double shift) {
-  std::string lines;
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    lines += number(series.x[i] + shift) + " " + number(series.y[i]);
-    if (!series.x_low.empty())
-      lines += " " + number(series.x_low[i]) + " " + number(series.x_high[i]);
-    lines += "\n";
+// Letters are smaller where several plots share the page.
+std::string terminal(Format format, double height, bool is_shared) {
+  switch (format) {
+    case Format::kPng:
+      return fmt::format("pngcairo size 1600,{:.0f} font 'sans,{}' linewidth 2",
+                         100 * height,
+                         is_shared ? 16 : 22);
+    case Format::kPdf:
+      return fmt::format("pdfcairo size 16cm,{:.1f}cm font 'sans,11' linewidth 1.5", height);
+    case Format::kSvg:
+      return fmt::format("svg size 800,{:.0f} font 'sans,12' linewidth 1.5", 50 * height);
   }
-  return lines;
+  return {};
+}
+
+std::string ending(Format format) {
+  return format == Format::kPng ? ".png" : format == Format::kPdf ? ".pdf" : ".svg";
+}
+
+// The file of the picture in place of a plot.
+std::string picture_file(const std::string& name, std::size_t plot) {
+  return fmt::format("{}-{}.png", name, plot);
+}
+
+bool has_data(const Plot& plot) {
+  return std::any_of(plot.series.begin(), plot.series.end(), [](const Series& series) {
+    return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
+  });
+}
+
+// The range of an axis; places with names have a margin of half a place. gnuplot finds no range of
+// its own without data, so an axis without them goes from 0 to 1.
+std::string range_of(const char* axis, const Axis& a, bool has_data) {
+  if (!a.names.empty())
+    return fmt::format("set {}range [-0.5:{}]\n", axis, double(a.names.size()) - 0.5);
+  const auto end = [&](const std::optional<double>& given, const char* otherwise) {
+    return given ? number(*given) : has_data ? "*" : otherwise;
+  };
+  return fmt::format("set {}range [{}:{}]\n", axis, end(a.min, "0"), end(a.max, "1"));
+}
+
+std::string tics_of(const char* axis, const Axis& a) {
+  if (a.names.empty()) return fmt::format("set {}tics auto norotate\n", axis);
+  std::string places;
+  for (std::size_t i = 0; i < a.names.size(); ++i)
+    places += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted(a.names[i]), i);
+  const bool is_crowded = *axis == 'x' && a.names.size() > 5;
+  return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
 }
 
 std::string drawn_as(const Series& series) {
-  const Dash dash = kDashes.at(series.dash);
-  const std::string line =
-      fmt::format("lw {} dt {}",
-                  series.width,
-                  dash.on > 0 ? fmt::format("({},{})", dash.on, dash.off) : std::string("solid"));
-  const std::string colour =
-      fmt::format(" lc rgb '{}'", hex(series.colour ? colour_of(*series.colour) : kTruthColour));
-  switch (series.kind) {
-    case Kind::kLine:
-      return "using 1:2 with lines " + line + colour;
-    case Kind::kLineWithPoints:
-      return "using 1:2 with linespoints pt 7 ps 0.6 " + line + colour;
-    case Kind::kBars:
-      return "using 1:2 with boxes fs solid" + colour;
-    case Kind::kPoints:
-      break;
+  const std::string colour = fmt::format("lc rgb '{}'", hex(series.style.colour));
+  const int dash = series.style.dash == Dash::kSolid ? 1 : series.style.dash == Dash::kLong ? 2 : 3;
+  const std::string line = fmt::format("lw {} dt {} {}", series.style.width, dash, colour);
+  switch (series.mark) {
+    case Mark::kLine:
+      return "using 1:2 with lines " + line;
+    case Mark::kPoints:
+      return "using 1:2 with points pt 7 ps 0.8 " + colour;
+    case Mark::kLineAndPoints:
+      return "using 1:2 with linespoints pt 7 ps 0.6 " + line;
+    case Mark::kBars:
+      return "using 1:2 with boxes " + colour;
+    case Mark::kIntervals:
+      return "using 1:2:3:4 with xerrorbars pt 7 ps 1 " + colour;
+    case Mark::kAbove:
+      return "using 1:2 with points pt 9 ps 1 " + colour;
+    case Mark::kBelow:
+      return "using 1:2 with points pt 11 ps 1 " + colour;
   }
-  return (series.x_low.empty() ? "using 1:2 with points pt 7 ps 1"
-                               : "using 1:2:3:4 with xerrorbars pt 7 ps 1") +
-         colour;
+  return {};
 }
 
-// Data blocks, then the commands that draw them.
-std::string panel_text(const Plot& plot, std::size_t panel) {
-  const auto bars = static_cast<double>(
-      std::count_if(plot.series.begin(), plot.series.end(), [](const Series& s) {
-        return s.kind == Kind::kBars;
-      }));
-  std::string data;
-  std::string parts;
-  double bar = 0;
-  for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    const Series& series = plot.series[k];
-    double shift = 0;
-    if (series.kind == Kind::kBars) shift = (bar++ - (bars - 1) / 2) * kBarsWidth / bars;
-    const std::string block = fmt::format("$d{}_{}", panel, k);
-    data += block + " << EOD\n" + data_lines(series, shift) + "EOD\n";
-    parts += fmt::format("{}{} {} title {}",
-                         k > 0 ? ", \\\n     " : "",
-                         block,
-                         drawn_as(series),
-                         quoted(series.name));
+// Bars of several series stand side by side, each of this width.
+double bar_width(const Plot& plot) {
+  const auto bars = std::count_if(plot.series.begin(), plot.series.end(), [](const Series& s) {
+    return s.mark == Mark::kBars;
+  });
+  return 0.8 / static_cast<double>(std::max<std::ptrdiff_t>(1, bars));
+}
+
+// A script in two parts: the data blocks, and the commands that draw them.
+class Script {
+ public:
+  void add_plot(const Plot& plot, bool has_legend, const std::string& picture) {
+    if (plot.picture) return add_picture(plot, picture);
+    commands_ += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x.label) +
+                 "\nset ylabel " + quoted(plot.y.label) + "\n";
+    commands_ += range_of("x", plot.x, has_data(plot)) + range_of("y", plot.y, has_data(plot));
+    commands_ += tics_of("x", plot.x) + tics_of("y", plot.y);
+    commands_ += has_legend ? "set key\n" : "unset key\n";
+    add_bands(plot);
+    const double width = bar_width(plot);
+    commands_ += fmt::format("set boxwidth {}\n", width);
+    std::string parts;
+    double bar = -0.4 + width / 2;
+    for (const Series& series : plot.series) {
+      const double shift = series.mark == Mark::kBars ? bar : 0;
+      if (series.mark == Mark::kBars) bar += width;
+      parts += fmt::format("{}{} {} {}",
+                           parts.empty() ? "" : ", \\\n     ",
+                           block_of(series, shift),
+                           drawn_as(series),
+                           series.name.empty() ? "notitle" : "title " + quoted(series.name));
+    }
+    // Axes without data are drawn all the same.
+    commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";
   }
-  return data + axis_commands("x", plot.x) + axis_commands("y", plot.y) +
-         (bars > 0 ? fmt::format("set boxwidth {:.4g}\n", kBarsWidth / bars) : "") +
-         (plot.legend ? "" : "unset key\n") + "plot " + parts + "\n";
-}
 
-}  // namespace
+  std::string text() const { return data_ + commands_; }
+  void command(const std::string& line) { commands_ += line + "\n"; }
 
-void check_gnuplot(const std::string& format) {
-  if (!terminals().contains(format))
-    throw Error("--figures is '" + format + "'; expected png, pdf or svg");
-  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0)
-    throw Error("--figures needs the program gnuplot (Debian package gnuplot-nox)");
-}
+ private:
+  // Adds the data of a series and returns the name of their block.
+  std::string block_of(const Series& series, double shift) {
+    const std::string name = fmt::format("$d{}", blocks_++);
+    data_ += name + " << EOD\n";
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      data_ += number(series.x[i] + shift) + " " + number(series.y[i]);
+      if (!series.low.empty()) data_ += " " + number(series.low[i]) + " " + number(series.high[i]);
+      data_ += "\n";
+    }
+    if (series.x.empty()) data_ += "NaN NaN NaN NaN\n";
+    data_ += "EOD\n";
+    return name;
+  }
 
-std::string gnuplot_script(const std::vector<Plot>& panels,
-                           const std::string& name,
-                           const std::string& format,
-                           double height) {
-  std::string script = head(panels, name, format, height);
-  if (panels.size() > 1) script += fmt::format("set multiplot layout {},1\n", panels.size());
-  for (std::size_t k = 0; k < panels.size(); ++k) script += panel_text(panels[k], k);
-  if (panels.size() > 1) script += "unset multiplot\n";
-  return script;
-}
+  void add_bands(const Plot& plot) {
+    int object = 1;
+    for (const Band& band : plot.bands)
+      commands_ += fmt::format(
+          "set object {} rectangle from {}, graph 0 to {}, graph 1 fc rgb '{}' fs solid noborder "
+          "behind\n",
+          object++,
+          number(band.from),
+          number(band.to),
+          hex(band.colour));
+  }
 
-void draw(const std::vector<Plot>& panels,
-          const fs::path& folder,
-          const std::string& name,
-          const std::string& format,
-          double height) {
-  const fs::path script = folder / (name + ".gnuplot");
-  write_file(script, gnuplot_script(panels, name, format, height), Flush::kLater);
-  FILE* run = ::popen("gnuplot - 2> /dev/null", "w");
-  if (run == nullptr) throw Error("cannot start gnuplot");
-  std::fprintf(run,
+  void add_picture(const Plot& plot, const std::string& picture) {
+    commands_ += "set title " + quoted(plot.title) +
+                 "\nunset key\nunset xlabel\nunset ylabel\nunset xtics\nunset ytics\nunset border\n"
+                 "set xrange [*:*] noextend\nset yrange [*:*] noextend\nset size ratio -1\nplot " +
+                 quoted_path(picture) +
+                 " binary filetype=png with rgbimage\nset size noratio\nset border\n";
+  }
+
+  std::string data_, commands_;
+  int blocks_ = 0;
+};
+
+// Runs the script, with `folder` as the working directory.
+void run(const fs::path& folder, const fs::path& script) {
+  FILE* gnuplot = ::popen("gnuplot - 2> /dev/null", "w");
+  if (gnuplot == nullptr) throw Error("cannot start gnuplot");
+  std::fprintf(gnuplot,
                "cd %s\nload %s\n",
-               quoted(fs::absolute(folder).string()).c_str(),
-               quoted(script.filename().string()).c_str());
-  const int status = ::pclose(run);
+               quoted_path(folder.string()).c_str(),
+               quoted_path(script.filename().string()).c_str());
+  const int status = ::pclose(gnuplot);
   if (status != 0)
     throw Error(fmt::format("gnuplot failed (status {}) on it", WEXITSTATUS(status)),
                 {script.string()});
+}
+
+// A folder that is removed at the end.
+struct TemporaryFolder {
+  fs::path path;
+
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "airtruth-plot-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw Error("cannot be created", {name});
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
+}  // namespace
+
+void check_gnuplot(const std::string& option) {
+  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0)
+    throw Error(option + " needs the program gnuplot (Debian package gnuplot-nox)");
+}
+
+std::string gnuplot_script(const Sheet& sheet, Format format, const std::string& name) {
+  Script script;
+  script.command("set terminal " + terminal(format, sheet.height, sheet.plots.size() > 1) +
+                 " noenhanced");
+  script.command("set output " + quoted_path(name + ending(format)));
+  script.command("set grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset style fill solid");
+  if (sheet.legend == Legend::kBeside)
+    script.command(
+        "set key at screen 0.99, screen 0.98 right top vertical maxrows 60 samplen 2 spacing 0.9\n"
+        "set rmargin 26");
+  if (sheet.legend == Legend::kAbove)
+    script.command("set key outside above center horizontal samplen 2");
+  const auto rows = (static_cast<int>(sheet.plots.size()) + sheet.columns - 1) / sheet.columns;
+  const bool is_multiple = sheet.plots.size() > 1;
+  if (is_multiple)
+    script.command(fmt::format("set multiplot layout {},{}\nset lmargin 9", rows, sheet.columns));
+  for (std::size_t i = 0; i < sheet.plots.size(); ++i)
+    script.add_plot(sheet.plots[i],
+                    sheet.legend == Legend::kAbove || (sheet.legend == Legend::kBeside && i == 0),
+                    picture_file(name, i));
+  if (is_multiple) script.command("unset multiplot");
+  return script.text();
+}
+
+void draw(const Sheet& sheet, const fs::path& folder, const std::string& name, Format format) {
+  const fs::path script = folder / (name + ".gnuplot");
+  write_file(script, gnuplot_script(sheet, format, name), Flush::kLater);
+  for (std::size_t i = 0; i < sheet.plots.size(); ++i)
+    if (const image::Rgb8* picture = sheet.plots[i].picture)
+      video::write_still(folder / picture_file(name, i), *picture, Flush::kLater);
+  run(folder, script);
+}
+
+image::Rgb8 picture_of(const Sheet& sheet) {
+  const TemporaryFolder folder;
+  draw(sheet, folder.path, "plot", Format::kPng);
+  return video::read_still(folder.path / "plot.png");
 }
 
 }  // namespace airtruth::plot

@@ -1,80 +1,103 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include "foundation/image/picture.h"
 
-// A plot described once: gnuplot draws it as a file (PNG, PDF, SVG), and a page draws it with
-// Chart.js (drawPlot in show/html/assets/common.js).
+// Plots as values: what a plot shows, apart from the library that draws it. A plot is described
+// once. gnuplot draws it as a file (gnuplot.h), and Chart.js draws it on a page (plot_json.h and
+// show/html/assets/common.js).
 //
-// Example: a line from (0, 1) to (1, 0.5), its third point missing.
+// Example: the success curve of one tracker,
 //
-//   Plot plot{.title = "Success", .x = {"overlap"}, .y = {"share of frames", 0, 1}};
-//   plot.series.push_back({.name = "am3", .x = {0, 1, 2}, .y = {1, 0.5, NAN}, .colour = 0});
-//   draw({plot}, "figures", "success", "png", 9);  // figures/success.png, 1600 x 900 px
+//   Plot plot;
+//   plot.x = {.label = "overlap", .min = 0, .max = 1};
+//   plot.y = {.label = "share of frames", .min = 0, .max = 1};
+//   plot.series.push_back({.name = "am3", .style = style_of(0), .x = {0, 0.5, 1}, .y = {1, 0.8,
+//   0}});
 namespace airtruth::plot {
 
+using Colour = std::array<std::uint8_t, 3>;  // red, green, blue of sRGB
+
+// The colours of series, in order. The first six are distinguishable with every kind of colour
+// vision (Okabe and Ito 2008, with a purple in place of their yellow).
+inline constexpr std::array<Colour, 12> kColours = {{{0, 114, 178},
+                                                     {230, 159, 0},
+                                                     {213, 94, 0},
+                                                     {86, 180, 233},
+                                                     {170, 51, 119},
+                                                     {0, 158, 115},
+                                                     {93, 58, 155},
+                                                     {140, 86, 75},
+                                                     {127, 127, 127},
+                                                     {184, 176, 0},
+                                                     {244, 166, 200},
+                                                     {46, 78, 142}}};
+// The colour of truth, which no series has: black on paper, white on a dark page.
+inline constexpr Colour kInk = {0, 0, 0};
+
+// Lengths of dashes and gaps in units of a line's width; solid lines have none.
+enum class Dash { kSolid, kLong, kShort };
+
+struct Style {
+  Colour colour = kColours[0];
+  Dash dash = Dash::kSolid;
+  // Relative to the width of a usual line.
+  double width = 1;
+};
+
+// The style of the series with this index. The colours repeat from the 13th on. The dash changes
+// with every six colours, so that series beyond the first six do not rely on their colour alone.
+Style style_of(std::size_t index);
+
+enum class Mark {
+  kLine,
+  kPoints,
+  kLineAndPoints,
+  kBars,       // upright, at whole x
+  kIntervals,  // points with a horizontal interval from `low` to `high`
+  kAbove,      // triangles that point up: values above the axis
+  kBelow,      // triangles that point down: values below the axis
+};
+
+struct Series {
+  // The name in the legend; a series without a name is not in it.
+  std::string name;
+  Mark mark = Mark::kLine;
+  Style style;
+  // Equal in length. A y that is not finite is a gap in a line.
+  std::vector<double> x, y;
+  // Bounds of intervals, equal in length to x; empty for other marks.
+  std::vector<double> low = {}, high = {};
+};
+
 struct Axis {
-  std::string label;  // with its unit
-  std::optional<double> low = std::nullopt;
-  std::optional<double> high = std::nullopt;
-  // Names of the places 0, 1, ... of the axis; without names it is an axis of numbers.
+  std::string label;
+  // Empty: the axis ends where the data end.
+  std::optional<double> min = {}, max = {};
+  // Names of the places 0, 1, 2, ...; empty for an axis of numbers.
   std::vector<std::string> names = {};
 };
 
-enum class Kind { kLine, kLineWithPoints, kPoints, kBars };
-
-struct Series {
-  std::string name;
-  Kind kind = Kind::kLine;
-  // As many values each; a NaN is a gap in the line. A series on an axis with names has a value for
-  // every name.
-  std::vector<double> x;
-  std::vector<double> y;
-  // Ends of a horizontal error bar around each point; empty, or as many values as points. Only
-  // figures draw them.
-  std::vector<double> x_low = {};
-  std::vector<double> x_high = {};
-  std::optional<std::size_t> colour = std::nullopt;  // see colour_of; the truth has no number
-  std::size_t dash = 0;                              // index of kDashes
-  double width = 1;                                  // of a usual line
+// A range of x that is shaded over the whole height.
+struct Band {
+  double from = 0, to = 0;
+  Colour colour{};
 };
 
 struct Plot {
-  std::string title =
-      {};  // the caption on a page; figures have none, because a paper captions them
-  Axis x = {};
-  Axis y = {};
-  std::vector<Series> series = {};
-  bool legend = true;  // in figures; a page has one legend for all plots
+  // The text above the plot; it may be empty.
+  std::string title;
+  Axis x, y;
+  std::vector<Series> series;
+  std::vector<Band> bands = {};
+  // A picture that is shown in place of axes and series; it must outlive the plot.
+  const image::Rgb8* picture = nullptr;
 };
-
-// The plot as a page's script reads it; a NaN becomes null.
-nlohmann::ordered_json to_json(const Plot& plot);
-
-// Throws Error for a format other than "png", "pdf" and "svg", and where the program gnuplot is
-// missing.
-void check_gnuplot(const std::string& format);
-
-// The script that draws the panels one below the other into NAME.FORMAT, with all data inside.
-// `height` is for a width of 16: in hundreds of pixels for PNG (1600 px wide), in cm for PDF (16 cm
-// wide) and in 50 px for SVG (800 px wide).
-std::string gnuplot_script(const std::vector<Plot>& panels,
-                           const std::string& name,
-                           const std::string& format,
-                           double height);
-
-// Writes NAME.gnuplot into the folder and runs it, which writes NAME.FORMAT. Throws Error where
-// gnuplot fails.
-void draw(const std::vector<Plot>& panels,
-          const std::filesystem::path& folder,
-          const std::string& name,
-          const std::string& format,
-          double height);
 
 }  // namespace airtruth::plot

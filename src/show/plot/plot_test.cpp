@@ -1,89 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/plot/plot.h"
-
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
+#include <limits>
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+#include <gmock/gmock.h>
 
-#include "foundation/base/error.h"
-#include "show/plot/style.h"
+#include "picture/video/still.h"
+#include "show/plot/gnuplot.h"
+#include "show/plot/plot_json.h"
 
 namespace airtruth::plot {
 namespace {
 
 namespace fs = std::filesystem;
 
-Plot line_with_gap() {
-  Plot plot{.title = "Success", .x = {.label = "overlap"}, .y = {.label = "share", .low = 0}};
-  plot.series.push_back(
-      {.name = "am3", .x = {0, 1, 2}, .y = {1, NAN, 0.5}, .colour = 6, .dash = 1});
+bool has_gnuplot() { return std::system("command -v gnuplot > /dev/null 2>&1") == 0; }
+
+Plot two_levels() {
+  Plot plot{.title = "levels", .x = {.label = "x", .min = 0, .max = 10}, .y = {.min = 0, .max = 1}};
+  plot.series.push_back({.name = "low", .style = style_of(0), .x = {0, 10}, .y = {0.25, 0.25}});
+  plot.series.push_back({.name = "high", .style = style_of(1), .x = {0, 10}, .y = {0.75, 0.75}});
   return plot;
 }
 
-TEST(Plot, JsonHasNullForGapAndForFreeLimit) {
-  EXPECT_EQ(
-      to_json(line_with_gap()).dump(),
-      R"({"title":"Success","x":{"label":"overlap","low":null,"high":null,"names":[]},)"
-      R"("y":{"label":"share","low":0.0,"high":null,"names":[]},"series":[{"name":"am3",)"
-      R"("kind":"line","x":[0.0,1.0,2.0],"y":[1.0,null,0.5],"colour":6,"dash":1,"width":1.0}]})");
+bool is_near(const std::uint8_t* pixel, const Colour& colour) {
+  for (std::size_t c = 0; c < 3; ++c)
+    if (std::abs(int{pixel[c]} - int{colour[c]}) > 40) return false;
+  return true;
 }
 
-TEST(Style, PageAndFigureHaveTheSameDashes) {
-  EXPECT_NE(styles_json().find(R"("dashes":[[],[7,3],[2,3]])"), std::string::npos);
-  const std::string script = gnuplot_script({line_with_gap()}, "p", "png", 9);
-  EXPECT_NE(script.find("dt (7,3) lc rgb '#5d3a9b'"), std::string::npos) << script;
-  EXPECT_EQ(dash_of(5), 0u);
-  EXPECT_EQ(dash_of(6), 1u);
-  EXPECT_EQ(dash_of(17), 2u);
-}
-
-TEST(Gnuplot, RejectsUnknownFormat) { EXPECT_THROW(check_gnuplot("bmp"), Error); }
-
-// gnuplot's SVG states each line's colour and points: a horizontal line at half of the range lies
-// halfway between the lines at the ends of the range.
-TEST(Gnuplot, DrawsLinesInTheirColoursAtTheirPlaces) {
-  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot";
-  Plot plot{.y = {.label = "y", .low = 0, .high = 1}, .legend = false};
-  for (const std::size_t k : {0u, 1u, 2u})
-    plot.series.push_back({.name = "it's <" + std::to_string(k),
-                           .x = {0, 1},
-                           .y = {0.25 * (1.0 + double(k)), 0.25 * (1.0 + double(k))},
-                           .colour = k});
-  const fs::path folder = fs::path(testing::TempDir()) / "plot_test";
-  fs::create_directories(folder);
-  draw({plot, plot}, folder, "p", "svg", 9);
-  std::ostringstream text;
-  text << std::ifstream(folder / "p.svg").rdbuf();
-  const std::string svg = text.str();
-  // The heights of the lines of this colour, one for each panel from the top.
-  const auto height_of = [&](std::size_t k) {
-    const Colour c = colour_of(k);
-    char rgb[64];
-    std::snprintf(rgb, sizeof rgb, "<path stroke='rgb(%3d, %3d, %3d)'", c[0], c[1], c[2]);
-    std::vector<double> heights;
-    for (std::size_t at = svg.find(rgb); at != std::string::npos; at = svg.find(rgb, at + 1)) {
-      const std::size_t path = svg.find("d='M", at);
-      if (path == std::string::npos) break;
-      const std::size_t comma = svg.find(',', path);
-      heights.push_back(std::strtod(svg.c_str() + comma + 1, nullptr));
-    }
-    return heights;
-  };
-  const auto low = height_of(0);
-  const auto middle = height_of(1);
-  const auto high = height_of(2);
-  ASSERT_EQ(low.size(), 2u);
-  ASSERT_EQ(middle.size(), 2u);
-  ASSERT_EQ(high.size(), 2u);
-  for (const std::size_t panel : {0u, 1u}) {
-    EXPECT_GT(low[panel], high[panel] + 20);
-    EXPECT_NEAR(middle[panel], (low[panel] + high[panel]) / 2, 0.02);
+// The rows in which at least `least` pixels have the colour.
+std::vector<int> rows_of(const image::Rgb8& picture, const Colour& colour, int least) {
+  std::vector<int> rows;
+  for (int y = 0; y < picture.height; ++y) {
+    int count = 0;
+    for (int x = 0; x < picture.width; ++x) count += is_near(picture.at(x, y), colour) ? 1 : 0;
+    if (count >= least) rows.push_back(y);
   }
-  EXPECT_GT(high[1], low[0]);
+  return rows;
+}
+
+double middle(const std::vector<int>& rows) {
+  double sum = 0;
+  for (const int y : rows) sum += y;
+  return sum / static_cast<double>(rows.size());
+}
+
+TEST(Plot, StylesOfTheFirst18SeriesDiffer) {
+  for (std::size_t a = 0; a < 18; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_FALSE(style_of(a).colour == style_of(b).colour && style_of(a).dash == style_of(b).dash)
+          << a << " and " << b;
+}
+
+TEST(Plot, JsonHoldsWhatIsDescribed) {
+  Plot plot{.title = "t", .x = {.names = {"a", "b"}}, .y = {.label = "v", .min = 0}};
+  plot.series.push_back({.name = "s",
+                         .mark = Mark::kBars,
+                         .style = {kInk, Dash::kLong, 2},
+                         .x = {0, 1},
+                         .y = {3, std::numeric_limits<double>::quiet_NaN()}});
+  EXPECT_EQ(json_of(plot).dump(),
+            R"({"title":"t","x":{"label":"","min":null,"max":null,"names":["a","b"]},)"
+            R"("y":{"label":"v","min":0.0,"max":null,"names":[]},)"
+            R"("series":[{"name":"s","mark":"bars","style":{"colour":"ink","dash":[7,3],)"
+            R"("width":2.0},"x":[0.0,1.0],"y":[3.0,null]}]})");
+}
+
+// Two levels a half of the axis apart lie a half of its height apart in the picture.
+TEST(Gnuplot, DrawsValuesWhereTheAxisSaysTheyAre) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const image::Rgb8 picture = picture_of({.plots = {two_levels()}, .legend = Legend::kNone});
+  EXPECT_EQ(picture.width, 1600);
+  EXPECT_EQ(picture.height, 900);
+  const auto low = rows_of(picture, kColours[0], 500), high = rows_of(picture, kColours[1], 500);
+  const auto border = rows_of(picture, {85, 85, 85}, 900);
+  ASSERT_FALSE(low.empty() || high.empty());
+  ASSERT_GE(border.size(), 2U);
+  const double axis = border.back() - border.front();
+  EXPECT_NEAR(middle(low) - middle(high), 0.5 * axis, 4);
+  EXPECT_NEAR(border.back() - middle(low), 0.25 * axis, 4);
+}
+
+TEST(Gnuplot, APlotWithoutDataHasAxes) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Sheet sheet;
+  sheet.plots.resize(2);
+  sheet.plots[0].title = "no series";
+  sheet.plots[1].series.push_back(
+      {.name = "gaps", .x = {0, 1}, .y = std::vector(2, std::numeric_limits<double>::quiet_NaN())});
+  const image::Rgb8 picture = picture_of(sheet);
+  EXPECT_GE(rows_of(picture, {85, 85, 85}, 900).size(), 4U);  // two axes, top and bottom
+}
+
+TEST(Gnuplot, NamesOfAUserRunNothing) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const fs::path folder = fs::temp_directory_path() / "airtruth-plot-test";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  Plot plot = two_levels();
+  const std::string command = "' ; system('touch " + (folder / "ran").string() + "') ; '\n`touch " +
+                              (folder / "ran").string() + "`";
+  plot.title = plot.x.label = plot.series[0].name = command;
+  plot.y.names = {command, "b"};
+  Sheet sheet;
+  sheet.plots.push_back(plot);
+  draw(sheet, folder, "p", Format::kSvg);
+  EXPECT_TRUE(fs::exists(folder / "p.svg"));
+  EXPECT_TRUE(fs::exists(folder / "p.gnuplot"));
+  EXPECT_FALSE(fs::exists(folder / "ran"));
   fs::remove_all(folder);
 }
 

@@ -14,40 +14,40 @@ const airtruth = (() => {
     if (name) made.className = name;
     return made;
   };
-  // Of truth alone: the ink of the page in plots, white with a black rim on pictures.
+  // The colour of truth alone.
   const ink = dark ? '#ffffff' : '#000000';
-  // Draws a plot as the program describes it (show/plot/plot.h). Its legend is the page's ranking.
+
+  // The axis of a described plot. Places with names have all their names, upright where there are many.
+  const described = ({ label, min, max, names }) => ({
+    ...(names.length
+      ? { type: 'category', ticks: { autoSkip: false, minRotation: names.length > 5 ? 90 : 0, font: { size: 9 } }, grid: { display: false } }
+      : { type: 'linear', min: min ?? undefined, max: max ?? undefined, ticks: { maxTicksLimit: 11 } }),
+    title: { display: Boolean(label), text: label },
+  });
+
+  // Draws a plot that the program describes (show/plot/plot.h).
   const drawPlot = (canvas, plot) => {
-    const named = plot.x.names.length > 0;
-    const bars = plot.series.some((one) => one.kind === 'bars');
-    const colourOf = (one) => (one.colour === null ? ink : plotStyles.colours[one.colour % plotStyles.colours.length]);
-    const dataset = (one) => ({
-      label: one.name,
-      data: named ? one.y : one.y.map((y, k) => ({ x: one.x[k], y })),
-      borderColor: colourOf(one),
-      backgroundColor: colourOf(one),
-      borderWidth: bars ? 0 : 1.5 * one.width,
-      borderDash: plotStyles.dashes[one.dash],
-      pointRadius: one.kind === 'line' ? 0 : 2.5,
-      showLine: one.kind !== 'points',
+    const { names } = plot.x;
+    const points = ({ x, y }) => names.length
+      ? names.map((_, place) => (x.includes(place) ? y[x.indexOf(place)] : null))
+      : x.map((at, i) => ({ x: at, y: y[i] }));
+    const datasets = plot.series.map((series) => {
+      const { colour, dash, width } = series.style;
+      const paint = colour === 'ink' ? ink : colour;
+      const shape = series.mark === 'bars' ? {} :
+        { type: 'line', borderColor: paint, borderWidth: 1.5 * width, borderDash: dash, showLine: series.mark !== 'points', pointRadius: series.mark === 'line' ? 0 : 2.5 };
+      return { label: series.name, data: points(series), backgroundColor: paint, ...shape };
     });
-    const axisOf = (axis) => ({
-      title: { display: axis.label !== '', text: axis.label },
-      ...(axis.low === null ? {} : { min: axis.low }),
-      ...(axis.high === null ? {} : { max: axis.high }),
-    });
-    const x = named ? { ticks: { autoSkip: false, minRotation: 90, font: { size: 9 } }, grid: { display: false } } : { type: 'linear', ...axisOf(plot.x) };
+    const isBars = plot.series.some((series) => series.mark === 'bars');
     return new Chart(canvas, {
-      type: bars ? 'bar' : named ? 'line' : 'scatter',
-      data: { labels: named ? plot.x.names : undefined, datasets: plot.series.map(dataset) },
-      options: { plugins: { legend: { display: false } }, scales: { x, y: axisOf(plot.y) } },
+      type: isBars ? 'bar' : 'line',
+      data: { labels: names.length ? names : undefined, datasets },
+      options: { plugins: { legend: { display: false } }, scales: { x: described(plot.x), y: described(plot.y) } },
     });
   };
+
   return {
     byId: (id) => document.getElementById(id),
-    // Both tables are those of the figures for a paper (show/plot/style.h).
-    colours: plotStyles.colours,
-    dash: (index) => plotStyles.dashes[Math.min(plotStyles.dashes.length - 1, Math.floor(index / 6))],
     ink,
     drawPlot,
     element,
@@ -58,8 +58,6 @@ const airtruth = (() => {
       value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }),
     line: (label, points, colour, more = {}) =>
       ({ label, data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more }),
-    // Every bin has its label, upright where there are many.
-    bins: (more = {}) => ({ ticks: { autoSkip: false, minRotation: 90, font: { size: 9 } }, grid: { display: false }, ...more }),
     axis: (text, more = {}) => ({ type: 'linear', title: { display: true, text }, ...more }),
     legend: { position: 'top', labels: { boxWidth: 12, filter: (item) => !item.text.startsWith('_') } },
   };

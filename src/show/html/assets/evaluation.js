@@ -2,12 +2,9 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, colours, counted, dash, drawPlot, element, ink, most, number, line, axis, legend } = airtruth;
+  const { byId, counted, drawPlot, element, ink, most, number, line, axis, legend } = airtruth;
   const trackers = data.trackers;
-  trackers.forEach((tracker, k) => {
-    tracker.colour = colours[k % colours.length];
-    tracker.dash = dash(k);
-  });
+  for (const tracker of trackers) Object.assign(tracker, { colour: tracker.style.colour, dash: tracker.style.dash });
   const scored = trackers.filter((tracker) => tracker.overall);
 
   const dotOf = (tracker) => {
@@ -116,17 +113,17 @@
     ], vot.some((t) => t.restart) ? 4 : 7);
   };
 
-  // The ranking shows which colour is whose.
   const none = { display: false };
+
+  // The plots are described by the program (benchmark/experiment/evaluation_plots.h). They have no legends: the
+  // ranking says which style is whose.
   const drawPlots = () => {
-    for (const id of ['success', 'precision', 'normalised', 'eao', 'by-range_m', 'by-size_px', 'by-contrast', 'by-background']) {
-      const plot = data.plots[id.replace('by-', '')];
-      const figure = byId(id).closest('figure');
-      figure.hidden = !plot;
-      if (!plot) continue;
-      figure.querySelector('figcaption').textContent = plot.title;
-      drawPlot(byId(id), plot);
+    for (const canvas of document.querySelectorAll('canvas[data-plot]')) {
+      const plot = data.plots[canvas.dataset.plot];
+      canvas.closest('figure').hidden = !plot;
+      if (plot) drawPlot(canvas, plot);
     }
+    byId('eao-caption').textContent = `Expected average overlap by length; the score is the mean over ${data.eao_range.join(' to ')} frames`;
   };
 
   const drawPairs = () => {

@@ -2,7 +2,8 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, bins, colours, counted, element, ink, least, most, number, line, axis, legend } = airtruth;
+  const { byId, counted, drawPlot, element, least, most, number, line, axis, legend } = airtruth;
+  const { colours } = data;
 
   // What a sequence is sorted and filtered by: over the frames that show an intruder.
   data.sequences.forEach((sequence, index) => {
@@ -32,28 +33,9 @@
     for (const [key, value] of Object.entries(data.card)) {
       byId('card').append(element('dt', key), element('dd', String(value)));
     }
-    for (const [key, histogram] of Object.entries(data.histograms)) {
-      // What lies beyond the edges is counted in the first and the last bin.
-      const last = histogram.counts.length - 1;
-      const labels = histogram.counts.map((_, i) =>
-        i === last ? `≥ ${histogram.edges[i]}` : i === 0 ? `< ${histogram.edges[1]}` : `${histogram.edges[i]}–${histogram.edges[i + 1]}`);
-      bars(`hist-${key}`, labels, histogram.counts, colours[0]);
-    }
-    bars('classes', Object.keys(data.classes), Object.values(data.classes), colours[0]);
-    bars('negatives', ['with an intruder', 'without'], [data.frames_with_intruder, data.frames - data.frames_with_intruder], [colours[0], colours[8]], 'y');
-    bars('states', ['visible', 'hidden', 'outside', 'behind', 'ended'], data.states, colours, 'y');
+    // The bar charts are described by the program (dataset/page/totals.h).
+    for (const canvas of document.querySelectorAll('canvas[data-plot]')) drawPlot(canvas, data.plots[canvas.dataset.plot]);
     drawCentres();
-  };
-
-  // Bars along x, or lying along y; every one has its label.
-  const bars = (id, labels, counts, colour, along = 'x') => {
-    const count = { beginAtZero: true, ticks: { precision: 0, maxTicksLimit: 6 } };
-    const names = along === 'x' ? bins() : { ticks: { autoSkip: false }, grid: { display: false } };
-    new Chart(byId(id), {
-      type: 'bar',
-      data: { labels, datasets: [{ data: counts, backgroundColor: colour }] },
-      options: { indexAxis: along, plugins: { legend: { display: false } }, scales: along === 'x' ? { x: names, y: count } : { x: count, y: names } },
-    });
   };
 
   // A cell is as dark as it has boxes (square root); the picture's upper left corner is the plot's.
