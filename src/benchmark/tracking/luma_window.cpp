@@ -8,7 +8,20 @@
 
 namespace airtruth::tracking {
 
-image::Plane resampled(
+namespace {
+
+// A part of a picture, reduced by whole blocks of pixels.
+struct Reduced {
+  cv::Mat source;
+  // The place of its first pixel in the picture, and the size of one of its pixels there.
+  double left = 0, top = 0;
+  double across = 1, down = 1;
+};
+
+// The part of the picture that a window needs, with a margin, reduced by the largest power of two
+// that keeps the window's pixels at least as large as the part's. A view of the picture if that
+// power is 1.
+Reduced reduced_part(
     const image::Plane& luma, double left, double top, double scale, int width, int height) {
   const int block = 1 << std::max(0, static_cast<int>(std::floor(std::log2(scale))));
   const auto whole_blocks = [&](double v) {
@@ -35,8 +48,18 @@ image::Plane resampled(
     cv::resize(source, reduced, size, 0, 0, cv::INTER_AREA);
     source = reduced;
   }
-  const double across = static_cast<double>(columns) / source.cols;
-  const double down = static_cast<double>(rows) / source.rows;
+  return {source,
+          double(part.x),
+          double(part.y),
+          static_cast<double>(columns) / source.cols,
+          static_cast<double>(rows) / source.rows};
+}
+
+}  // namespace
+
+image::Plane resampled(
+    const image::Plane& luma, double left, double top, double scale, int width, int height) {
+  const Reduced part = reduced_part(luma, left, top, scale, width, height);
   image::Plane plane;
   plane.width = width;
   plane.height = height;
@@ -45,13 +68,13 @@ image::Plane resampled(
                                                    static_cast<std::size_t>(height));
   cv::Mat target(height, width, CV_8UC1, plane.samples.get());
   // Between centres of pixels.
-  const cv::Matx23d source_from_target(scale / across,
+  const cv::Matx23d source_from_target(scale / part.across,
                                        0,
-                                       (left + scale / 2 - part.x) / across - 0.5,
+                                       (left + scale / 2 - part.left) / part.across - 0.5,
                                        0,
-                                       scale / down,
-                                       (top + scale / 2 - part.y) / down - 0.5);
-  cv::warpAffine(source,
+                                       scale / part.down,
+                                       (top + scale / 2 - part.top) / part.down - 0.5);
+  cv::warpAffine(part.source,
                  target,
                  source_from_target,
                  target.size(),

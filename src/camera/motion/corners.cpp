@@ -54,12 +54,13 @@ cv::Mat allowed_area(int width, int height, const image::Mask* own_aircraft) {
   return allowed;
 }
 
-// Corners are searched at half size, which is four times faster. The position need not be exact,
-// since Lucas-Kanade tracks the surroundings of any point.
-std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
-                                        const cv::Mat& allowed,
-                                        const Options& options,
-                                        const std::function<bool(const cv::Point2f&)>& is_far) {
+namespace {
+
+// Corners in pixels of `grey`, strongest first. They are searched at half size, which is four times
+// faster. The position need not be exact, since Lucas-Kanade tracks the surroundings of any point.
+std::vector<cv::Point2f> strongest_corners(const cv::Mat& grey,
+                                           const cv::Mat& allowed,
+                                           double distance_px) {
   const bool half = std::min(grey.cols, grey.rows) >= 400;
   cv::Mat image = grey;
   cv::Mat mask = allowed;
@@ -68,34 +69,49 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
     cv::resize(allowed, mask, image.size(), 0, 0, cv::INTER_NEAREST);
   }
   const double scale = half ? 2.0 : 1.0;
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(image, corners, 0, 0.0005, distance_px / scale, mask, 5);
+  const auto s = static_cast<float>(scale);
+  for (cv::Point2f& c : corners) c = {(c.x + 0.5f) * s - 0.5f, (c.y + 0.5f) * s - 0.5f};
+  return corners;
+}
+
+// Adds the strongest corners to `chosen`: at most `in_cell` in each cell of a grid over the
+// picture, and until `most` are chosen.
+void choose(const std::vector<cv::Point2f>& strongest_first,
+            const cv::Size& size,
+            int in_cell,
+            int most,
+            std::vector<cv::Point2f>& chosen) {
+  std::vector<int> taken(kGrid * kGrid, 0);
+  for (const cv::Point2f& c : strongest_first) {
+    const int column =
+        std::min(kGrid - 1, static_cast<int>(c.x * kGrid / static_cast<float>(size.width)));
+    const int row =
+        std::min(kGrid - 1, static_cast<int>(c.y * kGrid / static_cast<float>(size.height)));
+    int& count = taken[static_cast<std::size_t>(row * kGrid + column)];
+    if (count >= in_cell || static_cast<int>(chosen.size()) >= most) continue;
+    ++count;
+    chosen.push_back(c);
+  }
+}
+
+}  // namespace
+
+std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
+                                        const cv::Mat& allowed,
+                                        const Options& options,
+                                        const std::function<bool(const cv::Point2f&)>& is_far) {
   double distance = options.min_corner_distance_px;
   if (distance <= 0)
     distance = std::max(6.0, std::sqrt(double(grey.cols) * grey.rows / options.max_corners) * 0.35);
-  std::vector<cv::Point2f> candidates;
-  cv::goodFeaturesToTrack(image, candidates, 0, 0.0005, distance / scale, mask, 5);
-  const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
-  const auto s = static_cast<float>(scale);
-  std::vector<cv::Point2f> chosen;
-  const auto choose = [&](const std::vector<cv::Point2f>& from, int in_cell, int most) {
-    std::vector<int> taken(kGrid * kGrid, 0);
-    for (const cv::Point2f& c : from) {  // strongest first
-      const int column =
-          std::min(kGrid - 1, static_cast<int>(c.x * kGrid / static_cast<float>(grey.cols)));
-      const int row =
-          std::min(kGrid - 1, static_cast<int>(c.y * kGrid / static_cast<float>(grey.rows)));
-      int& count = taken[static_cast<std::size_t>(row * kGrid + column)];
-      if (count >= in_cell || static_cast<int>(chosen.size()) >= most) continue;
-      ++count;
-      chosen.push_back(c);
-    }
-  };
   std::vector<cv::Point2f> far, near;
-  for (const cv::Point2f& c : candidates) {
-    const cv::Point2f full((c.x + 0.5f) * s - 0.5f, (c.y + 0.5f) * s - 0.5f);
-    (is_far && is_far(full) ? far : near).push_back(full);
-  }
-  choose(far, kFarInCell * share, options.max_corners / 2);
-  choose(near, share, options.max_corners);
+  for (const cv::Point2f& corner : strongest_corners(grey, allowed, distance))
+    (is_far && is_far(corner) ? far : near).push_back(corner);
+  const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
+  std::vector<cv::Point2f> chosen;
+  choose(far, grey.size(), kFarInCell * share, options.max_corners / 2, chosen);
+  choose(near, grey.size(), share, options.max_corners, chosen);
   return chosen;
 }
 

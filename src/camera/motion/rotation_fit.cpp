@@ -103,34 +103,43 @@ Quaternion best_rotation(const std::vector<Bearings>& bearings,
       .normalized();
 }
 
-std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
-                                        double limit_rad,
-                                        int min_inliers,
-                                        std::uint64_t seed) {
-  const std::size_t n = bearings.size();
-  const std::vector<Bearings> far = far_of(bearings);
-  std::optional<Matrix3> start;
-  const bool some_near = far.size() < n;
-  if (some_near && spread_of(far, std::vector<bool>(far.size(), true)) >= kMinSpreadRad)
-    start = consensus(far, limit_rad, 2 * min_inliers, seed);
-  const bool by_far = start.has_value();
-  if (!start) start = consensus(bearings, limit_rad, min_inliers, seed);
-  if (!start) return std::nullopt;
+namespace {
 
-  RotationFit fit;
-  fit.cam_from_reference = Quaternion(*start);
-  std::vector<double> weights(n);
+// A rotation from which a fit starts, and whether it is that of the far points alone.
+struct Start {
+  Matrix3 cam_from_reference;
+  bool is_by_far = false;
+};
+
+std::optional<Start> start_of(const std::vector<Bearings>& bearings,
+                              double limit_rad,
+                              int min_inliers,
+                              std::uint64_t seed) {
+  const std::vector<Bearings> far = far_of(bearings);
+  const bool some_near = far.size() < bearings.size();
+  if (some_near && spread_of(far, std::vector<bool>(far.size(), true)) >= kMinSpreadRad)
+    if (const auto found = consensus(far, limit_rad, 2 * min_inliers, seed))
+      return Start{*found, true};
+  if (const auto found = consensus(bearings, limit_rad, min_inliers, seed))
+    return Start{*found, false};
+  return std::nullopt;
+}
+
+// Iteratively reweighted least squares from the start.
+Quaternion refined(const Start& start, const std::vector<Bearings>& bearings, double limit_rad) {
+  Quaternion cam_from_reference(start.cam_from_reference);
+  std::vector<double> weights(bearings.size());
   double scale = limit_rad;  // shrinks to the measured noise of the points
   const double noise_rad = limit_rad / 4;
   for (int step = 0; step < kRefinements; ++step) {
-    const Matrix3 r = fit.cam_from_reference.toRotationMatrix();
+    const Matrix3 r = cam_from_reference.toRotationMatrix();
     Parallax parallax(noise_rad);
-    if (by_far)
+    if (start.is_by_far)
       for (const Bearings& b : bearings) parallax.add(miss(r, b), b.near);
     const double variance = parallax.variance();
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
       const Nearness& near = bearings[i].near;
-      weights[i] = by_far && step < kFarSteps && !near.is_far
+      weights[i] = start.is_by_far && step < kFarSteps && !near.is_far
                        ? 0
                        : weight_of(miss(r, bearings[i]),
                                    noise_rad,
@@ -138,13 +147,26 @@ std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
                                    limit_rad,
                                    variance * near.value * near.value);
     }
-    fit.cam_from_reference = best_rotation(bearings, weights);
+    cam_from_reference = best_rotation(bearings, weights);
     scale = std::max(0.7 * scale, limit_rad / 4);
   }
+  return cam_from_reference;
+}
+
+}  // namespace
+
+std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
+                                        double limit_rad,
+                                        int min_inliers,
+                                        std::uint64_t seed) {
+  const auto start = start_of(bearings, limit_rad, min_inliers, seed);
+  if (!start) return std::nullopt;
+  RotationFit fit;
+  fit.cam_from_reference = refined(*start, bearings, limit_rad);
   const Matrix3 r = fit.cam_from_reference.toRotationMatrix();
-  fit.is_inlier.assign(n, false);
+  fit.is_inlier.assign(bearings.size(), false);
   double squares = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < bearings.size(); ++i) {
     if (miss(r, bearings[i]) > limit_rad * limit_rad) continue;
     fit.is_inlier[i] = true;
     ++fit.inliers;

@@ -55,6 +55,40 @@ void smooth_rotations(const std::vector<FrameMotion>& against_first,
   }
 }
 
+// The weighted sum over the neighbours of a frame.
+struct NeighbourSum {
+  Homography sum = Homography::Zero();
+  double weight = 1;  // of the frame itself, whose logarithm is zero
+};
+
+// Adds the neighbours of frame k in one direction: log(i_from_k) with a Gaussian weight in time.
+void add_neighbours(const std::vector<FrameMotion>& against_first,
+                    std::size_t k,
+                    int direction,
+                    double sigma_s,
+                    NeighbourSum& all) {
+  constexpr double kMaxSigmas = 2.5;
+  Homography i_from_k = Homography::Identity();
+  std::size_t i = k;
+  while (direction > 0 ? i + 1 < against_first.size() : i > 0) {
+    const std::size_t next = direction > 0 ? i + 1 : i - 1;
+    if (against_first[std::max(i, next)].state == State::kCut) return;
+    const double dt = (against_first[next].time_s - against_first[k].time_s) / sigma_s;
+    if (std::abs(dt) > kMaxSigmas) return;
+    i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
+    const double weight = std::exp(-0.5 * dt * dt);
+    // The logarithm of a matrix near the identity, to third order. This is exact enough in the
+    // window.
+    const Homography e = i_from_k - Homography::Identity();
+    const Homography log =
+        e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3) : Homography(i_from_k.log());
+    if (!log.allFinite()) return;
+    all.sum += weight * log;
+    all.weight += weight;
+    i = next;
+  }
+}
+
 }  // namespace
 
 // The neighbours i of frame k are compared with it by i_from_k. The steady camera is the one for
@@ -73,32 +107,9 @@ std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
     return result;
   }
   for (std::size_t k = 0; k < n; ++k) {
-    Homography sum = Homography::Zero();
-    double total = 1;
-    const auto walk = [&](int direction) {
-      Homography i_from_k = Homography::Identity();
-      std::size_t i = k;
-      while (direction > 0 ? i + 1 < n : i > 0) {
-        const std::size_t next = direction > 0 ? i + 1 : i - 1;
-        if (against_first[std::max(i, next)].state == State::kCut) return;
-        const double dt = (against_first[next].time_s - against_first[k].time_s) / sigma;
-        if (std::abs(dt) > 2.5) return;
-        i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
-        const double weight = std::exp(-0.5 * dt * dt);
-        // The logarithm of a matrix near the identity, to second order. This is exact enough in the
-        // window.
-        const Homography e = i_from_k - Homography::Identity();
-        const Homography log = e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3)
-                                              : Homography(i_from_k.log());
-        if (!log.allFinite()) return;
-        sum += weight * log;
-        total += weight;
-        i = next;
-      }
-    };
-    walk(+1);
-    walk(-1);
-    const Homography steady_from_k = (sum / total).exp();
+    NeighbourSum all;
+    for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma, all);
+    const Homography steady_from_k = (all.sum / all.weight).exp();
     const Homography shake = steady_from_k.inverse();
     result[k].frame_from_reference =
         shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());

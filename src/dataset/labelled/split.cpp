@@ -51,6 +51,51 @@ Split split_from_name(std::string_view name) {
               "'; expected none, by-background or by-sequence");
 }
 
+namespace {
+
+// Frames and groups that the parts have so far.
+struct Filled {
+  std::array<double, 3> frames{};
+  std::array<std::size_t, 3> groups{};
+};
+
+// The part that takes the next group: the one that lacks most of its share. While as many groups
+// are left as parts are empty, an empty one.
+std::size_t next_part(const Filled& filled,
+                      const std::array<double, 3>& shares,
+                      double total_frames,
+                      std::size_t groups_left) {
+  std::size_t empty = 0;
+  for (std::size_t p = 0; p < 3; ++p) empty += shares[p] > 0 && filled.groups[p] == 0 ? 1 : 0;
+  std::size_t best = 3;
+  for (std::size_t p = 0; p < 3; ++p) {
+    if (shares[p] <= 0 || (groups_left <= empty && filled.groups[p] > 0)) continue;
+    const auto deficit = [&](std::size_t q) { return shares[q] * total_frames - filled.frames[q]; };
+    if (best == 3 || deficit(p) > deficit(best)) best = p;
+  }
+  check(best < 3, "some part has a share");
+  return best;
+}
+
+void warn_of_shared_backgrounds(const std::vector<ClipFacts>& clips,
+                                const std::map<std::string, std::string>& parts,
+                                const Warn& warn) {
+  std::map<std::string, std::set<std::string>> parts_of_background;
+  for (const ClipFacts& clip : clips)
+    parts_of_background[clip.background].insert(parts.at(clip.name));
+  const auto shared = std::count_if(parts_of_background.begin(),
+                                    parts_of_background.end(),
+                                    [](const auto& entry) { return entry.second.size() > 1; });
+  if (shared > 0)
+    airtruth::warn(warn,
+                   fmt::format("{} of {} backgrounds are in more than one part: what is learned on "
+                               "one may be known by heart on the other",
+                               shared,
+                               parts_of_background.size()));
+}
+
+}  // namespace
+
 std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
                                           Split split,
                                           const std::array<double, 3>& shares,
@@ -64,41 +109,21 @@ std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
   const std::vector<Group> groups = groups_of(clips, split, seed);
   double total = 0;
   for (const Group& group : groups) total += static_cast<double>(group.frames);
-  std::array<double, 3> frames{};
-  std::array<std::size_t, 3> count{};
+  Filled filled;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::size_t left = groups.size() - g;
-    std::size_t empty = 0;
-    for (std::size_t p = 0; p < 3; ++p) empty += shares[p] > 0 && count[p] == 0 ? 1 : 0;
-    std::size_t best = 3;
-    for (std::size_t p = 0; p < 3; ++p) {
-      if (shares[p] <= 0 || (left <= empty && count[p] > 0)) continue;
-      const auto deficit = [&](std::size_t q) { return shares[q] * total - frames[q]; };
-      if (best == 3 || deficit(p) > deficit(best)) best = p;
-    }
-    check(best < 3, "some part has a share");
-    for (const std::string& name : groups[g].sequences) parts[name] = kParts[best];
-    frames[best] += static_cast<double>(groups[g].frames);
-    ++count[best];
+    const std::size_t part = next_part(filled, shares, total, groups.size() - g);
+    for (const std::string& name : groups[g].sequences) parts[name] = kParts[part];
+    filled.frames[part] += static_cast<double>(groups[g].frames);
+    ++filled.groups[part];
   }
   for (std::size_t p = 0; p < 3; ++p)
-    if (shares[p] > 0 && count[p] == 0)
+    if (shares[p] > 0 && filled.groups[p] == 0)
       airtruth::warn(warn,
                      fmt::format("{} stays empty: there are only {} {}",
                                  kParts[p],
                                  groups.size(),
                                  split == Split::kByBackground ? "backgrounds" : "sequences"));
-  std::map<std::string, std::set<std::string>> parts_of_background;
-  for (const ClipFacts& clip : clips) parts_of_background[clip.background].insert(parts[clip.name]);
-  const auto shared = std::count_if(parts_of_background.begin(),
-                                    parts_of_background.end(),
-                                    [](const auto& entry) { return entry.second.size() > 1; });
-  if (shared > 0)
-    airtruth::warn(warn,
-                   fmt::format("{} of {} backgrounds are in more than one part: what is learned on "
-                               "one may be known by heart on the other",
-                               shared,
-                               parts_of_background.size()));
+  warn_of_shared_backgrounds(clips, parts, warn);
   return parts;
 }
 

@@ -166,53 +166,77 @@ Vector3 right_of(const std::vector<GroundView>& views) {
   return right.norm() > 0 ? right.normalized() : Vector3(0, 1, 0);
 }
 
+// The rectified views under an assumed horizon.
+std::vector<Straightened> straightened_views(const std::vector<GroundView>& views,
+                                             const lens::Lens& lens,
+                                             const image::Mask* own_aircraft,
+                                             const Quaternion& level_from_world) {
+  std::vector<Straightened> flat(views.size());
+  cv::parallel_for_({0, static_cast<int>(views.size())}, [&](const cv::Range& range) {
+    for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
+         ++k)
+      flat[k] = straightened(views[k], lens, own_aircraft, level_from_world);
+  });
+  return flat;
+}
+
+// The registration of each view with the one before it.
+std::vector<std::optional<Laid>> registrations(const std::vector<Straightened>& flat) {
+  std::vector<std::optional<Laid>> next(flat.size());
+  cv::parallel_for_({1, static_cast<int>(flat.size())}, [&](const cv::Range& range) {
+    for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
+         ++k)
+      next[k] = laid_over(flat[k - 1], flat[k], Eigen::Vector2d::Zero(), kReach);
+  });
+  return next;
+}
+
+// The longest run of views that agree with the one before.
+GroundTrack longest_run(const std::vector<std::optional<Laid>>& next, const GroundTrack& empty) {
+  GroundTrack best, run = empty;
+  const auto end_run = [&](std::size_t first) {
+    if (run.places.size() > best.places.size()) best = run;
+    run = empty;
+    run.first = first;
+  };
+  for (std::size_t k = 1; k < next.size(); ++k) {
+    if (next[k] && next[k]->agreement >= kMinAgreement)
+      run.places.push_back(run.places.back() + next[k]->moved);
+    else
+      end_run(k);
+  }
+  end_run(next.size());
+  return best;
+}
+
+// The mean agreement of views of the track that are kFarViewDistance apart; 0 without any.
+double far_agreement(const GroundTrack& track, const std::vector<Straightened>& flat) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0, j = 0; i < track.places.size(); ++i) {
+    while (j < track.places.size() && (track.places[j] - track.places[i]).norm() < kFarViewDistance)
+      ++j;
+    if (j == track.places.size()) break;
+    const Eigen::Vector2d moved = track.places[j] - track.places[i];
+    if (moved.norm() > 2 * kFarViewDistance) continue;
+    const auto laid = laid_over(flat[track.first + i], flat[track.first + j], moved, kAround);
+    sum += laid ? laid->agreement : 0;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 GroundTrack track_at(const std::vector<GroundView>& views,
                      const lens::Lens& lens,
                      const image::Mask* own_aircraft,
                      double horizon_rad) {
   // The assumed horizon is higher, so the direction that was level lies below it.
   const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(views)));
-  const auto count_of_views = static_cast<int>(views.size());
-  std::vector<Straightened> flat(views.size());
-  cv::parallel_for_({0, count_of_views}, [&](const cv::Range& range) {
-    for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
-         ++k)
-      flat[k] = straightened(views[k], lens, own_aircraft, level_from_world);
-  });
-  // Registration of each view with the one before it.
-  std::vector<std::optional<Laid>> next(views.size());
-  cv::parallel_for_({1, count_of_views}, [&](const cv::Range& range) {
-    for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
-         ++k)
-      next[k] = laid_over(flat[k - 1], flat[k], Eigen::Vector2d::Zero(), kReach);
-  });
-  GroundTrack best;
-  GroundTrack run{0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0};
-  const auto end_run = [&](std::size_t first) {
-    if (run.places.size() > best.places.size()) best = run;
-    run = {first, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0};
-  };
-  for (std::size_t k = 1; k < flat.size(); ++k) {
-    if (next[k] && next[k]->agreement >= kMinAgreement)
-      run.places.push_back(run.places.back() + next[k]->moved);
-    else
-      end_run(k);
-  }
-  end_run(flat.size());
-  // The agreement of views that are farther apart.
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 0, j = 0; i < best.places.size(); ++i) {
-    while (j < best.places.size() && (best.places[j] - best.places[i]).norm() < kFarViewDistance)
-      ++j;
-    if (j == best.places.size()) break;
-    const Eigen::Vector2d moved = best.places[j] - best.places[i];
-    if (moved.norm() > 2 * kFarViewDistance) continue;
-    const auto laid = laid_over(flat[best.first + i], flat[best.first + j], moved, kAround);
-    sum += laid ? laid->agreement : 0;
-    ++count;
-  }
-  best.agreement = count > 0 ? sum / count : 0;
+  const std::vector<Straightened> flat =
+      straightened_views(views, lens, own_aircraft, level_from_world);
+  GroundTrack best = longest_run(registrations(flat),
+                                 {0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0});
+  best.agreement = far_agreement(best, flat);
   return best;
 }
 

@@ -232,6 +232,45 @@ Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int
   return score;
 }
 
+namespace {
+
+// Frames of the runs of one sequence: before the failures, and all.
+struct RunFrames {
+  double progress = 0;
+  double all = 0;
+};
+
+// Adds the runs of a sequence to the curve of expected overlap, up to the length `high`, and their
+// overlaps before the failures to `overlap`.
+RunFrames add_runs(const MultiStartRuns& sequence,
+                   std::size_t high,
+                   Curve& curve,
+                   double& overlap) {
+  RunFrames frames;
+  for (const AnchorRun& run : sequence.runs) {
+    const auto truth = truth_of(sequence.truth, run);
+    check(run.frames.size() == truth.size(), "a run goes to the sequence's end");
+    const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
+    const std::size_t progress = progress_of(overlaps, truth);
+    const bool failed = progress < overlaps.size();
+    frames.progress += static_cast<double>(progress);
+    frames.all += static_cast<double>(overlaps.size());
+    double sum = 0;
+    for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
+    for (std::size_t j = 1; j < high; ++j) {
+      if (j < overlaps.size()) {
+        if (j < progress) sum += overlaps[j];
+        curve.add(j, sum / static_cast<double>(j), 1);
+      } else if (failed) {
+        curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)), 1);
+      }
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
 MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
                             std::pair<int, int> eao_range) {
   MultiStart score;
@@ -243,30 +282,10 @@ MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
   const auto high = static_cast<std::size_t>(std::max(0, eao_range.second));
   for (const MultiStartRuns& sequence : sequences) {
     if (sequence.runs.empty()) continue;
-    double progress_sum = 0;
-    double frames = 0;
-    for (const AnchorRun& run : sequence.runs) {
-      const auto truth = truth_of(sequence.truth, run);
-      check(run.frames.size() == truth.size(), "a run goes to the sequence's end");
-      const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
-      const std::size_t progress = progress_of(overlaps, truth);
-      const bool failed = progress < overlaps.size();
-      progress_sum += static_cast<double>(progress);
-      frames += static_cast<double>(overlaps.size());
-      double sum = 0;
-      for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
-      for (std::size_t j = 1; j < high; ++j) {
-        if (j < overlaps.size()) {
-          if (j < progress) sum += overlaps[j];
-          curve.add(j, sum / static_cast<double>(j), 1);
-        } else if (failed) {
-          curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)), 1);
-        }
-      }
-    }
-    before += progress_sum;
+    const RunFrames runs = add_runs(sequence, high, curve, overlap);
+    before += runs.progress;
     const double weight = static_cast<double>(sequence.truth.boxes.size());
-    robustness += progress_sum / frames * weight;
+    robustness += runs.progress / runs.all * weight;
     length += weight;
   }
   if (length == 0) return score;

@@ -189,6 +189,18 @@ bool may_touch(const Point& ray, float block_rad) {
 
 constexpr int kBlock = 8;
 
+// Marks the pixels of the layer in the mask, and where each row begins and ends.
+void mark_layer(OwnAircraft& own, int width, int height) {
+  const auto w = static_cast<std::size_t>(width);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+    for (std::size_t x = 0; x < w; ++x) {
+      if (own.layer[y * w + x][3] <= 0) continue;
+      own.mask.free[y * w + x] = 0;
+      own.first[y] = std::min(own.first[y], static_cast<int>(x));
+      own.last[y] = static_cast<int>(x) + 1;
+    }
+}
+
 }  // namespace
 
 OwnAircraft draw_own_aircraft(const lens::Lens& lens,
@@ -228,13 +240,7 @@ OwnAircraft draw_own_aircraft(const lens::Lens& lens,
         }
     }
   });
-  for (std::size_t y = 0; y < h; ++y)
-    for (std::size_t x = 0; x < w; ++x) {
-      if (own.layer[y * w + x][3] <= 0) continue;
-      own.mask.free[y * w + x] = 0;
-      own.first[y] = std::min(own.first[y], static_cast<int>(x));
-      own.last[y] = static_cast<int>(x) + 1;
-    }
+  mark_layer(own, width, height);
   return own;
 }
 
