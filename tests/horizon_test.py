@@ -58,9 +58,9 @@ class HorizonTest(unittest.TestCase):
         self.assertLess(sharp, parted)
         self.assertEqual(frames, 41)
         self.assertLessEqual(sharp + parted, frames)
-        self.assertRegex(camera, r"(?m)^# horizon: not to be had: ")
+        self.assertRegex(camera, r"(?m)^# horizon: not measured: ")
         # No value that needs the horizon is written.
-        self.assertRegex(camera, r"(?m)^# airlight: not to be had: no horizon is found")
+        self.assertRegex(camera, r"(?m)^# airlight: not measured: no horizon is found")
         self.assertNotRegex(camera, r"(?m)^airlight")
 
     def test_hills_have_one(self):

@@ -196,9 +196,10 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
   command
-      ->add_option("--gamma",
-                   arguments.gamma,
-                   "Exponent of the camera's tone curve, which one clip cannot tell [sRGB's curve]")
+      ->add_option(
+          "--gamma",
+          arguments.gamma,
+          "Exponent of the camera's tone curve, which one clip does not show [sRGB's curve]")
       ->check(CLI::Range(1.2, 3.0));
 }
 
@@ -212,10 +213,11 @@ void add_calibrate(CLI::App& app, Context& context) {
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
   add_known_facts(command, *arguments);
-  command->add_option("--profile",
-                      arguments->profile,
-                      "Known camera, for what the clip cannot tell; none: the clip's values alone "
-                      "[the median over all]");
+  command->add_option(
+      "--profile",
+      arguments->profile,
+      "Known camera, for what the clip does not show; none: the clip's values alone "
+      "[the median over all]");
   command->add_flag_callback(
       "--list-profiles",
       [] { throw CLI::CallForVersion(profile_lines(), 0); },

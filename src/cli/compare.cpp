@@ -139,10 +139,10 @@ void add_compare(CLI::App& app, Context& context) {
 }
 
 void add_judge(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("judge",
-                                     "Can a classifier tell the real aircraft of comparisons from "
-                                     "the inserted ones, and by what do "
-                                     "they differ?");
+  auto* command =
+      app.add_subcommand("judge",
+                         "Measure whether a classifier separates the real aircraft of comparisons "
+                         "from the inserted ones, and by what they differ");
   auto arguments = std::make_shared<JudgeArguments>();
   command
       ->add_option("COMPARISON", arguments->comparisons, "Folders that `compare` made, one a clip")

@@ -315,7 +315,7 @@ void add_submit(CLI::App& group, Context& context) {
 }  // namespace
 
 void add_dataset(CLI::App& app, Context& context) {
-  auto* group = app.add_subcommand("dataset", "Make, look after and check whole data sets");
+  auto* group = app.add_subcommand("dataset", "Make, maintain and check whole data sets");
   group->require_subcommand(1);
   add_build(*group, context);
   add_work(*group, context);

@@ -163,7 +163,7 @@ void add_report(CLI::App& group, Context& context) {
 void add_import(CLI::App& group, Context& context) {
   auto in = std::make_shared<Import>();
   auto* command = group.add_subcommand(
-      "import", "Read labelled video of others, to look at and to evaluate on");
+      "import", "Import labelled video of others, to look at and to evaluate on");
   command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
   command
       ->add_option(

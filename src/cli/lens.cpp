@@ -121,9 +121,9 @@ void crop(const CropArguments& arguments, Context& context) {
 void add_lens(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("lens", "Lenses");
   group->require_subcommand(1);
-  auto* command = group->add_subcommand(
-      "estimate",
-      "Tell a camera's lens from a video in which it turns, where no calibration is at hand");
+  auto* command = group->add_subcommand("estimate",
+                                        "Estimate a camera's focal length from a video in which it "
+                                        "turns, where no calibration is at hand");
   auto arguments = std::make_shared<EstimateArguments>();
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");

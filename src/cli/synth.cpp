@@ -119,7 +119,7 @@ void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
       ->capture_default_str();
   command
       .add_option(
-          "--clutter", flight.clutter, "Share of the picture that wanders by itself, 0 to 1")
+          "--clutter", flight.clutter, "Share of the picture that moves independently, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command.add_flag(
@@ -136,7 +136,10 @@ void add_synth(CLI::App& app, Context& context) {
       "synth", "Make a virtual flight: onboard video of a world that is known exactly");
   auto arguments = std::make_shared<SynthArguments>();
   add_file_options(*command, *arguments);
-  command->add_option("--seed", arguments->flight.seed, "Another world and another flight")
+  command
+      ->add_option("--seed",
+                   arguments->flight.seed,
+                   "Of the random numbers: another world and another flight")
       ->capture_default_str();
   add_camera_options(*command, *arguments);
   add_world_options(*command, *arguments);

@@ -136,7 +136,7 @@ void add_source_options(CLI::App& command, Track& arguments) {
 
 void add_run_options(CLI::App& command, experiment::RunOptions& options) {
   command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
-  command.add_option("--seed", options.seed, "Of the trackers' chance (default: 1)");
+  command.add_option("--seed", options.seed, "Of the trackers' random numbers (default: 1)");
   command.add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
       ->check(CLI::Range(1, 999));
   command

@@ -87,11 +87,12 @@ void warn_of_shared_backgrounds(const std::vector<ClipFacts>& clips,
                                     parts_of_background.end(),
                                     [](const auto& entry) { return entry.second.size() > 1; });
   if (shared > 0)
-    airtruth::warn(warn,
-                   fmt::format("{} of {} backgrounds are in more than one part: what is learned on "
-                               "one may be known by heart on the other",
-                               shared,
-                               parts_of_background.size()));
+    airtruth::warn(
+        warn,
+        fmt::format("{} of {} backgrounds are in more than one part: a model that is trained on "
+                    "one part may know the background of the other",
+                    shared,
+                    parts_of_background.size()));
 }
 
 }  // namespace

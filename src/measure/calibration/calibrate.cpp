@@ -173,7 +173,7 @@ class Session {
   void take_codec() {
     if (quantisers_.empty()) {
       quantities().codec_step.missing =
-          "the decoder of '" + reader_.info().codec + "' does not tell its quantiser";
+          "the decoder of '" + reader_.info().codec + "' does not report its quantiser";
       return;
     }
     std::vector<double> steps;

@@ -86,7 +86,7 @@ double own_share(const Estimate& own, const Estimate& prior) {
 void join(Calibration& c, const std::string& key, const Estimate& prior, const std::string& whose) {
   Quantity& quantity = c.quantities.at(key);
   if (!quantity.is_measured()) {
-    quantity.source = "of " + whose + "; the clip does not tell it";
+    quantity.source = "of " + whose + "; the clip does not show it";
     put(c, key, prior);
     return;
   }

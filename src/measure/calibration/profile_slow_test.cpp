@@ -45,7 +45,7 @@ TEST(CalibrateWithProfile, AFlightOfSkyAloneHasTheProfileAndSaysSo) {
   EXPECT_EQ(c.quantities.at("optics.point_spread_px").value().value, 0.44);
   EXPECT_EQ(c.quantities.at("optics.sharpening").value().value, 0.2);
   EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
-            "of the profile one; the clip does not tell it");
+            "of the profile one; the clip does not show it");
   EXPECT_EQ(c.quantities.at("sensor.noise_floor").source, "");
   const Calibration usual = with_profile(calibrate(clip.path(), {}), usual_camera());
   EXPECT_EQ(usual.quantities.point_spread.value().value,

@@ -106,7 +106,7 @@ TEST(CameraProfile, SaysWhoseAValueIs) {
   EXPECT_EQ(c.quantities.at("shutter.readout_s").value().value, 0.02);
   EXPECT_EQ(model_of(c).readout, Readout::kUp);
   EXPECT_EQ(c.quantities.at("shutter.readout_s").source,
-            "of the profile small; the clip does not tell it");
+            "of the profile small; the clip does not show it");
   EXPECT_EQ(c.quantities.at("shutter.readout_s").missing, "");
   EXPECT_NE(c.quantities.at("air.airlight").missing, "");
   for (const QuantityKey& key : kQuantityKeys)

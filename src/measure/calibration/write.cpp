@@ -29,7 +29,7 @@ std::string array_of(const std::vector<Estimate>& values, bool errors) {
 
 // If not every frame gives a horizon: the reason.
 std::string horizon_line(const Calibration& c) {
-  if (!c.no_horizon.empty()) return "# horizon: not to be had: " + c.no_horizon + "\n";
+  if (!c.no_horizon.empty()) return "# horizon: not measured: " + c.no_horizon + "\n";
   if (!c.horizon_note.empty()) return "# horizon: " + c.horizon_note + "\n";
   return "";
 }
@@ -55,7 +55,7 @@ std::string head_of(const Calibration& c) {
 std::string lines_of(const Calibration& c, const QuantityKey& key) {
   const Quantity& quantity = c.quantities.*key.member;
   if (!quantity.is_measured())
-    return fmt::format("# {}: not to be had: {}\n", key.key(), quantity.missing);
+    return fmt::format("# {}: not measured: {}\n", key.key(), quantity.missing);
   std::string text;
   if (!quantity.note.empty()) text += "# " + quantity.note + "\n";
   if (!quantity.doubt.empty()) text += "# doubtful: " + quantity.doubt + "\n";

@@ -36,7 +36,7 @@ image::Mask mask_of(const cv::Mat& aircraft) {
 void check_motion(const Stillness& pairs, double scale, const fs::path& video) {
   if (pairs.pairs < kMinPairs)
     throw Error(
-        "is too still to tell the own aircraft from the world: the picture moves less than " +
+        "is too still to separate the own aircraft from the world: the picture moves less than " +
             std::to_string(static_cast<int>(kMinPairMotionPx / scale)) + " px",
         {video.string()});
 }
@@ -47,7 +47,7 @@ KeptFrames enough_frames(const fs::path& video,
                          double scale) {
   KeptFrames kept = keep_frames(reader, options, scale);
   if (kept.frames.size() < kMinKeptFrames)
-    throw Error("is too short to tell the own aircraft from the world; expected " +
+    throw Error("is too short to separate the own aircraft from the world; expected " +
                     std::to_string(kMinKeptFrames) + " frames or more",
                 {video.string()});
   return kept;

@@ -183,7 +183,7 @@ Measured<Estimate> BlurMeter::share() const {
   const Estimate result{shares[n / 2], 1.25 * spread / std::sqrt(double(n))};
   if (result.value < kMinShare || result.value < kMinShareInErrors * result.sigma) {
     return NotMeasured{
-        "frames in motion are as sharp as others: the exposure is too short to be told"};
+        "frames in motion are as sharp as others: the exposure is too short to be measured"};
   }
   return result;
 }
