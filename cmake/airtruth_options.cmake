@@ -32,6 +32,6 @@ if(AIRTRUTH_SANITIZE)
   target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined)
 endif()
 if(AIRTRUTH_FUZZERS)
-  # Every branch tells the fuzzers that it was taken.
+  # Every branch reports to the fuzzers that it was taken.
   target_compile_options(airtruth_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()

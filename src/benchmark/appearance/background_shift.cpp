@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kHalving = 2;  // the shift is found at half the size
 // Fine detail, in code values, below which no shift can be determined.
-constexpr double kLeastTexture = 0.7;
-constexpr double kLeastResponse = 0.15;  // of the correlation's peak, 1: all power in one place
+constexpr double kMinTexture = 0.7;
+constexpr double kMinResponse = 0.15;  // of the correlation's peak, 1: all power in one place
 
 }  // namespace
 
@@ -40,12 +40,12 @@ std::optional<Pixel> BackgroundShift::add(const image::Picture& picture,
   if (before.empty() || before.size() != fine.size()) return std::nullopt;
   cv::Scalar mean, deviation;
   cv::meanStdDev(fine, mean, deviation);
-  if (deviation[0] < kLeastTexture) return std::nullopt;
+  if (deviation[0] < kMinTexture) return std::nullopt;
   cv::Mat window;
   cv::createHanningWindow(window, fine.size(), CV_32F);
   double response = 0;
   const cv::Point2d shift = cv::phaseCorrelate(before, fine, window, &response);
-  if (response < kLeastResponse) return std::nullopt;
+  if (response < kMinResponse) return std::nullopt;
   return Pixel(kHalving * shift.x, kHalving * shift.y);
 }
 

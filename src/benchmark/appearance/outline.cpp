@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kReachPx = 4;            // of a profile to either side of the outline
 constexpr double kStepPx = 0.25;          // from sample to sample along it
-constexpr double kLeastSlope = 3;         // code values a pixel: an edge that is clear
-constexpr double kLeastStep = 8;          // code values from side to side
+constexpr double kMinSlope = 3;           // code values a pixel: an edge that is clear
+constexpr double kMinStep = 8;            // code values from side to side
 constexpr std::size_t kHaloSamples = 16;  // outward of the edge's middle, as far as kReachPx
 constexpr double kSobelGain = 8;          // OpenCV's 3 x 3 Sobel over the slope a pixel
 
@@ -61,7 +61,7 @@ std::optional<Profile> profile_at(const cv::Mat& grey, int x, int y, double dx, 
   while (profile.high < middle + reach &&
          profile.values[profile.high + 1] > profile.values[profile.high])
     ++profile.high;
-  if (profile.step() < kLeastStep) return std::nullopt;
+  if (profile.step() < kMinStep) return std::nullopt;
   return profile;
 }
 
@@ -100,7 +100,7 @@ Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat
       if (rim.at<unsigned char>(y, x) == 0) continue;
       const double dx = double(gx.at<float>(y, x)), dy = double(gy.at<float>(y, x));
       const double slope = std::hypot(dx, dy);
-      if (slope < kSobelGain * kLeastSlope) continue;
+      if (slope < kSobelGain * kMinSlope) continue;
       const auto profile = profile_at(grey, x, y, dx / slope, dy / slope);
       if (!profile) continue;
       widths.push_back(kStepPx * (profile->crossing(0.9) - profile->crossing(0.1)));
@@ -109,7 +109,7 @@ Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat
                                  std::abs(sky - profile->values[profile->low]);
       const double inside = profile->values[sky_is_bright ? profile->low : profile->high];
       // A step within the aircraft says nothing about the sky beside it.
-      if (std::abs(sky - inside) < kLeastStep) continue;
+      if (std::abs(sky - inside) < kMinStep) continue;
       const auto part = outward_of(*profile, sky_is_bright, sky);
       for (std::size_t i = 0; i < kHaloSamples; ++i) outward[i].push_back(part[i]);
     }

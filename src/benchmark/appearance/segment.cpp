@@ -14,10 +14,10 @@
 namespace airtruth::appearance {
 namespace {
 
-constexpr double kLeastDifference = 8;  // code values that the aircraft differs by
-constexpr double kDeviations = 4;       // of the rim's spread that the aircraft differs by
-constexpr int kLeastArea = 3;           // px of a silhouette
-constexpr double kFromMad = 1.4826;     // standard deviation over median absolute deviation
+constexpr double kMinDifference = 8;  // code values that the aircraft differs by
+constexpr double kDeviations = 4;     // of the rim's spread that the aircraft differs by
+constexpr int kMinArea = 3;           // px of a silhouette
+constexpr double kFromMad = 1.4826;   // standard deviation over median absolute deviation
 
 // a + b x + c y through the samples, x and y from the middle.
 cv::Vec3d plane_through(const cv::Mat& grey, const cv::Mat& where) {
@@ -88,13 +88,13 @@ cv::Mat surroundings_of(const cv::Mat& grey, const cv::Mat& where) {
 cv::Mat silhouette_of(const cv::Mat& grey, double reach_px) {
   const cv::Mat rim = rim_of(grey.size());
   const cv::Mat level = surroundings_of(grey, rim);
-  const double limit = std::max(kLeastDifference, kDeviations * spread_about(grey, level, rim));
+  const double limit = std::max(kMinDifference, kDeviations * spread_about(grey, level, rim));
   cv::Mat difference, labels, statistics, centres;
   cv::absdiff(grey, level, difference);
   cv::Mat mask = difference > limit;
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
   const int count = cv::connectedComponentsWithStats(mask, labels, statistics, centres, 8);
-  int best = 0, most = kLeastArea - 1;
+  int best = 0, most = kMinArea - 1;
   for (int i = 1; i < count; ++i) {
     const double away = std::hypot(centres.at<double>(i, 0) + 0.5 - grey.cols / 2.0,
                                    centres.at<double>(i, 1) + 0.5 - grey.rows / 2.0);

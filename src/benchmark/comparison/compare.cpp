@@ -40,7 +40,7 @@ constexpr std::size_t kPoseMasks = 5;      // that a pose is fitted to
 constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning below it
 constexpr std::int64_t kSizingFrames = 9;  // that the inserted aircraft's size is set by
 constexpr std::size_t kSunFrames = 2;      // that the sun is fitted to
-constexpr std::size_t kMostPaints = 6;     // liveries of a type that are tried
+constexpr std::size_t kMaxPaints = 6;      // liveries of a type that are tried
 constexpr double kPoseSpacingDeg = 40;     // of the suns that a pose or a livery is tried under
 constexpr double kSunSpacingDeg = 15;      // of those that the best of them is
 
@@ -137,9 +137,9 @@ class Comparing {
     if (pose_) pose_->attitude = attitude_ = attitude_beside();
   }
 
-  // Type, attitude, livery and sun of the real aircraft, as far as they can be told: silhouettes,
-  // by masks around the middle of the shot, leave a few poses; of these the one is taken, and the
-  // livery and sun, that is light, dark and coloured where the real one is.
+  // Type, attitude, livery and sun of the real aircraft, as far as they can be measured:
+  // silhouettes, by masks around the middle of the shot, leave a few poses; of these the one is
+  // taken, and the livery and sun, that is light, dark and coloured where the real one is.
   void match(const std::map<std::int64_t, cv::Mat>& masks, scene::Scene& scene) {
     std::vector<cv::Mat> few;
     auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
@@ -261,7 +261,7 @@ class Comparing {
     std::vector<std::string> paints = {type};
     if (!options_.types.empty()) return paints;
     const std::vector<std::string> others = aircraft::liveries(type);
-    const std::size_t count = std::min(kMostPaints - 1, others.size());
+    const std::size_t count = std::min(kMaxPaints - 1, others.size());
     for (std::size_t i = 0; i < count; ++i) paints.push_back(others[i * others.size() / count]);
     return paints;
   }

@@ -13,9 +13,9 @@
 namespace airtruth::comparison {
 namespace {
 
-constexpr int kSmallPx = 44;      // of a crop at 1x, at most
-constexpr int kLeastCropPx = 24;  // beyond it stands the other one of a pair
-constexpr int kLargePx = 352;     // of an enlarged crop
+constexpr int kSmallPx = 44;    // of a crop at 1x, at most
+constexpr int kMinCropPx = 24;  // beyond it stands the other one of a pair
+constexpr int kLargePx = 352;   // of an enlarged crop
 constexpr int kGapPx = 10;
 constexpr int kHeadingPx = 34;
 constexpr double kTextPx = 14;
@@ -42,7 +42,7 @@ FigureRow figure_row(const image::Picture& picture,
                      const Box& real,
                      const Box& made) {
   const double larger = std::max({real.width, real.height, made.width, made.height});
-  const int side = std::clamp(whole_pixels(2 * larger), kLeastCropPx, picture.width);
+  const int side = std::clamp(whole_pixels(2 * larger), kMinCropPx, picture.width);
   return {frame, crop_of(picture, real, side), crop_of(picture, made, side)};
 }
 

@@ -19,9 +19,9 @@ using evaluation::FramePair;
 using evaluation::Score;
 
 // Stills of all sequences together: about 20 KB each on the page.
-constexpr std::size_t kMostStills = 1500;
-constexpr std::size_t kMostStillsOfOne = 150;
-constexpr std::size_t kLeastStillsOfOne = 4;
+constexpr std::size_t kMaxStills = 1500;
+constexpr std::size_t kMaxStillsOfOne = 150;
+constexpr std::size_t kMinStillsOfOne = 4;
 
 const std::vector<double> kRangeEdges_m = {
     0, 100, 200, 300, 400, 500, 750, 1000, 1500, 2000, 3000, 5000, 10000};
@@ -266,7 +266,7 @@ void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
 
 void add_films(std::vector<TruthClip>& truths, const AssessOptions& options) {
   const std::size_t each = std::clamp(
-      kMostStills / std::max<std::size_t>(1, truths.size()), kLeastStillsOfOne, kMostStillsOfOne);
+      kMaxStills / std::max<std::size_t>(1, truths.size()), kMinStillsOfOne, kMaxStillsOfOne);
   in_parallel(
       truths.size(),
       options.jobs,

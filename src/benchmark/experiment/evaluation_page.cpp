@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Boxes on the page, of all sequences and trackers together: 25 bytes each.
-constexpr std::size_t kMostBoxes = 1'000'000;
+constexpr std::size_t kMaxBoxes = 1'000'000;
 
 // To hundredths, so that it prints short.
 double short_of(double value) { return std::stod(fmt::format("{:.2f}", value)); }
@@ -135,7 +135,7 @@ std::vector<html::PageBlob> pictures_of(const Assessment& assessment) {
 void write_page(const Assessment& assessment, const fs::path& out) {
   std::size_t frames = 0;
   for (const TruthClip& truth : assessment.truths) frames += truth.clip.frames.size();
-  const std::size_t step = 1 + frames * (assessment.trackers.size() + 1) / kMostBoxes;
+  const std::size_t step = 1 + frames * (assessment.trackers.size() + 1) / kMaxBoxes;
   Json data = {{"dataset", assessment.set},
                {"version", kVersion},
                {"frames", frames},

@@ -30,7 +30,7 @@ using evaluation::Trajectory;
 // Number of frames from a failure to the next start (VOT2013).
 constexpr std::int64_t kSkip = 5;
 // Crashes allowed in a run with restarts; after them each start counts as a failure.
-constexpr int kMostCrashes = 3;
+constexpr int kMaxCrashes = 3;
 
 // A run's frames and times as they come.
 struct Record {
@@ -281,7 +281,7 @@ class Running {
         continue;
       }
       if (!is_begun) {
-        is_begun = crashes < kMostCrashes && follower.begin(picture_of(frames, clip, i), *truth);
+        is_begun = crashes < kMaxCrashes && follower.begin(picture_of(frames, clip, i), *truth);
         record.add(is_begun ? Mark::kBegun : Mark::kFailed, {}, follower.seconds());
         crashes += is_begun ? 0 : 1;
         if (!is_begun) skip = kSkip - 1;

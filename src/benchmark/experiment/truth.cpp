@@ -21,7 +21,7 @@ namespace {
 constexpr int kJpegQuality = 8;
 // Side of the close-up as a multiple of the box's longer side.
 constexpr double kCloseSurroundings = 3;
-constexpr double kLeastClosePx = 48;
+constexpr double kMinClosePx = 48;
 
 std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
   if (set.is_imported(name)) return std::nullopt;
@@ -56,7 +56,7 @@ TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Pi
   const auto box = truth.box(i);
   if (!box) return still;
   const double side =
-      std::round(std::max(kLeastClosePx, kCloseSurroundings * std::max(box->width, box->height)));
+      std::round(std::max(kMinClosePx, kCloseSurroundings * std::max(box->width, box->height)));
   still.close_px = side;
   still.close_x = std::round(box->x + box->width / 2 - side / 2);
   still.close_y = std::round(box->y + box->height / 2 - side / 2);

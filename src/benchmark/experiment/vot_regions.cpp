@@ -24,7 +24,7 @@ using evaluation::Trajectory;
 using evaluation::VotFrame;
 
 constexpr std::size_t kMaskHead = 4;  // x, y, width, height
-constexpr double kMostMaskSide = 65'535;
+constexpr double kMaxMaskSide = 65'535;
 
 VotFrame marked(double code) {
   if (code == 1) return {Mark::kBegun, {}};
@@ -51,9 +51,9 @@ VotFrame polygon_of(const std::vector<double>& n, int origin_px) {
 std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
   if (n.size() < kMaskHead) return "is a mask of fewer than four numbers";
   for (const double value : n)
-    if (value != std::floor(value) || !(std::abs(value) <= kMostMaskSide * kMostMaskSide))
+    if (value != std::floor(value) || !(std::abs(value) <= kMaxMaskSide * kMaxMaskSide))
       return "is a mask with what is no whole number";
-  const bool has_size = n[2] >= 0 && n[3] >= 0 && n[2] <= kMostMaskSide && n[3] <= kMostMaskSide;
+  const bool has_size = n[2] >= 0 && n[3] >= 0 && n[2] <= kMaxMaskSide && n[3] <= kMaxMaskSide;
   if (!has_size) return "is a mask of a size out of all bounds";
   double pixels = 0;
   for (std::size_t i = kMaskHead; i < n.size(); ++i) {

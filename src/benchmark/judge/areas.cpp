@@ -13,8 +13,8 @@
 namespace airtruth::judge {
 namespace {
 
-constexpr int kDraws = 2000;             // of the bootstrap
-constexpr std::size_t kLeastOfFold = 4;  // pairs
+constexpr int kDraws = 2000;           // of the bootstrap
+constexpr std::size_t kMinOfFold = 4;  // pairs
 
 cv::Mat rows_of(const Patches& clip) {
   cv::Mat rows(
@@ -88,7 +88,7 @@ double area_within(const Patches& clip, int folds) {
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   const auto count = static_cast<std::size_t>(folds);
-  if (frames.size() < kLeastOfFold * count) return 0.5;
+  if (frames.size() < kMinOfFold * count) return 0.5;
   std::vector<double> areas;
   for (std::size_t fold = 0; fold < count; ++fold) {
     const std::size_t end = frames.size() * (fold + 1) / count;

@@ -82,7 +82,8 @@ std::vector<std::string> feature_names() {
   return names;
 }
 
-// What each feature alone tells: its mean area under the curve over the clips, whichever way round.
+// How well each feature alone separates the two: its mean area under the curve over the clips,
+// folded, so that the sign of the difference does not matter.
 std::vector<std::pair<std::string, double>> telling_of(const std::vector<Patches>& clips) {
   const std::vector<std::string> names = feature_names();
   std::vector<std::pair<std::string, double>> telling;

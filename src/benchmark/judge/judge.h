@@ -53,7 +53,8 @@ struct Verdict {
     int as_high = 0;  // draws that reach the area found
   };
   std::optional<ByChance> by_chance;
-  std::vector<std::pair<std::string, double>> telling;  // features, by how much each alone tells
+  std::vector<std::pair<std::string, double>>
+      telling;  // features, by how well each alone separates
   std::vector<Gap> gaps;
 };
 // `chance_draws` is the number of draws for by_chance; each takes as long as `across`. 0 means

@@ -107,7 +107,7 @@ TEST_F(Judge, WhatIsAlikeIsNotToldApart) {
   EXPECT_DOUBLE_EQ(verdict.gaps[0].difference.value, 0);
 }
 
-// Clips whose two aircraft differ, but not all the same way round, are told apart by chance as
+// Clips whose two aircraft differ, but not all the same way round, are separated by chance as
 // well.
 TEST_F(Judge, ChanceGivesHighAreasWhereClipsDifferInWhateverWay) {
   std::vector<fs::path> alike, either, common;

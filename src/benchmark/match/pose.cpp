@@ -19,9 +19,9 @@ namespace {
 constexpr int kViewPx = 128;         // of a rendered view
 constexpr double kLengthPx = 80;     // of the aircraft's largest extent in it
 constexpr double kSpreadPx = 0.8;    // of the camera, in pixels of the real one's picture
-constexpr double kLeastCover = 0.2;  // of a pixel that stands out: 8 of 40 code values
+constexpr double kMinCover = 0.2;    // of a pixel that stands out: 8 of 40 code values
 constexpr double kGrowthPx = 1.0;    // that spread and threshold add to both sides of a silhouette
-constexpr double kMostRollDeg = 60;  // of the aircraft's up in the picture
+constexpr double kMaxRollDeg = 60;   // of the aircraft's up in the picture
 constexpr double kAnyRollDeg = -45;  // of the eye's elevation, below which it may be turned anyhow
 constexpr double kUprightDeg = 90;   // turn at which a fit counts exp(-1/2)
 constexpr double kAspectWeight = 0.5;  // of the logarithm of the aspects' ratio
@@ -116,7 +116,7 @@ cv::Mat mask_at(const cv::Mat& coverage, int larger_px) {
              cv::INTER_AREA);
   cv::copyMakeBorder(small, wide, kMargin, kMargin, kMargin, kMargin, cv::BORDER_CONSTANT, 0);
   cv::GaussianBlur(wide, wide, {}, kSpreadPx, 0, cv::BORDER_CONSTANT);
-  const cv::Mat mask = wide > kLeastCover;
+  const cv::Mat mask = wide > kMinCover;
   const cv::Rect inside = cv::boundingRect(mask);
   if (inside.empty()) return {};
   return mask(inside).clone();
@@ -174,7 +174,7 @@ void keep_better(Candidate& best, const Candidate& other) {
 }
 
 bool may_be(const EyePlace& eye) {
-  return std::abs(eye.turn_deg) <= kMostRollDeg || eye.elevation_deg <= kAnyRollDeg;
+  return std::abs(eye.turn_deg) <= kMaxRollDeg || eye.elevation_deg <= kAnyRollDeg;
 }
 
 // The best turn of a view.

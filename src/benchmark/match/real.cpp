@@ -17,9 +17,9 @@
 namespace airtruth::match {
 namespace {
 
-constexpr std::size_t kFewestBoxes = 5;
+constexpr std::size_t kMinBoxes = 5;
 constexpr std::int64_t kNeighbours = 7;  // frames to either side whose sizes are looked at
-constexpr double kMostStray = 0.25;      // of a size from the median of those around it
+constexpr double kMaxStray = 0.25;       // of a size from the median of those around it
 
 double larger_side(const Box& box) { return std::max(box.width, box.height); }
 
@@ -41,8 +41,8 @@ std::pair<std::int64_t, std::int64_t> best_shot(const RealBoxes& boxes,
 
 cv::Mat small_mask(const cv::Mat& mask) {
   const int larger = std::max(mask.cols, mask.rows);
-  if (larger <= kMostMaskPx) return mask;
-  const double scale = double(kMostMaskPx) / larger;
+  if (larger <= kMaxMaskPx) return mask;
+  const double scale = double(kMaxMaskPx) / larger;
   cv::Mat small;
   cv::resize(mask,
              small,
@@ -79,7 +79,7 @@ RealBoxes without_jumps(const RealBoxes& boxes) {
       sizes.push_back(larger_side(it->second));
     const double middle = median(std::move(sizes));
     // One pixel is no jump, however small the aircraft.
-    if (std::abs(larger_side(box) - middle) <= std::max(1.0, kMostStray * middle))
+    if (std::abs(larger_side(box) - middle) <= std::max(1.0, kMaxStray * middle))
       kept.emplace(frame, box);
   }
   return kept;
@@ -107,11 +107,11 @@ RealAircraft find_real(const fs::path& video,
   if (most_frames > 0 && !found.boxes.empty())
     found.boxes.erase(found.boxes.lower_bound(found.boxes.begin()->first + most_frames),
                       found.boxes.end());
-  if (found.boxes.size() < kFewestBoxes)
+  if (found.boxes.size() < kMinBoxes)
     throw Error(fmt::format("in {} of its boxes an aircraft stands out from its surroundings; "
                             "expected {} or more in one shot",
                             found.boxes.size(),
-                            kFewestBoxes),
+                            kMinBoxes),
                 {video.string()});
   std::erase_if(found.masks, [&](const auto& one) { return !found.boxes.contains(one.first); });
   return found;

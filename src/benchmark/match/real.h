@@ -17,10 +17,10 @@ namespace airtruth::match {
 // The real aircraft of a clip, as visible in one shot.
 struct RealAircraft {
   RealBoxes boxes;                        // tight boxes by frame
-  std::map<std::int64_t, cv::Mat> masks;  // of each box; 8-bit, 255: aircraft; kMostMaskPx or less
+  std::map<std::int64_t, cv::Mat> masks;  // of each box; 8-bit, 255: aircraft; kMaxMaskPx or less
   std::vector<std::int64_t> cuts;         // cuts of the clip
 };
-constexpr int kMostMaskPx = 64;  // larger masks are reduced to this size
+constexpr int kMaxMaskPx = 64;  // larger masks are reduced to this size
 
 // Tight boxes within loose ones, in the shot that has most of them (cuts.h), from its first on for
 // `most_frames` frames (0: all). Frames whose larger side strays by more than a quarter from the

@@ -15,11 +15,11 @@ namespace airtruth::tracking {
 namespace {
 
 // Smallest side of the object at the coarsest level, in that level's pixels.
-constexpr int kLeastSidePx = 6;
+constexpr int kMinSidePx = 6;
 // A smaller object is tracked with some of its surroundings.
-constexpr int kLeastWindowPx = 8;
-constexpr int kLeastTemplatePx = 5;
-constexpr std::size_t kLeastSurvivors = 12;
+constexpr int kMinWindowPx = 8;
+constexpr int kMinTemplatePx = 5;
+constexpr std::size_t kMinSurvivors = 12;
 // Share of a level's candidates that the next level evaluates.
 constexpr double kSurvivors = 0.02;
 // Windows with high scores that share more than this with the object count as the object.
@@ -31,7 +31,7 @@ constexpr std::size_t kHardLooked = 400;
 // Change of scale after which the classifiers start anew.
 constexpr double kAnew = 1.5;
 // The scale does not shrink the object below this width.
-constexpr double kLeastObjectPx = 3;
+constexpr double kMinObjectPx = 3;
 
 struct Candidate {
   Place place;
@@ -98,7 +98,7 @@ class Am3 : public Tracker {
     y_ = held(box.y + (box.height - height_) / 2, luma_->height - height_);
     const double side = std::min(width_, height_);
     levels_ = std::clamp(
-        1 + static_cast<int>(std::floor(std::log2(side / kLeastSidePx))), 1, options_.levels);
+        1 + static_cast<int>(std::floor(std::log2(side / kMinSidePx))), 1, options_.levels);
     classifiers_.clear();
     for (int level = 0; level < levels_; ++level)
       for (int voter = 0; voter < options_.voters; ++voter)
@@ -114,12 +114,12 @@ class Am3 : public Tracker {
   }
 
   static int window_side(double side, int most) {
-    return std::min(most, std::max(kLeastWindowPx, static_cast<int>(std::lround(side))));
+    return std::min(most, std::max(kMinWindowPx, static_cast<int>(std::lround(side))));
   }
   static double held(double value, int most) {
     return std::round(std::clamp<double>(value, 0, std::max(0, most)));
   }
-  static int side_at(int side, int level) { return std::max(kLeastTemplatePx, side >> level); }
+  static int side_at(int side, int level) { return std::max(kMinTemplatePx, side >> level); }
   int reach() const { return static_cast<int>(std::ceil(options_.search_radius_px / scale_)); }
   Classifier& classifier(int level, int voter) {
     return classifiers_[static_cast<std::size_t>(level * options_.voters + voter)];
@@ -136,7 +136,7 @@ class Am3 : public Tracker {
   // What windows within `reach` template pixels of the object's touch.
   LumaWindow view_around(int reach) const {
     const int block = 1 << (levels_ - 1);
-    const int wanted = reach + 2 * block + kLeastTemplatePx * block;
+    const int wanted = reach + 2 * block + kMinTemplatePx * block;
     const int margin = (wanted + block - 1) / block * block;
     if (scale_ == 1) {
       const int x = static_cast<int>(x_);
@@ -224,7 +224,7 @@ class Am3 : public Tracker {
                                  std::vector<Candidate> candidates) const {
     const std::size_t keep = std::min(
         candidates.size(),
-        std::max(kLeastSurvivors,
+        std::max(kMinSurvivors,
                  static_cast<std::size_t>(kSurvivors * static_cast<double>(candidates.size()))));
     sort_best(candidates, keep);
     std::map<std::pair<int, int>, float> votes;
@@ -292,7 +292,7 @@ class Am3 : public Tracker {
     const Box now = box();
     const auto ratio = scale_follower_.ratio(*luma_, now);
     if (!ratio) return;
-    const bool too_small = *ratio < 1 && now.width * *ratio < kLeastObjectPx;
+    const bool too_small = *ratio < 1 && now.width * *ratio < kMinObjectPx;
     if (too_small || now.width * *ratio > luma_->width || now.height * *ratio > luma_->height)
       return;
     // About its middle.

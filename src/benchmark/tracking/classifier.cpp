@@ -9,9 +9,9 @@ namespace airtruth::tracking {
 namespace {
 
 // Of means of grey levels; below it a Gaussian is a spike that nothing fits.
-constexpr float kLeastVariance = 0.25f;
+constexpr float kMinVariance = 0.25f;
 // Larger log-ratios saturate every probability, and the learned values become arbitrary.
-constexpr float kMostRatio = 11.5f;
+constexpr float kMaxRatio = 11.5f;
 
 float sigmoid(float z) { return 1 / (1 + std::exp(-z)); }
 
@@ -28,7 +28,7 @@ class Ratio {
   float operator()(float f) const {
     const float a = f - mean_object_;
     const float b = f - mean_around_;
-    return std::clamp(a * a * object_ + b * b * around_ + constant_, -kMostRatio, kMostRatio);
+    return std::clamp(a * a * object_ + b * b * around_ + constant_, -kMaxRatio, kMaxRatio);
   }
 
  private:
@@ -140,7 +140,7 @@ void Classifier::move(std::size_t weak, const Matrix& object, const Matrix& arou
     const double keep = is_first_ ? 0 : options_.memory;
     const double off = gaussian.mean - mean;
     gaussian.variance =
-        std::max(kLeastVariance,
+        std::max(kMinVariance,
                  static_cast<float>(keep * gaussian.variance + (1 - keep) * variance +
                                     keep * (1 - keep) * off * off));
     gaussian.mean = static_cast<float>(keep * gaussian.mean + (1 - keep) * mean);

@@ -23,7 +23,7 @@
 namespace airtruth::tracking {
 namespace {
 
-constexpr double kLeastHaarPx = 8;
+constexpr double kMinHaarPx = 8;
 
 cv::Mat bgr_of(const image::Picture& picture) {
   image::Rgb8 rgb = image::rgb8_from_picture(picture);
@@ -260,11 +260,11 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
     return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own
   };
   if (name == "opencv-mil")
-    return with_own_rand(modern([] { return cv::TrackerMIL::create(); }, kLeastHaarPx));
+    return with_own_rand(modern([] { return cv::TrackerMIL::create(); }, kMinHaarPx));
   if (name == "opencv-kcf") return modern([] { return cv::TrackerKCF::create(); });
   if (name == "opencv-csrt") return modern([] { return cv::TrackerCSRT::create(); });
   if (name == "opencv-boosting")
-    return with_own_rand(old([] { return legacy::TrackerBoosting::create(); }, kLeastHaarPx));
+    return with_own_rand(old([] { return legacy::TrackerBoosting::create(); }, kMinHaarPx));
   if (name == "opencv-medianflow") return old([] { return legacy::TrackerMedianFlow::create(); });
   if (name == "opencv-tld") return with_own_rand(old([] { return legacy::TrackerTLD::create(); }));
   if (name == "opencv-mosse") return old([] { return legacy::TrackerMOSSE::create(); });

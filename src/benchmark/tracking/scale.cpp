@@ -19,12 +19,12 @@ constexpr int kColumns = 14;    // of points
 constexpr int kRows = 8;
 constexpr int kWindowPx = 9;
 // Share of the strongest texture in the object.
-constexpr double kLeastTexture = 0.05;
-constexpr std::size_t kLeastPoints = 20;
-constexpr std::size_t kLeastPairs = 50;
-constexpr double kLeastApartPx = 5;
-constexpr float kMostReturnPx = 1;
-constexpr double kMostChange = 0.1;
+constexpr double kMinTexture = 0.05;
+constexpr std::size_t kMinPoints = 20;
+constexpr std::size_t kMinPairs = 50;
+constexpr double kMinApartPx = 5;
+constexpr float kMaxReturnPx = 1;
+constexpr double kMaxChange = 0.1;
 
 using Points = std::vector<cv::Point2f>;
 
@@ -59,7 +59,7 @@ Points points_in(const cv::Mat& picture) {
     for (int i = 0; i < kColumns; ++i) {
       const double x = picture.cols * (0.25 + 0.5 * (i + 0.5) / kColumns);
       const double y = picture.rows * (0.25 + 0.5 * (j + 0.5) / kRows);
-      if (texture.at<float>(static_cast<int>(y), static_cast<int>(x)) >= kLeastTexture * strongest)
+      if (texture.at<float>(static_cast<int>(y), static_cast<int>(x)) >= kMinTexture * strongest)
         points.emplace_back(static_cast<float>(x), static_cast<float>(y));
     }
   return points;
@@ -87,7 +87,7 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   std::vector<float> sorted = off;
   std::erase(sorted, INFINITY);
   if (sorted.empty()) return {};
-  const float most = std::min(kMostReturnPx, median(std::move(sorted)));
+  const float most = std::min(kMaxReturnPx, median(std::move(sorted)));
   Flow flow;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (off[i] <= most) {
@@ -102,9 +102,9 @@ std::optional<double> median_ratio(const Flow& flow) {
   std::vector<double> ratios;
   for (std::size_t a = 0; a < flow.from.size(); ++a)
     for (std::size_t b = a + 1; b < flow.from.size(); ++b)
-      if (const double apart = cv::norm(flow.from[a] - flow.from[b]); apart >= kLeastApartPx)
+      if (const double apart = cv::norm(flow.from[a] - flow.from[b]); apart >= kMinApartPx)
         ratios.push_back(cv::norm(flow.to[a] - flow.to[b]) / apart);
-  if (ratios.size() < kLeastPairs) return std::nullopt;
+  if (ratios.size() < kMinPairs) return std::nullopt;
   return median(std::move(ratios));
 }
 
@@ -116,12 +116,12 @@ std::optional<double> ScaleFollower::ratio(const image::Plane& luma, const Box& 
   const image::Plane now = patch(luma, box);
   if (now.width != kept_.width || now.height != kept_.height) return std::nullopt;
   const Points points = points_in(view(kept_));
-  if (points.size() < kLeastPoints) return std::nullopt;
+  if (points.size() < kMinPoints) return std::nullopt;
   const Flow flow = followed(view(kept_), view(now), points);
-  if (flow.from.size() < kLeastPoints) return std::nullopt;
+  if (flow.from.size() < kMinPoints) return std::nullopt;
   const auto ratio = median_ratio(flow);
   if (!ratio) return std::nullopt;
-  return std::clamp(*ratio, 1 - kMostChange, 1 + kMostChange);
+  return std::clamp(*ratio, 1 - kMaxChange, 1 + kMaxChange);
 }
 
 }  // namespace airtruth::tracking

@@ -218,7 +218,7 @@ std::string Child::ending() {
 void Child::fail(const std::string& what) { throw ChildError(what); }
 
 void Child::keep(std::string_view text) {
-  log_ += text.substr(0, kMostLog - std::min(kMostLog, log_.size()));
+  log_ += text.substr(0, kMaxLog - std::min(kMaxLog, log_.size()));
 }
 
 // Reads all that is there. False at the end.

@@ -25,11 +25,11 @@ class ChildError : public ProtocolError {
 
 // A tracker's process: a shell command in its own process group, so that all processes that it
 // starts end with it. Its output is read at all times, so that neither side blocks the other. Of
-// output other than messages, at most kMostLog bytes are kept. A stop ends every wait with
+// output other than messages, at most kMaxLog bytes are kept. A stop ends every wait with
 // Interrupted.
 class Child {
  public:
-  static constexpr std::size_t kMostLog = std::size_t{1} << 20;
+  static constexpr std::size_t kMaxLog = std::size_t{1} << 20;
   enum class Transport {
     kStandard,  // its standard input and output
     kSocket     // it connects to 127.0.0.1 at the port TRAX_SOCKET

@@ -8,7 +8,7 @@
 namespace airtruth::trax {
 namespace {
 
-constexpr std::size_t kMostKey = 64;
+constexpr std::size_t kMaxKey = 64;
 
 constexpr std::array<std::pair<std::string_view, Type>, 6> kTypes = {
     {{"hello", Type::kHello},
@@ -19,7 +19,7 @@ constexpr std::array<std::pair<std::string_view, Type>, 6> kTypes = {
      {"quit", Type::kQuit}}};
 
 bool is_key(std::string_view text) {
-  return !text.empty() && text.size() <= kMostKey &&
+  return !text.empty() && text.size() <= kMaxKey &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
            return std::isalnum(c) != 0 || c == '.' || c == '_';
          });

@@ -15,7 +15,7 @@ namespace airtruth::trax {
 namespace {
 
 constexpr std::string_view kMask = "mask:";
-constexpr double kMostSide = 1 << 20;
+constexpr double kMaxSide = 1 << 20;
 
 std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> numbers;
@@ -45,9 +45,9 @@ std::optional<Box> sound(const Box& box) {
 std::optional<Box> bounds_of_mask(const std::vector<double>& n) {
   if (n.size() < 4) throw ProtocolError("a mask has fewer than four numbers");
   for (const double value : n)
-    if (!(std::abs(value) <= kMostSide * kMostSide) || value != std::floor(value))
+    if (!(std::abs(value) <= kMaxSide * kMaxSide) || value != std::floor(value))
       throw ProtocolError("a mask holds what is no whole number");
-  if (n[2] < 0 || n[3] < 0 || n[2] > kMostSide || n[3] > kMostSide)
+  if (n[2] < 0 || n[3] < 0 || n[2] > kMaxSide || n[3] > kMaxSide)
     throw ProtocolError("a mask's size is out of all bounds");
   const auto width = static_cast<std::int64_t>(n[2]);
   const std::int64_t most = width * static_cast<std::int64_t>(n[3]);

@@ -71,7 +71,7 @@ TEST(Message, AMillionGoThereAndBack) {
   for (int i = 0; i < 1'000'000; ++i) {
     Message message{static_cast<Type>(i % 5), {}, {}};
     for (int k = static_cast<int>(random.uniform() * 3); k > 0; --k) {
-      // What reads as a property is none of the arguments.
+      // A text with "=" would be read as a property.
       std::string argument = random_text(random);
       if (argument.find('=') != std::string::npos) argument = "-" + argument;
       message.arguments.push_back(argument);
@@ -296,7 +296,7 @@ TEST(Session, OfABabbler) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   session.load(one);
   EXPECT_TRUE(session.frame().box);
-  EXPECT_LE(session.log().size(), Child::kMostLog);
+  EXPECT_LE(session.log().size(), Child::kMaxLog);
   EXPECT_THAT(hang_of(std::string(kHello4) + "exec yes nonsense"), HasSubstr("in time"));
   EXPECT_THAT(fault_of(std::string(kHello4) + "exec yes '@@TRAX:state 1,2,3,4'"),
               HasSubstr("before it was asked"));

@@ -102,7 +102,7 @@ class Planner {
           sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, clip_s);
       if (words.empty()) continue;
       ++plan_.not_flyable;
-      if (plan_.not_flyable_words.size() < Plan::kMostNamed)
+      if (plan_.not_flyable_words.size() < Plan::kMaxNamed)
         plan_.not_flyable_words.push_back(item.name + ": " + words);
     }
   }
@@ -116,14 +116,14 @@ class Planner {
 }  // namespace
 
 void Spread::add(double value) {
-  constexpr std::size_t kMostKept = 65'536;
+  constexpr std::size_t kMaxKept = 65'536;
   low_ = count_ == 0 ? value : std::min(low_, value);
   high_ = count_ == 0 ? value : std::max(high_, value);
   if (count_++ % every_ != 0) return;
   kept_.push_back(value);
-  if (kept_.size() < kMostKept) return;
+  if (kept_.size() < kMaxKept) return;
   for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-  kept_.resize(kMostKept / 2);
+  kept_.resize(kMaxKept / 2);
   every_ *= 2;
 }
 

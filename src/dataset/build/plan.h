@@ -48,9 +48,9 @@ struct Plan {
   Spread ranges_m;  // that were drawn
   // Intruders whose path is beyond the limits of their class.
   std::int64_t not_flyable = 0;
-  // Descriptions of the first kMostNamed of these: "NAME: why".
+  // Descriptions of the first kMaxNamed of these: "NAME: why".
   std::vector<std::string> not_flyable_words;
-  static constexpr std::size_t kMostNamed = 5;
+  static constexpr std::size_t kMaxNamed = 5;
   // Estimated time on one core, in seconds, including calibration_s.
   double core_s = 0;
   // Estimated time for measuring cameras, in seconds; each background counts once.

@@ -20,7 +20,7 @@
 namespace airtruth::dataset {
 namespace {
 
-constexpr std::int64_t kMostTasks = 1000;
+constexpr std::int64_t kMaxTasks = 1000;
 
 // Quotes text as one word of a shell command.
 std::string quoted(const std::string& text) {
@@ -121,7 +121,7 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   const std::int64_t sequences = Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0
                                  ? std::min<std::int64_t>(options.array_size, sequences)
-                                 : std::min(kMostTasks, sequences);
+                                 : std::min(kMaxTasks, sequences);
   // All checks come before the folder is made.
   const std::string work = work_script(catalogue, root, options, tasks);
   const std::string verify = verify_script(catalogue, root, options);

@@ -18,7 +18,7 @@
 namespace airtruth::dataset {
 namespace {
 
-constexpr std::size_t kMostNamed = 100;
+constexpr std::size_t kMaxNamed = 100;
 
 Catalogue catalogue_of(const Folder& folder) {
   if (!fs::exists(folder.catalogue()))
@@ -193,7 +193,7 @@ Status status(const fs::path& root) {
     const Item item = expansion.at(i);
     if (folder.holds(item.name))
       ++status.whole;
-    else if (status.missing.size() < kMostNamed)
+    else if (status.missing.size() < kMaxNamed)
       status.missing.push_back(item.name);
     if (fs::exists(folder.sequences() / ("." + item.name + ".part"))) ++status.half;
   }

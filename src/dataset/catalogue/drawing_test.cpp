@@ -143,7 +143,7 @@ TEST(Drawing, ThePlanNamesPathsThatAreNotFlyable) {
       with_random("count = 20\naircraft = [\"c172/*\"]\nspeed_mps = [131, 131]\n");
   const Plan plan = plan_of(catalogue, {}, {});
   EXPECT_EQ(plan.not_flyable, 20);
-  ASSERT_EQ(plan.not_flyable_words.size(), Plan::kMostNamed);
+  ASSERT_EQ(plan.not_flyable_words.size(), Plan::kMaxNamed);
   EXPECT_THAT(plan.not_flyable_words[0],
               testing::MatchesRegex("r000000: c172/.*light piston.*131.0 m/s.*92 m/s"));
 }

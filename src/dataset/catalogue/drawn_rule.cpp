@@ -15,8 +15,8 @@ namespace {
 
 using scene::TableReader;
 
-constexpr std::int64_t kMostIntruders = 100;
-constexpr std::int64_t kMostDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
+constexpr std::int64_t kMaxIntruders = 100;
+constexpr std::int64_t kMaxDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
 Range range_in(const TableReader& table, std::string_view key, const scene::Limits& limits) {
@@ -118,14 +118,14 @@ void read_intruders(const TableReader& table, Drawn& drawn) {
     const Range range = range_in(
         table,
         "intruders",
-        {.expected = "a whole number from 1 to 100", .low = 1, .high = double(kMostIntruders)});
+        {.expected = "a whole number from 1 to 100", .low = 1, .high = double(kMaxIntruders)});
     drawn.fewest_intruders = static_cast<std::int64_t>(range.low);
     drawn.most_intruders = static_cast<std::int64_t>(range.high);
     if (double(drawn.fewest_intruders) != range.low || double(drawn.most_intruders) != range.high)
       table.fail("intruders", "intruders is no whole number; expected a number or [low, high]");
     return;
   }
-  drawn.fewest_intruders = *table.whole("intruders", 1, kMostIntruders);
+  drawn.fewest_intruders = *table.whole("intruders", 1, kMaxIntruders);
   drawn.most_intruders = drawn.fewest_intruders;
 }
 
@@ -166,7 +166,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   if (drawn.name.find("{index}") == std::string::npos)
     table.fail("name", "name has no {index}; every sequence needs its own");
   drawn.count = table.whole("count", 1, kMost).value_or(1);
-  drawn.frame_count = table.whole("frame_count", 1, kMostDrawnFrames).value_or(drawn.frame_count);
+  drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   drawn.types = types_from(table);
   read_paths(table, drawn);

@@ -25,7 +25,7 @@ constexpr double kPastClip_s = 1;
 constexpr double kTurnStepDeg = 4;
 constexpr double kTurnStep_s = 0.5;
 constexpr int kTurnMargin = 8;
-constexpr int kMostTurnSteps = 100'000;
+constexpr int kMaxTurnSteps = 100'000;
 
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {
   const double azimuth = radians(encounter.azimuth_deg);
@@ -73,14 +73,14 @@ void lay_turn(scene::Intruder& intruder,
   const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
   const double begin_s = -kTurnMargin * step_s;
   const double span_s = clip_s + kPastClip_s - begin_s;
-  if (!(span_s / step_s < kMostTurnSteps))
+  if (!(span_s / step_s < kMaxTurnSteps))
     throw Error(
         fmt::format("bank_deg: a turn of {:.0f} degrees of bank at {:.1f} m/s over {:.0f} s "
                     "is a path of more than {} points; expected a shorter clip",
                     encounter.bank_deg,
                     encounter.speed_mps,
                     span_s,
-                    kMostTurnSteps),
+                    kMaxTurnSteps),
         intruder.where);
   const auto steps = static_cast<int>(std::ceil(span_s / step_s)) + kTurnMargin;
   intruder.waypoints_ned_m.clear();
@@ -126,10 +126,10 @@ class Sizer {
                                   double size_px,
                                   double first_guess_m) const {
     constexpr double kWithinShare = 1e-5;
-    constexpr int kMostRounds = 60;
+    constexpr int kMaxRounds = 60;
     const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
     double range_m = first_guess_m;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const Vector3 at = raised(camera_.position_in_world + range_m * direction);
       const auto exact =
           projection::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);

@@ -77,7 +77,7 @@ void count(const sequence::Finished& finished, Portrait& portrait) {
 void add_series(const sequence::Finished& finished, Portrait& portrait) {
   const auto& frames = finished.truth.frames;
   std::map<std::string, std::size_t> places;
-  for (const std::size_t i : thinned(frames.size(), Portrait::kMostPoints)) {
+  for (const std::size_t i : thinned(frames.size(), Portrait::kMaxPoints)) {
     for (const annotation::Intruder& intruder : frames[i].intruders) {
       const auto [place, is_new] = places.emplace(intruder.id, portrait.intruders.size());
       if (is_new) portrait.intruders.push_back({intruder.id, intruder.aircraft, {}});

@@ -17,9 +17,9 @@
 namespace airtruth::dataset {
 
 // The content of the report page for one sequence, read from its record, its truth and its video.
-// Series are thinned to at most kMostPoints points.
+// Series are thinned to at most kMaxPoints points.
 struct Portrait {
-  static constexpr std::size_t kMostPoints = 120;
+  static constexpr std::size_t kMaxPoints = 120;
   // The grid of cells over the picture in which the centres of boxes are counted.
   static constexpr int kCellColumns = 32;
   static constexpr int kCellRows = 24;

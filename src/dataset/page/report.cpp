@@ -27,9 +27,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Upper bound for the stills of all sequences together; a still takes about 13 kB of the page.
-constexpr std::size_t kMostStills = 1500;
-constexpr std::size_t kMostStillsOfOne = 60;
-constexpr std::size_t kLeastStillsOfOne = 4;
+constexpr std::size_t kMaxStills = 1500;
+constexpr std::size_t kMaxStillsOfOne = 60;
+constexpr std::size_t kMinStillsOfOne = 4;
 
 template <typename T>
 Json json_of(const std::optional<T>& value) {
@@ -161,9 +161,8 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
 
 std::vector<Portrait> portraits_of(const LabelledSet& labelled, const ReportOptions& options) {
   std::vector<Portrait> portraits(labelled.names().size());
-  const std::size_t stills = std::clamp(kMostStills / std::max<std::size_t>(1, portraits.size()),
-                                        kLeastStillsOfOne,
-                                        kMostStillsOfOne);
+  const std::size_t stills = std::clamp(
+      kMaxStills / std::max<std::size_t>(1, portraits.size()), kMinStillsOfOne, kMaxStillsOfOne);
   in_parallel(
       portraits.size(),
       options.jobs,

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kStandardGravityMps2 = 9.80665;
 constexpr double kSampleStep_s = 0.05;
-constexpr int kMostSamples = 4000;
+constexpr int kMaxSamples = 4000;
 constexpr double kTurnStep_s = 0.01;  // over which the turn rate is taken
 // At lower ground speeds a heading has no meaning.
 constexpr double kHeadingMps = 1;
@@ -113,7 +113,7 @@ std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
   if (limits == nullptr || !(end_s >= begin_s)) return {};
   const int samples =
       1 + std::clamp(
-              static_cast<int>(std::min((end_s - begin_s) / kSampleStep_s, 1e6)), 1, kMostSamples);
+              static_cast<int>(std::min((end_s - begin_s) / kSampleStep_s, 1e6)), 1, kMaxSamples);
   Worst worst(*limits);
   for (int i = 0; i < samples; ++i)
     worst.look(path, begin_s + (end_s - begin_s) * i / (samples - 1));

@@ -241,8 +241,8 @@ Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
   for (std::size_t c = 0; c < 3; ++c)
     ambient.sun[c] = std::min(direct, kBrightestSun) * kSunColour[c];
   // Smallest share of the picture that counts as ground; a smaller part may be anything.
-  constexpr float kLeastGround = 0.05f;
-  const bool is_ground_seen = seen.ground.weight > kLeastGround * seen.all;
+  constexpr float kMinGround = 0.05f;
+  const bool is_ground_seen = seen.ground.weight > kMinGround * seen.all;
   ambient.ground =
       is_ground_seen ? seen.ground.mean() : ground_of(kGroundAlbedo, elevation_deg, ambient);
   std::vector<Block> around;

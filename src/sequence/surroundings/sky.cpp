@@ -71,8 +71,8 @@ double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double s
            (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
   };
   // The horizon itself has no cosine to divide by.
-  constexpr double kLeastCosine = 0.01;
-  const double cosine = std::max(kLeastCosine, std::sin(radians(elevation_deg)));
+  constexpr double kMinCosine = 0.01;
+  const double cosine = std::max(kMinCosine, std::sin(radians(elevation_deg)));
   const double sun_from_zenith = radians(90 - std::max(sun_elevation_deg, kLowestSunDeg));
   return f(cosine, radians(from_sun_deg)) / f(1, sun_from_zenith);
 }

@@ -71,7 +71,7 @@ constexpr int kPanelGapPx = 12;
 // Height of two lines of text.
 constexpr int kHeadingPx = 52;
 // Width of the longest caption of a panel.
-constexpr int kLeastSlotPx = 110;
+constexpr int kMinSlotPx = 110;
 constexpr double kCloseupTextPx = 12;
 
 // The legend of the boxes' colours: each word has its colour. Words beyond the width are omitted.
@@ -103,7 +103,7 @@ image::Rgb8 closeup(const Closeup& what,
   const image::Rgb8 middle =
       what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
   const int panel = area.width * zoom;
-  const int slot = std::max(panel, kLeastSlotPx);
+  const int slot = std::max(panel, kMinSlotPx);
   cv::Mat canvas(kHeadingPx + area.height * zoom + kPanelGapPx,
                  4 * kPanelGapPx + 3 * slot,
                  CV_8UC3,

@@ -152,7 +152,7 @@ class Script {
                            drawn_as(series),
                            series.name.empty() ? "notitle" : "title " + quoted(series.name));
     }
-    // Axes without data are drawn all the same.
+    // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";
   }
 
