@@ -17,10 +17,11 @@ constexpr std::size_t kMaxAcMaterials = 4096;
 constexpr std::size_t kMaxAcObjects = 100'000;
 constexpr int kMaxKidsDepth = 64;
 constexpr std::uint32_t kMaxCornersOfSurface = 10'000;
-constexpr float kLargestCreaseDeg = 60;  // 179, as many models have, smooths over wing edges and
-                                         // leaves normals that oppose their face
-constexpr double kLargestUv = 1e5;       // a texture repeated that often
-constexpr std::uint32_t kLineKinds = 3;  // flags of a surface: a closed or an open line
+// The largest crease angle that is used. The 179 degrees of many models would smooth wing edges and
+// leave normals that oppose their face; 60 is chosen by judgement.
+constexpr float kLargestCreaseDeg = 60;
+constexpr double kLargestUv = 1e5;       // texture coordinates, in repetitions of the texture
+constexpr std::uint32_t kLineKinds = 3;  // surface flags: a closed or an open line
 constexpr std::uint32_t kSmooth = 1u << 4;
 constexpr std::uint32_t kTwoSided = 1u << 5;
 constexpr std::uint64_t kAnyFlags = std::numeric_limits<std::uint32_t>::max();
@@ -79,7 +80,7 @@ class AcParser {
 
   AcObject& object(std::size_t index) { return file_.objects[index]; }
 
-  // One OBJECT with its kids; materials come before the first.
+  // Reads one OBJECT with its kids. The materials come before the first one.
   void read_object(const Placement& outer, const InheritedTexture& texture, int parent, int depth) {
     if (depth > kMaxKidsDepth)
       tokens_.fail(fmt::format("nests objects more than {} deep", kMaxKidsDepth));
@@ -99,8 +100,8 @@ class AcParser {
     }
   }
 
-  // Aircraft of FlightGear's own (c172p.ac) count more kids than follow: objects that have not
-  // begun when the text ends are none.
+  // Aircraft of FlightGear (c172p.ac) state more kids than the file holds. Objects that have not
+  // begun when the text ends are ignored.
   void at_the_end(int depth, bool is_begun) {
     if (depth > 0 && is_begun) tokens_.fail("ends inside an object");
     if (depth > 0) file_.objects.pop_back();
@@ -138,7 +139,7 @@ class AcParser {
     } else if (word == "numsurf") {
       read_surfaces(state, object(index));
     } else {
-      tokens_.skip_line();  // subdiv, url, hidden, locked, folded and what editors add
+      tokens_.skip_line();  // subdiv, url, hidden, locked, folded and extensions of editors
     }
   }
 
@@ -174,7 +175,7 @@ class AcParser {
     tokens_.skip_bytes(std::size_t{bytes} + 1);
   }
 
-  // A count of things that take at least so many bytes each.
+  // A count of items, each of which takes at least `bytes_each` bytes of the text that is left.
   std::uint32_t count_of(const char* what, std::size_t bytes_each, std::uint64_t most) {
     const std::uint32_t count = tokens_.count(what, most);
     const std::uint64_t possible = (tokens_.bytes_left() + bytes_each) / bytes_each;

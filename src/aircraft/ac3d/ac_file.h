@@ -11,7 +11,7 @@
 #include "aircraft/model/finish.h"
 #include "aircraft/model/model_limits.h"
 
-// An AC3D text file (.ac) as it says itself, checked:
+// The content of an AC3D text file (.ac) after checks, without interpretation. The format:
 // https://www.inivis.com/ac3d/man/ac3dfileformat.html
 namespace airtruth::aircraft {
 
@@ -27,8 +27,8 @@ struct AcMaterial {
 };
 
 struct AcCorner {
-  std::uint32_t vertex = 0;
-  float u = 0;  // texrep and texoff applied
+  std::uint32_t vertex = 0;  // index into AcObject::vertices
+  float u = 0;               // texrep and texoff applied
   float v = 0;
 };
 
@@ -58,13 +58,13 @@ struct AcFile {
   std::vector<AcObject> objects;
 };
 
-// Throws Error with `name` and line: no AC3D file, cut short, an index beyond what the file holds,
-// a number that is not finite or not sensible, or more of anything than the limits.
-// Kids that are counted, but do not begin before the text ends, are left out.
+// Throws Error with `name` and line where the text is not AC3D or ends early, where an index
+// exceeds what the file holds, where a number is not finite or beyond its range, and where a count
+// exceeds its limit. A kid that is stated but does not begin before the text ends is left out.
 AcFile parse_ac(std::string_view text, const fs::path& name);
 
-// The names around an object, outermost first; objects without a name are left out, and the
-// outermost is called World, as FlightGear's animations expect.
+// The names of the objects around an object, outermost first. Objects without a name are left out.
+// The outermost is called World, as FlightGear's animations expect.
 std::vector<std::string> names_of(const AcFile& file, std::size_t object);
 
 }  // namespace airtruth::aircraft

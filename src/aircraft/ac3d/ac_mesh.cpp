@@ -14,7 +14,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Written out: the same sums in the same order with every compiler.
+// Written out, so that every compiler adds in the same order and the result is the same.
 float scalar_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }
@@ -26,7 +26,7 @@ Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
   return length > 0 ? Eigen::Vector3f(v * (1.0f / length)) : v;
 }
 
-// How a surface becomes triangles.
+// The way in which a surface becomes triangles.
 enum class Cut { kEars, kTriangle, kQuad, kFan };
 
 struct Facet {
@@ -52,14 +52,14 @@ Facet facet_of(const AcObject& object, const AcSurface& surface) {
   return facet;
 }
 
-// One corner of a smooth surface, at the vertex that it shares with others.
+// A corner of a smooth surface, listed at the vertex that it shares with other corners.
 struct Meeting {
   std::uint32_t corner = 0;
   Eigen::Vector3f normal{0, 0, 0};  // weighted by area
   float length = 0;
 };
 
-// Averages over the corners that are joined by less than the crease angle, one set at a time.
+// Averages the normals of corners that are linked by less than the crease angle, set by set.
 void smooth_vertex(std::vector<Meeting>& meetings,
                    float cos_crease,
                    std::vector<Eigen::Vector3f>& normal_of_corner) {
@@ -94,7 +94,7 @@ float cosine_of_crease(float crease_deg) {
   return std::cos(static_cast<float>(radians(static_cast<double>(crease_deg))));
 }
 
-// A normal for each corner of the object.
+// The normal of each corner of the object.
 std::vector<Eigen::Vector3f> corner_normals(const AcObject& object,
                                             const std::vector<Facet>& facets) {
   std::vector<Eigen::Vector3f> result(object.corners.size(), Eigen::Vector3f::Zero());
@@ -209,8 +209,8 @@ class BatchBuilder {
   std::unordered_map<Vertex, std::uint32_t, VertexHash> index_;
 };
 
-// By material; then smooth before flat, two-sided before one-sided; then by how they are cut. Of
-// triangles that lie in the same place the first is kept, so that the order shows.
+// Sorts surfaces by material, then smooth before flat, two-sided before one-sided, then by their
+// cut. The order matters, because of triangles in the same place only the first is kept.
 std::vector<std::size_t> drawing_order(const AcObject& object, const std::vector<Facet>& facets) {
   std::vector<std::size_t> order(object.surfaces.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -8,10 +8,11 @@
 
 namespace airtruth::aircraft {
 
-// The triangles of one object, a batch for each material that it uses, in the materials' order.
-// Polygons become triangles; the normals of smooth surfaces that meet in a vertex at less than the
-// crease angle, directly or by way of others, are averaged, weighted by area; other surfaces are
-// flat. Both follow OpenSceneGraph's AC3D reader, which FlightGear's models are drawn for.
+// The triangles of one object, one batch per material in the order of the materials. Polygons
+// become triangles. In a vertex of smooth surfaces, the normals of surfaces that meet at less than
+// the crease angle, directly or through others, are averaged with their areas as weights. Other
+// surfaces are flat. Both rules are those of OpenSceneGraph's AC3D reader, for which FlightGear's
+// models are made.
 std::vector<Batch> batches_of(const AcFile& file, const AcObject& object);
 
 }  // namespace airtruth::aircraft

@@ -13,13 +13,13 @@ namespace airtruth::aircraft {
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 4096;
-constexpr std::size_t kQuotedBytes = 40;  // of a faulty word in a message
+constexpr std::size_t kQuotedBytes = 40;  // the part of a faulty word that a message repeats
 
 bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
 }
 
-// A word as it can stand in a message of one line.
+// The word in a form that fits into a message of one line.
 std::string quoted_word(std::string_view word) {
   if (word.empty()) return "the end of the file";
   std::string text(word.substr(0, kQuotedBytes));
@@ -28,7 +28,7 @@ std::string quoted_word(std::string_view word) {
   return "'" + text + (word.size() > kQuotedBytes ? "...'" : "'");
 }
 
-// from_chars, with a leading plus and without what is too small for the type (it becomes zero).
+// Like from_chars, but accepts a leading plus and reads a number too small for the type as zero.
 bool parse_float(std::string_view word, double& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const char* end = word.data() + word.size();

@@ -12,7 +12,7 @@
 
 namespace airtruth::aircraft {
 
-// Triangles of a model file that look alike, in the file's own frame, whatever the format.
+// Triangles of a model file that share one material, in the file's own frame, whatever its format.
 struct Batch {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;  // one a position; of any length

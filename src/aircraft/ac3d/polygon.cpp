@@ -6,7 +6,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Written out: the same sums in the same order with every compiler.
+// Written out, so that every compiler adds in the same order and the result is the same.
 Eigen::Vector3f cross_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return {
       a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
@@ -22,7 +22,8 @@ double doubled_area(const Planar& a, const Planar& b, const Planar& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// The corners seen along the normal, counter-clockwise, in the two axes that it leaves largest.
+// The corners projected along the normal onto two axes, counter-clockwise. The axis in which the
+// normal is largest is dropped.
 std::vector<Planar> projected(std::span<const Eigen::Vector3f> corners,
                               const Eigen::Vector3f& normal) {
   int away = 0;
@@ -86,7 +87,7 @@ class EarClipper {
     const std::size_t n = left_.size();
     for (std::size_t k = 0; k < n; ++k)
       if (is_ear((start + k) % n)) return (start + k) % n;
-    std::size_t flattest = 0;  // a corner without area costs nothing
+    std::size_t flattest = 0;  // removing a corner of no area changes nothing
     for (std::size_t i = 1; i < n; ++i)
       if (std::abs(area_at(i)) < std::abs(area_at(flattest))) flattest = i;
     return flattest;

@@ -13,13 +13,13 @@ namespace airtruth::aircraft {
 // Twice the area of a polygon times its normal: the sum over the fan of its first corner.
 Eigen::Vector3f area_normal(std::span<const Eigen::Vector3f> corners);
 
-// Must the polygon be cut otherwise than as a fan? True where two neighbouring corners turn in
-// opposite directions.
+// Whether the polygon needs another triangulation than a fan, which is where two neighbouring
+// corners turn in opposite directions.
 bool is_concave(std::span<const Eigen::Vector3f> corners);
 
-// Triangles of a simple polygon by ear clipping (Meisters 1975) in the plane that `normal` is
-// normal to, as indices into `corners`. Always corners.size() - 2 triangles: where the polygon
-// crosses itself, the least bad corner is cut.
+// Triangulates a simple polygon by ear clipping (Meisters 1975) in the plane normal to `normal`.
+// Returns corners.size() - 2 triangles as indices into `corners`. Where the polygon crosses itself
+// and no ear exists, the corner that overlaps least is cut.
 std::vector<std::array<std::uint32_t, 3>> ear_clipped(std::span<const Eigen::Vector3f> corners,
                                                       const Eigen::Vector3f& normal);
 

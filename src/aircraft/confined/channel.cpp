@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kMaxWords = 65536;
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 
-// A message of one line without control characters, whatever a file's name or content holds.
+// The text on one line without control characters, since the name or content of a file may hold
+// any.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
@@ -101,7 +102,7 @@ Channel::Received Channel::receive(std::size_t most) {
   std::uint64_t size = 0;
   std::memcpy(&size, &head[1], sizeof(size));
   if (size > most) throw Error("the model's reader handed back a message that is too long");
-  // Memory follows what really came.
+  // Memory grows with the bytes that arrive, not with the size that the message states.
   while (received.bytes.size() < size && !received.closed) {
     const std::size_t at = received.bytes.size();
     received.bytes.resize(std::min<std::size_t>(size, std::max(2 * at, kPieceBytes)));

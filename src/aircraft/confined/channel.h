@@ -43,15 +43,15 @@ class Channel {
   struct Received {
     Message message{};
     std::string bytes;
-    bool closed = false;  // the other end is gone
+    bool closed = false;  // whether the other end has closed the connection
   };
   // Throws Error for a message longer than `most`.
   Received receive(std::size_t most);
-  // False: the other end is gone.
+  // Returns false where the other end has closed the connection.
   bool send(Message message, std::string_view bytes);
 
  protected:
-  // At least one byte; 0 when the other end is gone.
+  // Reads at least one byte. Returns 0 where the other end has closed the connection.
   virtual std::size_t read_some(char* data, std::size_t size) = 0;
   virtual std::size_t write_some(const char* data, std::size_t size) = 0;
 

@@ -33,7 +33,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kReaderName = "airtruth-model-reader";
-constexpr int kPollMs = 50;       // how often a request to stop is looked for
+constexpr int kPollMs = 50;       // the interval at which a stop request is noticed
 constexpr int kLowestOwnFd = 10;  // above the standard streams, which may be closed
 constexpr std::size_t kMaxQuestionBytes = 65536;
 constexpr std::size_t kMaxQuestions = 200'000;
@@ -61,7 +61,7 @@ class Descriptor {
   throw Error(std::string("the reader of 3D models cannot be started: ") + std::strerror(error));
 }
 
-// Away from 0, 1 and 2, which the child's side is copied to.
+// Moves a descriptor away from 0, 1 and 2, which the child's end of the socket is copied to.
 int moved_up(int fd) {
   const int moved = ::fcntl(fd, F_DUPFD_CLOEXEC, kLowestOwnFd);
   const int error = errno;
@@ -70,7 +70,8 @@ int moved_up(int fd) {
   return moved;
 }
 
-// How a child is started: the socket as its standard input, nothing else open, Ctrl-C left to us.
+// Sets up the child: the socket as standard input, no other open file, and no Ctrl-C from the
+// terminal.
 class SpawnSetup {
  public:
   explicit SpawnSetup(int socket) {
@@ -103,7 +104,7 @@ class SpawnSetup {
   posix_spawnattr_t attributes_{};
 };
 
-// The child and our end of the socket. Ended and waited for in the destructor.
+// The child and the parent's end of the socket. The destructor ends the child and waits for it.
 class Reader : public Channel {
  public:
   explicit Reader(std::stop_token stop) : stop_(std::move(stop)) {
@@ -136,7 +137,8 @@ class Reader : public Channel {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  // Ends the child; how it ended, as waitpid says (one that ended by itself keeps its own way).
+  // Ends the child and returns its status as waitpid reports it. A child that had ended by itself
+  // keeps its own status.
   int end() {
     if (process_ < 0) return 0;
     socket_.reset();
@@ -167,7 +169,7 @@ class Reader : public Channel {
                     " s; a model that is whole takes a fraction of that");
       pollfd wanted{socket_.get(), event, 0};
       const int ready = ::poll(&wanted, 1, kPollMs);
-      if (ready <= 0) continue;  // time for another look, or a signal
+      if (ready <= 0) continue;  // a timeout or a signal: check for a stop again
       const auto done = operation();
       if (done >= 0) return static_cast<std::size_t>(done);
       if (errno != EAGAIN && errno != EINTR) return 0;
@@ -234,8 +236,8 @@ RawModel serve(Reader& reader, DiskFiles& files) {
   throw Error("asks for more than " + std::to_string(kMaxQuestions) + " files");
 }
 
-// Where the helper lies if a shared library holds this code, in PREFIX/lib or, as on Debian,
-// PREFIX/lib/x86_64-linux-gnu. Empty for a program, whose name need not be a path.
+// The path of the helper where a shared library holds this code, in PREFIX/lib or, as on Debian, in
+// PREFIX/lib/x86_64-linux-gnu. It is empty in a program, whose name need not be a path.
 std::vector<fs::path> beside_library() {
   Dl_info info{};
   if (::dladdr(reinterpret_cast<const void*>(&model_reader_program), &info) == 0) return {};

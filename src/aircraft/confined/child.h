@@ -11,17 +11,20 @@
 // arrays: see src/aircraft/model_reader/confine.h.
 namespace airtruth::aircraft {
 
-constexpr double kReaderSeconds = 20;  // wall time after which the child is ended
+// The wall time in seconds after which the child is ended. Chosen: the largest aircraft of the
+// catalogue are read in a small part of it.
+constexpr double kReaderSeconds = 20;
 
-// As read_model, in a child. `file` lies below the folder of `files`, from which the child gets
-// what it asks for. Throws Error where the child says so, crashes, takes too long, or hands back
-// what does not hold check_model; Interrupted, within 0.1 s, where options.stop is requested. The
-// child is gone when this returns.
+// Reads a model as read_model does, in a child process. `file` lies below the folder of `files`,
+// which is the only place the child receives files from. Throws Error where the child reports one,
+// crashes or takes longer than kReaderSeconds, and where its result fails check_model. Throws
+// Interrupted within 0.1 s where options.stop is requested. The child has ended when the function
+// returns or throws.
 RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions& options);
 
-// The program of the child: $AIRTRUTH_MODEL_READER, else airtruth-model-reader beside this program,
-// in ../libexec/airtruth from it, in PREFIX/libexec/airtruth for libairtruth.so in PREFIX/lib, or
-// where it was configured to be installed. Error: it is nowhere.
+// The path of the child's program: $AIRTRUTH_MODEL_READER, else airtruth-model-reader beside this
+// program, in ../libexec/airtruth from it, in PREFIX/libexec/airtruth for a libairtruth.so in
+// PREFIX/lib, or in the configured place of installation. Throws Error where none of these exists.
 fs::path model_reader_program();
 
 }  // namespace airtruth::aircraft

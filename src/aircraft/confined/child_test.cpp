@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models of strangers, read in the child process airtruth-model-reader.
+// Untrusted models, read in the child process airtruth-model-reader.
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -51,7 +51,7 @@ class Strangers : public testing::Test {
     fs::remove_all(outside_);
   }
 
-  // What loading says; the number of triangles where it succeeds.
+  // The message of the Error; the number of triangles where loading succeeds.
   std::string said(const std::string& file, const LoadOptions& options = {}) const {
     try {
       return std::to_string(
@@ -152,12 +152,12 @@ TEST_F(Strangers, AModelIsReadOnceAndAgainWhenAnyFileChanges) {
   EXPECT_EQ(said("w.xml"), "1");  // from the cache: no reader is started
   EXPECT_EQ(load_aircraft((folder_ / "w.xml").string()).sources.size(), 2u);
   EXPECT_THAT(said("w.xml", {.airspeed_kt = 100}), testing::HasSubstr("code 3"));
-  // A file that the model takes in has changed, and a texture that was missing has come.
+  // A file that the model includes has changed, and a texture that was missing now exists.
   write_file(folder_ / "below/b.ac", kPlainAc + "\n");
   EXPECT_THAT(said("w.xml"), testing::HasSubstr("code 3"));
   write_file(folder_ / "below/b.ac", kPlainAc);
   EXPECT_EQ(said("w.xml"), "1");
-  // An entry that is not whole, or was tampered with, is not used.
+  // An incomplete or modified entry is not used.
   const fs::path models = outside_ / "cache/airtruth/models";
   ASSERT_TRUE(fs::is_directory(models));
   for (const auto& entry : fs::directory_iterator(models)) {
@@ -217,7 +217,7 @@ TEST(ModelWire, WhatDoesNotHoldIsRefused) {
   EXPECT_NE(refused([&](RawModel& m) { m.mesh.parts.clear(); }), "no error");
 }
 
-// Every byte changed and every length: an Error or a sound model, whatever comes.
+// With any byte changed and at any length, the result is an Error or a valid model.
 TEST(ModelWire, AnyBytesAreAnErrorOrAModel) {
   const std::string bytes = bytes_of(small_model());
   int refused = 0;

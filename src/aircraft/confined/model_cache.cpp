@@ -10,7 +10,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr int kReaderVersion = 3;  // raised whenever a reader's arrays change
+constexpr int kReaderVersion = 3;  // increase it when the arrays of a reader change
 constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 constexpr std::size_t kMaxQuestionsKept = 10'000;
 constexpr std::size_t kMaxKeptText = 65536;
@@ -35,7 +35,7 @@ std::vector<DiskFiles::Asked> asked_from(WireReader& in) {
   return asked;
 }
 
-// Asks every question again, in the same order, and compares the answers.
+// Repeats all requests in the same order and compares the answers with the recorded ones.
 bool still_answered(DiskFiles& files, const std::vector<DiskFiles::Asked>& asked) {
   for (const DiskFiles::Asked& question : asked) {
     const bool by_content = question.answer.size() == kShaDigits;
@@ -58,7 +58,7 @@ ModelCache model_cache(DiskFiles& files, const fs::path& file, const LoadOptions
         file.string(), files.shown_folder().string(), files.in_data_root().string(), options};
     return {cache_folder() / "models",
             sha256_of(std::to_string(kReaderVersion) + ' ' + model + ' ' + bytes_of(job))};
-  } catch (const Error&) {  // the reader says what is wrong with it
+  } catch (const Error&) {  // the reader reports the fault
     return {};
   }
 }
@@ -76,7 +76,7 @@ std::optional<RawModel> cached_model(const ModelCache& cache, DiskFiles& files) 
     const std::vector<DiskFiles::Asked> asked = asked_from(in);
     if (!still_answered(files, asked)) return std::nullopt;
     return model_from_bytes(in.rest());
-  } catch (const Error&) {  // not whole, not ours, or a file is gone: read anew
+  } catch (const Error&) {  // an incomplete or foreign entry, or a missing file: the model is read
     return std::nullopt;
   }
 }
@@ -88,7 +88,7 @@ void keep_model(const ModelCache& cache, const DiskFiles& files, const RawModel&
   try {
     fs::create_directories(cache.folder);
     write_file(cache.folder / cache.name, sha256_of(body) + body, Flush::kLater);
-  } catch (const std::exception&) {  // a full or read-only disk costs the cache, not the model
+  } catch (const std::exception&) {  // without a writable disk the model is read again next time
   }
 }
 

@@ -20,12 +20,12 @@ struct ModelCache {
 // Asks `files` for the model file's bytes.
 ModelCache model_cache(DiskFiles& files, const fs::path& file, const LoadOptions& options);
 
-// Nothing where there is no entry, or it is not whole, or a file has changed. The files that it was
-// made of are among files.sources() then.
+// The model of the entry. Empty where there is no entry, where it is incomplete, or where a file
+// has changed. Otherwise files.sources() lists the files that the model was made from.
 std::optional<RawModel> cached_model(const ModelCache& cache, DiskFiles& files);
 
-// Keeps what was read from `files`, whose questions were remembered. A cache that cannot be written
-// is no fault: the model is read anew the next time.
+// Writes an entry for a model that was read from `files`, which must have recorded its requests. A
+// cache that cannot be written is no error: the model is read again the next time.
 void keep_model(const ModelCache& cache, const DiskFiles& files, const RawModel& model);
 
 }  // namespace airtruth::aircraft

@@ -10,11 +10,12 @@
 #include "aircraft/model/raw_model.h"
 #include "foundation/base/error.h"
 
-// A RawModel as bytes: between the program and its reader, and in the cache. Both ends are the same
-// build on the same machine, so numbers stand as they are in memory; what comes in is checked.
+// A RawModel as bytes, for the socket between the program and its reader and for the cache. Both
+// ends are the same build on the same machine, so numbers keep their form in memory. The receiver
+// checks all that it reads, because the sender may have been taken over by a hostile model.
 namespace airtruth::aircraft {
 
-// Puts plain numbers and strings one after another.
+// Appends plain numbers and strings to a byte string. A string is preceded by its length.
 class WireWriter {
  public:
   template <typename Value>
@@ -35,7 +36,7 @@ class WireWriter {
   std::string bytes_;
 };
 
-// Takes them out again. Throws Error where the bytes end early or a count is larger than stated.
+// Reads them back. Throws Error where the bytes end early or a count exceeds its stated limit.
 class WireReader {
  public:
   explicit WireReader(std::string_view bytes) : bytes_(bytes) {}
@@ -47,7 +48,7 @@ class WireReader {
     return value;
   }
   std::string get_text(std::size_t most);
-  // A count of things that take `bytes_each`, of which there are `most` at most.
+  // A count of at most `most` items, each of which takes `bytes_each` of the remaining bytes.
   std::size_t get_count(std::size_t most, std::size_t bytes_each);
   void get_raw(void* data, std::size_t size);
   void expect_end() const;
@@ -59,7 +60,7 @@ class WireReader {
 
 std::string bytes_of(const RawModel& model);
 
-// Throws Error for bytes that are not exactly those of a model that holds check_model.
+// Throws Error where the bytes are not exactly one model that passes check_model.
 RawModel model_from_bytes(std::string_view bytes);
 
 }  // namespace airtruth::aircraft

@@ -78,8 +78,8 @@ TEST_F(Models, AnObjFileTakesStatedAxesAndScale) {
   EXPECT_THAT(error_of((folder_ / "a.obj").string(), options), testing::HasSubstr("the same axis"));
 }
 
-// A disc that stands for a turning propeller lets nine tenths of the light through and is dark,
-// whatever the file makes of it; a jet engine's fan is a disc of its own.
+// The disc that stands for a turning propeller is dark and lets nine tenths of the light through,
+// whatever the file states. The fan of a jet engine is not such a disc.
 TEST_F(Models, APropellersDiscIsFaintAndDark) {
   const auto named = [&](const std::string& name) {
     std::string text = asymmetric_ac();
@@ -180,7 +180,7 @@ TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
   EXPECT_LT(fin_x, size.low_in_body.x() + 0.25 * size.length_m());
 }
 
-// The model's file holds 9.63 m of span (wing vertices from z = -4.82 to 4.81), where Cessna's
+// The file of the model has a span of 9.63 m (wing vertices from z = -4.82 to 4.81). Cessna's
 // handbook states 11.00 m.
 TEST(Catalogue, TheCessnaIsBroughtToItsPublishedSpan) {
   const Aircraft as_it_is = load_aircraft("c172/news", {.airspeed_kt = 110, .catalogue_scale = 1});
@@ -198,7 +198,7 @@ TEST(Catalogue, ListsHundredsAndTheirLiveries) {
   EXPECT_THAT(liveries("738/738-Ryanair"), testing::Contains("738/738-KLM"));
 }
 
-// The ending decides, in upper or lower case, before anything is looked up.
+// The ending of the name, in upper or lower case, decides before the catalogue is searched.
 TEST(AircraftFile, AModelFileIsItselfAndAnythingElseIsACatalogueName) {
   const fs::path file = fs::path(testing::TempDir()) / "plane.OBJ";
   std::ofstream(file) << "v 0 0 0\n";

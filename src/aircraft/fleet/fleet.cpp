@@ -37,19 +37,19 @@ std::vector<fs::path> folders() {
   return result;
 }
 
-// What the catalogue must know of a wrapper.
+// The properties of a wrapper that the catalogue needs.
 struct Sketch {
   fs::path file;
   bool deep = false;  // in a folder below the aircraft's own
-  fs::path includes;  // normal form; empty: none
+  fs::path includes;  // in normal form; empty where it includes none
   std::vector<fs::path> nests;
-  std::string path;  // of its model; empty: none of its own
+  std::string path;  // of its model; empty where it has none of its own
   bool animated = false;
 };
 
 using Sketches = std::map<fs::path, Sketch>;
 
-// No answer for what is no wrapper: other XML lies in these folders too.
+// The result is empty for a file that is no wrapper, since these folders hold other XML too.
 std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const fs::path& root) {
   const std::string name = file.filename().string();
   if (is_effect_path(name)) return std::nullopt;
@@ -72,7 +72,7 @@ std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const f
   }
 }
 
-// The wrappers of one aircraft's folder and of the folders right below it.
+// The wrappers in the folder of an aircraft and in the folders directly below it.
 Sketches sketches_in(const fs::path& folder) {
   Sketches sketches;
   const fs::path root = data_root_of(folder.parent_path());
@@ -92,7 +92,7 @@ Sketches sketches_in(const fs::path& folder) {
   return sketches;
 }
 
-// What a wrapper says itself or, failing that, through what it includes.
+// The property that a wrapper states itself or, where it states none, through what it includes.
 template <typename Value>
 Value inherited(const Sketches& sketches, const Sketch& sketch, Value Sketch::*field) {
   const Sketch* at = &sketch;

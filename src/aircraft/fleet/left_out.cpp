@@ -12,7 +12,7 @@ std::map<std::string, std::string> read_rows(std::string_view text) {
   std::map<std::string, std::string> rows;
   std::istringstream lines{std::string(text)};
   std::string line;
-  std::getline(lines, line);  // the head
+  std::getline(lines, line);  // the heading
   while (std::getline(lines, line)) {
     if (line.empty()) continue;
     const auto comma = line.find(',');

@@ -9,10 +9,11 @@
 // (data/aircraft-left-out/README.md). They are not offered.
 namespace airtruth::aircraft {
 
-// data/aircraft-left-out/left-out.csv, put into the program when it is built.
+// The content of data/aircraft-left-out/left-out.csv, which the build embeds in the program. It has
+// a line per name: the name and the reason, below one heading.
 std::string_view left_out_table();
 
-// The reason of each, by its name.
+// The reason why a name is left out, by the name.
 const std::map<std::string, std::string>& left_out();
 
 }  // namespace airtruth::aircraft

@@ -13,7 +13,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Where a model is read from: its files, and its own path below their folder.
+// The place of a model: its files, and its own path below their folder.
 struct Source {
   fs::path folder;
   fs::path in_data_root;
@@ -21,7 +21,7 @@ struct Source {
   bool from_debian = false;
 };
 
-// Is `file` one of the files that Debian installs? Then `below` is its path below the data root.
+// Whether Debian's package installs the file. If so, `below` receives its path below the data root.
 bool is_from_debian(const fs::path& file, fs::path& below) {
   std::error_code missing;
   const fs::path real = fs::canonical(file, missing);
@@ -73,7 +73,7 @@ RawModel read_source(const Source& source,
   return model;
 }
 
-// A model file says its own unit; a catalogue's model is brought to its type's size.
+// A model file states its own unit. A catalogue model is scaled to the published size of its type.
 double scale_of(const std::string& name, const LoadOptions& options, const Mesh& mesh) {
   if (options.catalogue_scale) return *options.catalogue_scale;
   const PublishedSize* published = is_model_file(name) ? nullptr : published_size(name);

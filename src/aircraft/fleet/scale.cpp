@@ -16,8 +16,11 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr double kSpanTolerance = 0.03;    // variants of a type, antennas and models' coarseness
-constexpr double kLengthTolerance = 0.01;  // less shows no side to be off to
+// Relative tolerances, chosen by judgement. The span differs between variants of a type, and models
+// are coarse.
+constexpr double kSpanTolerance = 0.03;
+// A smaller error of the length confirms no error of scale.
+constexpr double kLengthTolerance = 0.01;
 
 std::vector<std::string> parted(const std::string& text, char by) {
   std::vector<std::string> parts;
@@ -52,7 +55,7 @@ std::vector<PublishedSize> read_table(std::string_view text) {
   std::vector<PublishedSize> sizes;
   std::istringstream lines{std::string(text)};
   std::string line;
-  std::getline(lines, line);  // the head
+  std::getline(lines, line);  // the heading
   while (std::getline(lines, line)) {
     while (!line.empty() && line.back() == ',') line.pop_back();
     if (!line.empty()) sizes.push_back(size_from(line));

@@ -36,17 +36,18 @@ struct SizeError {
 };
 SizeError size_error(const Extents& model, const PublishedSize& published);
 
-// The factor that brings a model's span to the published one where its scale is wrong, which shows
-// in span and length alike: both are off to the same side, the span by more than 3 %, the length by
-// more than 1 %. Else 1.
+// The factor from a model's span to the published span where the scale of the model is wrong, else
+// 1. The scale counts as wrong where span and length err in the same direction, the span by more
+// than 3 % and the length by more than 1 %.
 double scale_to_published(const Extents& model, const PublishedSize& published);
 
 // Scales a mesh by one factor about the origin of the body: its positions and the centres of its
 // spinning parts. Normals, directions and textures do not change.
 void scale_mesh(Mesh& mesh, double factor);
 
-// One line on a catalogue's model as it is loaded, by the factor that it was scaled by: "Cessna
-// 172P: scaled by 1.142 to the published span of 11.00 m; the length is +7.2 % off (8.28 m)".
+// One line about a loaded catalogue model and the factor by which it was scaled, for example
+// "Cessna 172P: scaled by 1.142 to the published span of 11.00 m; the length is +7.2 % off (8.28
+// m)".
 std::string size_words(const Extents& loaded, double scale, const PublishedSize* published);
 
 }  // namespace airtruth::aircraft

@@ -60,7 +60,7 @@ TEST(Scale, TheTableIsWholeAndNamesItsSources) {
     EXPECT_FALSE(size.source.empty()) << size.type;
     EXPECT_GT(size.span_m, 4) << size.type;
     EXPECT_LT(size.span_m, 80) << size.type;
-    // The Starfighter's and the Cri-Cri's proportions bound those of all.
+    // The proportions of the Starfighter and of the Cri-Cri are the extremes of all types.
     EXPECT_GT(size.span_m / size.length_m, 0.4) << size.type;
     EXPECT_LT(size.span_m / size.length_m, 2.5) << size.type;
   }
@@ -68,8 +68,8 @@ TEST(Scale, TheTableIsWholeAndNamesItsSources) {
   EXPECT_EQ(published_size("nosuch/one"), nullptr);
 }
 
-// One aircraft of every row: after the correction a span that is off has a length that says
-// otherwise.
+// Loads one aircraft per row. Where the span is still wrong after the correction, the length must
+// contradict an error of scale.
 TEST(Scale, EveryInstalledTypeIsAsLargeAsPublishedOrSaysWhyNot) {
   std::map<const PublishedSize*, std::string> one_of;
   for (const Entry& entry : list_aircraft())

@@ -5,7 +5,9 @@
 
 namespace airtruth::aircraft {
 
-// data/aircraft-sizes/sizes.csv, put into the program when it is built.
+// The content of data/aircraft-sizes/sizes.csv, which the build embeds in the program.
+// published_sizes() in scale.h parses it; data/aircraft-sizes/README.md describes the columns and
+// the sources.
 std::string_view size_table();
 
 }  // namespace airtruth::aircraft

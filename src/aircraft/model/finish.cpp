@@ -8,7 +8,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// In English, and as modellers of other tongues in the catalogue have it.
+// In English, and in the other languages that models of the catalogue use.
 constexpr std::array<std::string_view, 13> kGlassWords = {"glass",
                                                           "plexiglass",
                                                           "plexiglas",

@@ -8,10 +8,10 @@ namespace airtruth::aircraft {
 
 // How a surface reflects light, apart from its colour.
 enum class Finish : std::uint8_t {
-  kPaint,  // scatters, under a clear coat that mirrors
-  kGlass,  // mirrors as the clear coat does, over a dark inside
-  kMetal,  // mirrors, tinted by its colour, and scatters nothing
-  kMat,    // scatters, and mirrors nothing
+  kPaint,  // diffuse under a clear coat that reflects
+  kGlass,  // reflects as the clear coat does, above a dark interior
+  kMetal,  // reflects, tinted by its colour, without a diffuse part
+  kMat,    // diffuse without a reflection
 };
 constexpr std::uint8_t kFinishes = 4;
 

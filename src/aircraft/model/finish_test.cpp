@@ -6,7 +6,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Names that the catalogue has.
+// Names that occur in the catalogue.
 TEST(Finish, IsToldByWholeWords) {
   for (const char* name : {"glass",
                            "Glass23",

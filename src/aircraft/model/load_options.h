@@ -20,8 +20,8 @@ struct ModelAxes {
 struct LoadOptions {
   double airspeed_kt = 250;  // decides `select` conditions: gear is up above its speed
   double altitude_agl_ft = 3000;
-  // Of a catalogue name: the factor on its model's own size; empty: the one that brings it to the
-  // published size of its type (scale.h). Error when given for a model file.
+  // For a catalogue name: the factor on the size of its model. Where it is empty, the model is
+  // scaled to the published size of its type (scale.h). A value for a model file is an Error.
   std::optional<double> catalogue_scale;
   std::optional<ModelAxes> axes;  // for a bare model file; Error when given for a catalogue name
   std::stop_token stop;           // ends the reading of a model file

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 
-// Limits on what a model file may hold, so that a file from a stranger exhausts neither memory nor
-// time. Each is about ten times what the largest aircraft of flightgear-data-ai holds.
+// Limits on the content of a model file, so that an untrusted file cannot exhaust memory or time. A
+// model beyond a limit is an Error.
 namespace airtruth::aircraft {
 
-constexpr std::size_t kMaxModelBytes = std::size_t{256} << 20;  // of one file
-constexpr std::size_t kMaxCorners = 6'000'000;                  // of all surfaces together
-constexpr std::size_t kMaxTriangles = 2'000'000;                // of all surfaces together
-constexpr double kLargestCoordinate = 1e6;                      // units of the file, or body metres
+// Each limit is about ten times the largest value in flightgear-data-ai.
+constexpr std::size_t kMaxModelBytes = std::size_t{256} << 20;  // the size of one file
+constexpr std::size_t kMaxCorners = 6'000'000;                  // over all surfaces of a model
+constexpr std::size_t kMaxTriangles = 2'000'000;                // over all surfaces of a model
+constexpr double kLargestCoordinate = 1e6;  // in units of the file, or in metres in body axes
 
 }  // namespace airtruth::aircraft

@@ -22,7 +22,7 @@ struct RawModel {
   std::vector<std::string> warnings;
 };
 
-// Limits on what a reader may hand back, and that a cache may hold.
+// Limits on the result of a reader and on an entry of the cache.
 constexpr std::size_t kMaxParts = 1024;
 constexpr std::size_t kMaxMaterials = 4096;
 constexpr std::size_t kMaxPictures = 1024;

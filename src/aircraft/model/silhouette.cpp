@@ -9,8 +9,10 @@ namespace airtruth::aircraft {
 namespace {
 
 constexpr float kVisibleAlpha = 1.0f / 255.0f;
-constexpr int kMostSteps = 256;  // along a triangle's side
-constexpr int kBisections = 7;   // of a step
+// The largest number of steps along a triangle's side, one per texel below it. Chosen: 256 steps
+// and 7 bisections of a step resolve the side to 1/32768.
+constexpr int kMaxSteps = 256;
+constexpr int kBisections = 7;
 
 using Barycentric = Eigen::Vector2f;
 
@@ -42,8 +44,8 @@ std::vector<Barycentric> hull_of(std::vector<Barycentric> points) {
   return hull;
 }
 
-// What can be seen of a triangle whose texture has holes: (s, t) is a + s (b -
-// a) + t (c - a).
+// The visible part of a triangle whose texture has transparent texels. (s, t) stands for the point
+// a + s (b - a) + t (c - a).
 class Cutout {
  public:
   Cutout(const Mesh& mesh, const Triangle& triangle)
@@ -57,9 +59,9 @@ class Cutout {
       texels = std::max(texels, std::abs(d.x()) * static_cast<float>(texture_.levels[0].width));
       texels = std::max(texels, std::abs(d.y()) * static_cast<float>(texture_.levels[0].height));
     }
-    // Negated, so that what is not a number takes the most steps.
-    const bool few = texels < static_cast<float>(kMostSteps);
-    steps_ = few ? static_cast<int>(std::ceil(texels)) : kMostSteps;
+    // The comparison is false for NaN, which then takes the largest number of steps.
+    const bool few = texels < static_cast<float>(kMaxSteps);
+    steps_ = few ? static_cast<int>(std::ceil(texels)) : kMaxSteps;
   }
 
   // The corners of the convex hull of the visible texels.
@@ -107,7 +109,7 @@ class Cutout {
     return k;
   }
 
-  // Where visibility begins between steps k - 1 and k, on the visible side.
+  // The border between an invisible step k - 1 and a visible step k, on the visible side.
   Barycentric border(const Barycentric& from, const Barycentric& to, int k) const {
     auto in = static_cast<float>(k);
     float out = k > 0 ? in - 1 : in;

@@ -43,7 +43,7 @@ class MemoryStream : public Assimp::IOStream {
   std::size_t at_ = 0;
 };
 
-// As names in models are spelt: "..\x.mtl", "./x.mtl".
+// Normalises a path as models spell it: "..\x.mtl", "./x.mtl".
 fs::path plain_path(const char* path) {
   std::string text = path;
   std::replace(text.begin(), text.end(), '\\', '/');

@@ -33,7 +33,7 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_RISCV64;
 #error "state this machine's AUDIT_ARCH, so that the model reader's system calls can be filtered"
 #endif
 
-// Calls that take nothing from outside, whatever their arguments.
+// System calls that reach nothing outside the process, whatever their arguments are.
 constexpr int kFreeCalls[] = {__NR_brk,
                               __NR_munmap,
                               __NR_mremap,
@@ -90,7 +90,7 @@ void allow_where(Program& program,
   give_answer(program, kDeny);
 }
 
-// mmap: memory of nobody else's, without the right to be run.
+// mmap is allowed for anonymous private memory that is not executable.
 void allow_own_memory(Program& program) {
   add_jump(program, BPF_JMP | BPF_JEQ | BPF_K, __NR_mmap, 0, 7);
   load_word(program, argument(2));
@@ -113,8 +113,8 @@ Program filter() {
     give_answer(program, SECCOMP_RET_ALLOW);
   }
   constexpr std::uint32_t kAll = 0xffffffff;
-  allow_where(program, __NR_read, 0, kAll, 0);   // standard input alone
-  allow_where(program, __NR_write, 0, kAll, 0);  // the same: it is a socket
+  allow_where(program, __NR_read, 0, kAll, 0);   // from standard input only
+  allow_where(program, __NR_write, 0, kAll, 0);  // to the same descriptor, which is a socket
   allow_where(program, __NR_mprotect, 2, PROT_EXEC, 0);
   allow_own_memory(program);
   give_answer(program, kDeny);
@@ -131,7 +131,7 @@ void limit(int what, unsigned long value) {
 
 void end_with_parent(int parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // it was gone before
+  if (::getppid() != parent) ::_exit(1);  // the parent ended before the call above
 }
 
 void confine(const Limits& limits) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// airtruth-model-reader: reads one 3D model for the program that started it, and hands back plain
-// arrays. Its standard input is a socket; it gets the files that it asks for through that.
+// airtruth-model-reader reads one 3D model for the program that started it and returns plain
+// arrays. Its standard input is a socket, through which it requests files by name and receives
+// them.
 #include <cerrno>
 #include <cstdlib>
 #include <exception>
@@ -21,7 +22,8 @@ namespace {
 using namespace airtruth;  // the program's own top level
 using namespace airtruth::aircraft;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+// The largest message from the parent: the limit of all files of a model together.
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 
 class ToParent : public Channel {
  protected:
@@ -41,7 +43,7 @@ class ToParent : public Channel {
   }
 };
 
-// The parent's files, asked for by name.
+// The parent's files, requested by name.
 class AskedFiles : public ModelFiles {
  public:
   AskedFiles(Channel& parent, const ReaderJob& job)
@@ -63,7 +65,7 @@ class AskedFiles : public ModelFiles {
 
  private:
   std::string answered(Message wanted) {
-    Channel::Received received = parent_.receive(kMostBytes);
+    Channel::Received received = parent_.receive(kMaxMessageBytes);
     if (received.closed) ::_exit(0);
     if (received.message == Message::kError) throw error_from_bytes(received.bytes);
     if (received.message != wanted) throw Error("gets an answer that it did not ask for");
@@ -76,7 +78,7 @@ class AskedFiles : public ModelFiles {
 void do_job(Channel& parent) {
   try {
     model_reader::confine({});
-    const Channel::Received received = parent.receive(kMostBytes);
+    const Channel::Received received = parent.receive(kMaxMessageBytes);
     if (received.closed || received.message != Message::kJob) return;
     const ReaderJob job = job_from_bytes(received.bytes);
     AskedFiles files(parent, job);
@@ -103,5 +105,5 @@ int main(int argc, char** argv) {
   model_reader::end_with_parent(std::atoi(argv[1]));
   ToParent parent;
   do_job(parent);
-  ::_exit(0);  // nothing is left to tidy up, and sanitizers would want to open files
+  ::_exit(0);  // skips destructors, since sanitizers would open files at exit
 }

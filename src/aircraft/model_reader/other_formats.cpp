@@ -25,16 +25,16 @@ using aircraft::Batch;
 using aircraft::ChoosePart;
 using aircraft::PartChoice;
 
-constexpr float kSmoothBelowDeg = 60;  // where a file states no normals
+constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
 constexpr int kMaxNodeDepth = 256;
-constexpr std::size_t kNamedFiles = 5;  // of those that are missing
+constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
 float srgb_channel(float linear) {
   const float c = std::clamp(linear, 0.0f, 1.0f);
   return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
 }
 
-// Finite and in 0..1; black for what is neither.
+// The colour with components in 0..1; a component that is not finite becomes 0.
 std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
   std::array<float, 3> result{c.r, c.g, c.b};
   for (float& channel : result) {
@@ -168,7 +168,7 @@ class SceneReader {
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
 };
 
-// An importer would delete what it is given.
+// assimp's Importer would delete its file system, so it receives this wrapper.
 class LentFiles {
  public:
   LentFiles(Assimp::Importer& importer, AssimpFiles& files) : importer_(importer) {
@@ -182,7 +182,7 @@ class LentFiles {
   Assimp::Importer& importer_;
 };
 
-// All importers but that of the ending are taken out: what a file says it is decides nothing.
+// Removes all importers except that of the ending, so that the content of a file cannot choose one.
 void keep_importer_of(Assimp::Importer& importer, const std::string& ending) {
   const Assimp::BaseImporter* const wanted = importer.GetImporter(ending.c_str());
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;)

@@ -6,11 +6,12 @@
 #include <string_view>
 #include <vector>
 
-// Texture files as plain pixels. The reader is chosen by the file's first bytes, never by its name.
-// Nothing here opens a file or trusts a size that the bytes state.
+// Texture files as plain pixels. The first bytes of a file determine its format; its name does not
+// matter. The functions open no file, and they check each size that the bytes state.
 namespace airtruth::aircraft {
 
-// sRGB with straight alpha, four bytes a pixel (R, G, B, A), rows from the bottom up as OpenGL's.
+// sRGB with straight alpha: 4 bytes per pixel (R, G, B, A), rows from the bottom up as in OpenGL.
+// rgba has 4 * width * height bytes.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -22,10 +23,10 @@ struct PictureLimits {
   std::size_t pixels = std::size_t{64} << 20;  // 256 MiB decoded
 };
 
-// PNG (ISO/IEC 15948; gray, palette and 16 bits become 8-bit RGBA), JPEG (ITU-T T.81; gray and
-// YCbCr), SGI (Haeberli's image file format 0.97; verbatim and run-length, 8 and 16 bits) or
-// Truevision TGA 2.0 (types 1, 2, 3, 9, 10, 11). Throws Error without a place: bytes of no such
-// kind, faulty or cut short, or a picture beyond the limits.
+// Reads PNG (ISO/IEC 15948; gray, palette and 16 bits become 8-bit RGBA), JPEG (ITU-T T.81; gray
+// and YCbCr), SGI (Haeberli's image file format 0.97; verbatim and run-length, 8 and 16 bits) and
+// Truevision TGA 2.0 (types 1, 2, 3, 9, 10, 11). Throws Error, without a place, where the bytes
+// have another format, are faulty or end early, or where the picture exceeds the limits.
 Picture read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 }  // namespace airtruth::aircraft

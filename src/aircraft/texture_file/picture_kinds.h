@@ -5,7 +5,7 @@
 
 #include "aircraft/texture_file/picture.h"
 
-// For picture.cpp alone: one reader for each kind of file. Each throws Error without a place.
+// One reader per format, for picture.cpp only. Each throws Error without a place.
 namespace airtruth::aircraft {
 
 bool is_png(std::string_view bytes);
@@ -18,7 +18,7 @@ Picture read_jpeg(std::string_view bytes, const PictureLimits& limits);
 Picture read_sgi(std::string_view bytes, const PictureLimits& limits);
 Picture read_tga(std::string_view bytes, const PictureLimits& limits);
 
-// A black picture of that size, or an Error that says which limit it exceeds.
+// A black picture of that size. Throws Error, which names the exceeded limit, for a larger one.
 Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLimits& limits);
 
 }  // namespace airtruth::aircraft

@@ -24,20 +24,20 @@ std::array<float, 3> linear_colour(const std::array<float, 3>& srgb) {
   return {linear_channel(srgb[0]), linear_channel(srgb[1]), linear_channel(srgb[2])};
 }
 
-// A propeller at cruise lets nine tenths of the light through: its blades take that much of its
-// disc (solidities are 0.04 to 0.15: Torenbeek 1982, section 6), and they are dark and mat. Game
-// models draw far denser and paler discs, for an eye that expects to see one.
+// A propeller at cruise transmits nine tenths of the light, because its blades cover a tenth of its
+// disc (solidities are 0.04 to 0.15: Torenbeek 1982, section 6). The blades are dark and mat.
+// Models made for games draw denser and paler discs.
 constexpr float kDiscOpacity = 0.1f;
 constexpr float kBladeAlbedo = 0.06f;  // linear; black or grey paint, behind tips of any colour
 
 void make_propeller_disc(Material& material, const Picture* picture) {
-  float cover = 1;  // mean opacity of the texels that show anything
+  float cover = 1;  // the mean opacity of the texels that are not transparent
   if (picture != nullptr) {
-    constexpr int kFaintest = 8;  // of 255
+    constexpr int kMinAlphaCodes = 8;  // of 255; chosen: fainter texels are rounding of the file
     double sum = 0;
     double count = 0;
     for (std::size_t i = 3; i < picture->rgba.size(); i += 4)
-      if (picture->rgba[i] >= kFaintest) sum += picture->rgba[i] / 255.0, count += 1;
+      if (picture->rgba[i] >= kMinAlphaCodes) sum += picture->rgba[i] / 255.0, count += 1;
     if (count > 0) cover = static_cast<float>(sum / count);
   }
   material.opacity = std::min(material.opacity, kDiscOpacity / cover);

@@ -10,10 +10,10 @@
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
 
-// One aircraft put together from the triangles of its model files.
+// Builds one aircraft from the triangles of its model files.
 namespace airtruth::aircraft {
 
-// What to do with a part of the model under a chain of named nodes (outermost first).
+// What to do with the triangles below a chain of named nodes (outermost first).
 struct PartChoice {
   bool hidden = false;
   Eigen::Affine3d body_from_file = Eigen::Affine3d::Identity();
@@ -31,17 +31,17 @@ class Assembly {
   ModelFiles& files() { return files_; }
   RawModel& model() { return model_; }
 
-  // Appends triangles of `file`, whose textures are looked for in `folders`, in their order. Throws
-  // Error with the file, and the line that names it, for a texture that is missing or unreadable,
-  // and for more triangles, vertices or pixels than the limits.
+  // Appends triangles of `file`. Their textures are searched in `folders`, in order. Throws Error,
+  // with the file and the line that names the texture, where a texture is missing or unreadable,
+  // and where triangles, vertices or pixels exceed a limit.
   void add(const Batch& batch,
            const PartChoice& choice,
            const fs::path& file,
            const std::vector<fs::path>& folders);
 
-  // A picture that lies inside a model file; the index for Batch::picture.
+  // Adds a picture from inside a model file and returns its index for Batch::picture.
   int add_picture(Picture picture, bool repeat_u, bool repeat_v);
-  // What is left of the limit on pixels.
+  // The number of pixels that the limit still allows.
   PictureLimits picture_limits() const;
 
  private:

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-// What a FlightGear model asks of the simulation that it hangs in, and the
-// answers for cruise.
+// The properties of the simulation that a FlightGear model reads, and their values at cruise.
 namespace airtruth::aircraft {
 
 struct Condition {
@@ -27,7 +26,7 @@ struct Condition {
   std::string property;
   std::optional<std::string> other_property;
   double value = 0;
-  bool compares_text = false;  // the value is a word: no property of ours equals it
+  bool compares_text = false;  // the value is a word, which equals no property here
   std::vector<Condition> parts;
 };
 
@@ -42,8 +41,8 @@ struct Driven {
   std::vector<std::pair<double, double>> table;  // by rising first number
 };
 
-// Speed and height from the load options, gear down near the ground alone,
-// engines running, surfaces and switches at rest, daylight.
+// The state at cruise: speed and height from the load options, gear down only near the ground,
+// engines running, control surfaces and switches at rest, daylight.
 struct Cruise {
   double airspeed_kt = 250;
   double altitude_agl_ft = 3000;

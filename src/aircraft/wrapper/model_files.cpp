@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxModelReads = 2000;
 constexpr std::size_t kMaxPathBytes = 4096;  // PATH_MAX
 
-// In normal form; empty for a path that leaves the folder.
+// The path in normal form; empty where it leaves the folder.
 fs::path inside(const fs::path& path) {
   const std::string& text = path.native();
   if (text.empty() || text.size() > kMaxPathBytes || text.find('\0') != std::string::npos ||
@@ -56,7 +56,7 @@ DiskFiles::DiskFiles(const fs::path& folder, const fs::path& in_data_root, bool 
   folder_ = fs::canonical(folder.empty() ? fs::path(".") : folder, ignored);
 }
 
-// Without symbolic links; empty for what is not there, or lies elsewhere.
+// The path without symbolic links; empty where nothing is there or it leads out of the folder.
 fs::path DiskFiles::resolved(const fs::path& path) const {
   std::error_code missing;
   const fs::path real = fs::canonical(folder_ / path, missing);

@@ -10,8 +10,8 @@ namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
 
-// The only files that a model is read from: those below one folder. A path is relative to that
-// folder; one that leaves it ("..", absolute, through a symbolic link) names nothing.
+// The files that a model may be read from: those below one folder. Paths are relative to that
+// folder. A path that leaves it ("..", an absolute path, a symbolic link) counts as missing.
 class ModelFiles {
  public:
   enum class Kind { kNone, kFile, kFolder };
@@ -20,17 +20,17 @@ class ModelFiles {
   ModelFiles(const ModelFiles&) = delete;
   ModelFiles& operator=(const ModelFiles&) = delete;
 
-  // What lies there. `path` in normal form or not; it may go up and down again.
+  // The kind of what lies at `path`, which need not be in normal form.
   Kind kind(const fs::path& path);
-  // The whole file. Throws Error with its shown name: it lies outside, is no file, is larger than
-  // max_bytes, or more files are read than a model can need.
+  // The content of a file. Throws Error with the shown name where the path lies outside the folder,
+  // is no file or exceeds max_bytes, and where more files are read than a model can need.
   std::string read(const fs::path& path, std::size_t max_bytes);
 
-  // How a path below the folder is called in messages.
+  // The form in which messages name a path below the folder.
   fs::path shown(const fs::path& path) const;
   const fs::path& shown_folder() const { return shown_folder_; }
-  // Where the folder lies below FlightGear's data root ("AI/Aircraft/738"); empty: at the root, or
-  // unknown.
+  // The position of the folder below FlightGear's data root ("AI/Aircraft/738"); empty where it is
+  // the root, or unknown.
   const fs::path& in_data_root() const { return in_data_root_; }
 
  protected:
@@ -45,7 +45,7 @@ class ModelFiles {
   std::size_t reads_ = 0;
 };
 
-// Files on the disk. Remembers what was asked for, with the answers' SHA-256.
+// Files on the disk. With `hashes` it records each request and the SHA-256 of its answer.
 class DiskFiles : public ModelFiles {
  public:
   struct Asked {
@@ -54,7 +54,7 @@ class DiskFiles : public ModelFiles {
     bool operator==(const Asked&) const = default;
   };
 
-  // `folder` as the user gave it; empty: the working folder. With `hashes`, asked() is kept.
+  // `folder` is as the user stated it; empty means the working folder.
   DiskFiles(const fs::path& folder, const fs::path& in_data_root, bool hashes = false);
 
   // Every file read, as shown, in the order of reading.
@@ -74,12 +74,12 @@ class DiskFiles : public ModelFiles {
   std::vector<Asked> asked_;
 };
 
-// The folder's place below a FlightGear data root, from its own absolute path: what begins with
-// AI/Aircraft. Empty: it has no such part.
+// The position of a folder below a FlightGear data root: the part of its absolute path that begins
+// with AI/Aircraft. Empty where it has no such part.
 fs::path place_in_data_root(const fs::path& folder);
 
-// The file of that name, or of its bare file name, in the first folder that holds it; empty path:
-// nowhere.
+// The file of that name, or of the last part of the name, in the first folder that holds it; an
+// empty path where no folder does.
 fs::path find_texture(ModelFiles& files,
                       const std::string& name,
                       const std::vector<fs::path>& folders);

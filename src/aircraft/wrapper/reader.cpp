@@ -60,8 +60,8 @@ Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
   return Eigen::Affine3d(axes.scale * m);
 }
 
-// Lamps, their glow, shadows on the ground, smoke: drawn for the game, and no
-// part of an aircraft's body.
+// Whether an object is a lamp, its glow, a shadow on the ground or smoke. These are effects of the
+// game and no part of the aircraft's body.
 bool is_effect(const std::string& object) {
   static const std::array<const char*, 8> kWords = {
       "halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"};
@@ -86,8 +86,9 @@ bool contains_any(const std::string& text, std::initializer_list<const char*> wo
   });
 }
 
-// Of a propeller or a rotor that turns fast; not of a jet engine's fan. FlightGear's models know
-// them by their names alone ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk").
+// Whether the names are those of a propeller or rotor that turns fast, and not of a jet engine's
+// fan. FlightGear's models mark them by name only ("Prop_Blur_L", "no1propdisk", "Propeller.Fast",
+// "Disk").
 bool is_propeller_disc(const std::vector<std::string>& names) {
   if (names.empty()) return false;
   std::string name = names.back();
@@ -100,8 +101,7 @@ bool is_propeller_disc(const std::vector<std::string>& names) {
          contains_any(name, {"disk", "disc", "blur", "fast"});
 }
 
-// What the loader has no need to understand: lamps, and what shows in a cockpit
-// or by night alone.
+// Animations without an effect here: lamps, and what is visible only in a cockpit or at night.
 bool is_known(const std::string& type) {
   static const std::set<std::string> kKnown = {
       "",          "select",   "rotate", "spin",        "translate",  "scale",

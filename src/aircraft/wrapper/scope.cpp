@@ -8,7 +8,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr double kSeenFrom_m = 50;  // decides level of detail
+constexpr double kSeenFrom_m = 50;  // the viewing distance that selects the level of detail; chosen
 constexpr std::size_t kMaxLinks = 512;
 constexpr double kFastestPropellerRpm = 3000;  // wrappers state what flickers well in a game
 
@@ -32,8 +32,7 @@ Eigen::Affine3d motion_of(const Animation& animation, const Cruise& cruise) {
   return Eigen::Affine3d(Eigen::Translation3d(value * axis));
 }
 
-// Wheels stand still in the air, although many wrappers turn them with the
-// airspeed.
+// Wheels do not turn in the air, although many wrappers turn them with the airspeed.
 bool is_wheel(const Animation& animation) {
   return std::any_of(
       animation.objects.begin(), animation.objects.end(), [](const std::string& object) {

@@ -9,8 +9,7 @@
 #include "aircraft/wrapper/condition.h"
 #include "aircraft/wrapper/wrapper.h"
 
-// What the animations of a wrapper, and of those that nest it, do to one object
-// of a model.
+// The combined effect of the animations of a wrapper, and of the wrappers around it, on one object.
 namespace airtruth::aircraft {
 
 struct Spin {
@@ -28,17 +27,16 @@ struct Animated {
   std::string texture;  // in place of the object's own
 };
 
-// FlightGear puts an animation into the tree of named nodes right above the
-// node it names (or, where it names none, above all of its wrapper's), in the
-// order of the file, nested wrappers first.
+// FlightGear inserts an animation directly above each node that it names (or above the whole model
+// where it names none), in the order of the file, outer wrappers first.
 class Scope {
  public:
   Scope(const Eigen::Affine3d& body_from_outside, const Cruise& cruise);
 
-  // The scope inside a wrapper that stands in this one.
+  // The scope inside a wrapper that is nested in this one.
   Scope inside(const Wrapper& wrapper) const;
-  // An object of the innermost wrapper's model, by the names of its nodes,
-  // outermost first.
+  // The effect on an object of the innermost wrapper's model. `names` are its nodes, outermost
+  // first.
   Animated animated(const std::vector<std::string>& names) const;
 
  private:

@@ -28,7 +28,7 @@ void drop_doubles(Mesh& mesh) {
   }
 }
 
-// Vertices that no triangle uses any more.
+// Removes vertices that no triangle uses.
 void drop_unused(Mesh& mesh) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> new_from_old(mesh.positions.size(), kUnused);

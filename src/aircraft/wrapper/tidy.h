@@ -5,9 +5,9 @@
 
 namespace airtruth::aircraft {
 
-// Drops triangles without area (they have no normal), triangles drawn twice in
-// the same place from either side (they would shine through one another where
-// translucent), and the vertices and parts that this leaves unused.
+// Removes triangles without area, which have no normal; the second of two triangles in the same
+// place with opposite sides, since a translucent surface would be drawn twice; and the vertices and
+// parts that are then unused.
 void tidy(Mesh& mesh);
 
 }  // namespace airtruth::aircraft

@@ -9,8 +9,8 @@
 #include "aircraft/wrapper/model_files.h"
 #include "aircraft/wrapper/wrapper_text.h"
 
-// FlightGear's wrapper XML of a 3D model with what it includes and nests: where
-// the model lies, which parts show when, what turns.
+// A FlightGear wrapper XML of a 3D model, with the wrappers that it includes and nests. It states
+// the place of the model, the condition under which each part is visible, and which parts turn.
 namespace airtruth::aircraft {
 
 struct Wrapper {
@@ -25,18 +25,18 @@ struct Wrapper {
   std::vector<Wrapper> nested;
 };
 
-// Reads a wrapper with what it includes and all that it nests; what a file says itself comes after,
-// and over, what it includes. Paths are below the folder of `files`. A nested model that is missing
-// is left out (FlightGear does so), and named in `missing`. Lamps, smoke, rain and sounds are left
-// out. Errors carry file and line: not XML, a missing file, includes that go round.
+// Reads a wrapper, what it includes and what it nests. A property of the file itself overrides one
+// that it includes. Paths are below the folder of `files`. A nested model that is missing is left
+// out, as in FlightGear, and added to `missing`. Lamps, smoke, rain and sounds are left out. Throws
+// Error with file and line where a file is no XML or missing, and where includes form a cycle.
 Wrapper read_wrapper(ModelFiles& files, const fs::path& file, std::set<std::string>& missing);
 
-// A lamp, smoke, rain, a sound: by its path.
+// Whether the path is that of a lamp, smoke, rain or a sound.
 bool is_effect_path(const std::string& path);
 
-// The file that "Models/a.ac" or "AI/Aircraft/x/b.xml" means in a wrapper in `folder`: beside it,
-// below FlightGear's data root, or in that root's AI. Empty path: nowhere below the folder of
-// `files`.
+// The file that a path such as "Models/a.ac" or "AI/Aircraft/x/b.xml" means in a wrapper in
+// `folder`. It is searched beside the wrapper, below FlightGear's data root, and in that root's AI.
+// Returns an empty path where it is in none of them or not below the folder of `files`.
 fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::path& folder);
 
 }  // namespace airtruth::aircraft

@@ -30,7 +30,7 @@ std::optional<double> number(const std::string& text) {
   double value = 0;
   const char* begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
   const auto [rest, failed] = std::from_chars(begin, text.c_str() + text.size(), value);
-  (void)rest;  // "23,1722" is 23, as FlightGear reads it
+  (void)rest;  // FlightGear reads "23,1722" as 23
   if (failed != std::errc() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
@@ -39,7 +39,7 @@ double number(const pugi::xml_node& node, const char* child, double otherwise) {
   return number(text_of(node, child)).value_or(otherwise);
 }
 
-// Fields have ".../x" and ".../x-m" spellings.
+// Fields are spelled ".../x" or ".../x-m".
 Vector3 vector(const pugi::xml_node& node, const char* suffix) {
   Vector3 v;
   const char* names[] = {"x", "y", "z"};
@@ -90,7 +90,7 @@ Condition condition_of(const pugi::xml_node& node, int depth) {
     condition.property = trimmed(node.child_value());
     return condition;
   }
-  // <condition> and <and> are the same.
+  // <condition> means the same as <and>.
   condition.kind = name == "or" ? Kind::kOr : name == "not" ? Kind::kNot : Kind::kAnd;
   condition.parts = parts_of(node, depth);
   return condition;
@@ -159,7 +159,7 @@ Animation animation_of(const pugi::xml_node& node) {
   return animation;
 }
 
-// Pitch about y, then roll about x, then heading about z, then the shift.
+// Pitch about y, then roll about x, then heading about z, then the translation.
 Eigen::Affine3d offsets_of(const pugi::xml_node& node) {
   using Eigen::AngleAxisd;
   Eigen::Affine3d result = Eigen::Affine3d::Identity();

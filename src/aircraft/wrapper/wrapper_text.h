@@ -11,9 +11,8 @@
 #include "aircraft/wrapper/condition.h"
 #include "foundation/geometry/transform.h"
 
-// One PropertyList of FlightGear as it says it, before files that it names are
-// looked for. Coordinates are FlightGear's: x back, y right, z up, metres;
-// rotations are right-handed.
+// The content of one FlightGear PropertyList, before the files that it names are searched.
+// Coordinates are FlightGear's: x back, y right, z up, metres; rotations are right-handed.
 namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
@@ -50,11 +49,10 @@ struct WrapperText {
   std::vector<Nested> nested;
 };
 
-// Error with line for what is not XML, or has no <PropertyList>.
+// Throws Error with the line where the text is not XML or has no <PropertyList>.
 WrapperText parse_wrapper(std::string_view text, const fs::path& name);
 
-// The <entry> children of a file that an <interpolation> includes, by rising
-// <ind>.
+// The <entry> children of a file that an <interpolation> includes, sorted by <ind>.
 std::vector<std::pair<double, double>> parse_table(std::string_view text, const fs::path& name);
 
 }  // namespace airtruth::aircraft
