@@ -29,16 +29,16 @@ void read_lens(std::string_view text, const char* name) {
   constexpr lens::ImageSize kSize{640, 480};
   // The lens inverts its map within 1e-9 rad; one hundred times that leaves room for the rounding
   // of pixels far from the axis.
-  constexpr double kMostApart = 1e-7;
+  constexpr double kMaxApart = 1e-7;
   const lens::Lens lens = lens::parse_calibration(text, name, kSize);
   if (lens.size() != kSize || !(lens.focal_px() > 0)) std::abort();
   for (const Pixel& pixel : {Pixel(320, 240), Pixel(1, 1), Pixel(639, 200)}) {
     const auto ray = lens.ray_from_pixel(pixel);
     if (!ray) continue;
-    if (!(std::abs(ray->norm() - 1) < kMostApart)) std::abort();
+    if (!(std::abs(ray->norm() - 1) < kMaxApart)) std::abort();
     const auto back = lens.pixel_from_cam(*ray);
     const auto again = back ? lens.ray_from_pixel(*back) : std::nullopt;
-    if (again && !((*again - *ray).norm() < kMostApart)) std::abort();
+    if (again && !((*again - *ray).norm() < kMaxApart)) std::abort();
   }
 }
 

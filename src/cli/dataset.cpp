@@ -125,14 +125,14 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
 void plan(const DatasetArguments& arguments, Context& context) {
   const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
   dataset::check_sources(catalogue, {});
-  constexpr std::int64_t kMostListed = 50;
+  constexpr std::int64_t kMaxListed = 50;
   Console& console = context.console();
   const auto list = [&](const dataset::Item& item) {
-    if (item.index < kMostListed) console.result(plan_line(catalogue, item));
+    if (item.index < kMaxListed) console.result(plan_line(catalogue, item));
   };
   const dataset::Plan plan = dataset::plan_of(catalogue, list, context.stop);
-  if (plan.sequences > kMostListed)
-    console.result(fmt::format("... and {} more", plan.sequences - kMostListed));
+  if (plan.sequences > kMaxListed)
+    console.result(fmt::format("... and {} more", plan.sequences - kMaxListed));
   say_what_is_drawn(plan, console);
   const std::string measuring =
       plan.calibration_s > 0

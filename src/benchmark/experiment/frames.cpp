@@ -24,7 +24,7 @@ const image::Picture* Frames::at(std::int64_t frame) {
     const video::StreamInfo& info = reader_->info();
     const std::size_t bytes =
         3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height);
-    keep = std::max<std::int64_t>(1, static_cast<std::int64_t>(kMostBytes / bytes));
+    keep = std::max<std::int64_t>(1, static_cast<std::int64_t>(kMaxBytes / bytes));
     held_.clear();
     open(std::max<std::int64_t>(0, frame - keep + 1));
   }

@@ -12,10 +12,10 @@
 namespace airtruth::experiment {
 
 // Access to a video's frames by number. Forward reading holds one frame. Backward reading decodes
-// pieces of at most kMostBytes anew from the start of the video.
+// pieces of at most kMaxBytes anew from the start of the video.
 class Frames {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
+  static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;
 
   Frames(std::filesystem::path video, Warn warn)
       : video_(std::move(video)), warn_(std::move(warn)) {}

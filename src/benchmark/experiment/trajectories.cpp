@@ -98,7 +98,7 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
   for (const exchange::Line& line : exchange::lines_of(file)) {
     const std::vector<double> n = exchange::numbers_of(line, file);
     const auto frame =
-        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[0], 1, exchange::kMostFrames);
+        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[0], 1, exchange::kMaxFrames);
     const auto id =
         n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[1], -1, std::int64_t{1} << 52);
     if (!frame || !id)

@@ -250,7 +250,7 @@ void Child::take_lines() {
     const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
     searched_ = end == std::string::npos ? input_.size() : end;
     if (!skips_line_ && begins_message()) {
-      if (end == std::string::npos && input_.size() - parsed_ > kMostBytes)
+      if (end == std::string::npos && input_.size() - parsed_ > kMaxBytes)
         fail("sent a message of more than 64 MB");
       break;
     }

@@ -37,7 +37,7 @@ class ProtocolError : public std::runtime_error {
 constexpr std::string_view kPrefix = "@@TRAX:";
 
 // Length in bytes of the longest line that is accepted as a message.
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 // Parses a line without its line end. Returns empty for a line that is not a message. Throws
 // ProtocolError for a message of unknown type or with an open quote.

@@ -95,7 +95,7 @@ class Place {
       throw Error(
           "holds an unfinished export with other options; expected the same, or a new folder",
           {root_.string()});
-    if (!begun && fs::exists(root_) && (!fs::is_directory(root_) || !fs::is_empty(root_)))
+    if (!begun && fs::exists(root_) && !holds_only_own_folder())
       throw Error("exists and is not empty; expected a new folder", {root_.string()});
     std::error_code failed;
     fs::create_directories(done_folder(), failed);
@@ -118,6 +118,14 @@ class Place {
   fs::path record() const { return root_ / "export.json"; }
 
  private:
+  // A run that is killed between its first two steps leaves its own folder without the options in
+  // it. Nothing is exported by then.
+  bool holds_only_own_folder() const {
+    return fs::is_directory(root_) &&
+           std::all_of(fs::directory_iterator(root_), fs::directory_iterator(), [](auto& entry) {
+             return entry.path().filename() == ".export";
+           });
+  }
   fs::path begun_file() const { return root_ / ".export" / "options.json"; }
   fs::path done_folder() const { return root_ / ".export" / "done"; }
 

@@ -150,6 +150,14 @@ TEST_F(Made, AnExportGoesOnWhereItStoppedAndTheSecondRunCostsNothing) {
   EXPECT_TRUE(export_set(set(), out, options).was_there);
 }
 
+TEST_F(Made, AnExportKilledBeforeItsOptionsAreWrittenIsBegunAnew) {
+  const fs::path out = fresh();
+  fs::create_directories(out / ".export/done");
+  EXPECT_GT(export_set(set(), out, {}).frames, 0);
+  EXPECT_TRUE(fs::exists(out / "export.json"));
+  EXPECT_FALSE(fs::exists(out / ".export"));
+}
+
 TEST_F(Made, AnExportOverSomethingElseIsRefused) {
   const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
     try {

@@ -11,10 +11,10 @@ namespace airtruth::render {
 namespace {
 
 // Rays for a whole model, which take under a second on two cores.
-constexpr std::size_t kMostRays = 1'500'000;
+constexpr std::size_t kMaxRays = 1'500'000;
 // Directions for each corner: one step is 1/64 of all light.
-constexpr std::size_t kMostDirections = 64;
-constexpr std::size_t kFewestDirections = 8;
+constexpr std::size_t kMaxDirections = 64;
+constexpr std::size_t kMinDirections = 8;
 // Divisor of the number of directions for insides and for reflected light.
 constexpr std::size_t kFewer = 4;
 // A side with a smaller open share is probably the inside of a skin.
@@ -158,10 +158,10 @@ ModelOpenness model_openness(const Model::Impl& model) {
     corners += 3 * part.triangles.size();
     result.emplace_back(part.triangles.size());
   }
-  const std::size_t count = std::clamp(kMostRays / corners, kFewestDirections, kMostDirections);
+  const std::size_t count = std::clamp(kMaxRays / corners, kMinDirections, kMaxDirections);
   const std::vector<Eigen::Vector3f> about_z = directions(count);
   const std::vector<Eigen::Vector3f> few_about_z =
-      directions(std::max(kFewestDirections, count / kFewer));
+      directions(std::max(kMinDirections, count / kFewer));
   each_corner(model, result, [&](const auto& point, const auto& face, auto& front, auto& back) {
     front = openness_at(model, Place(point, face), about_z);
     // Triangles may be turned inside out.

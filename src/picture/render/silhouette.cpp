@@ -13,10 +13,10 @@ namespace airtruth::render {
 namespace {
 
 // Largest number of triangles over one pixel; with more, rays are faster.
-constexpr std::size_t kMostTriangles = 192;
+constexpr std::size_t kMaxTriangles = 192;
 // Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
 // and rays then do all the work.
-constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 25;
+constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 25;
 
 }  // namespace
 
@@ -164,7 +164,7 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   std::uint64_t entries = 0;
   for (const Reach& r : reaches)
     entries += static_cast<std::uint64_t>(r.x1 - r.x0) * static_cast<std::uint64_t>(r.y1 - r.y0);
-  if (entries > kMostEntries) {
+  if (entries > kMaxEntries) {
     touch_.assign(pixels, Touch::kRays);
     return;
   }
@@ -186,7 +186,7 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const std::uint32_t count = first_[pixel + 1];
     if (touch_[pixel] == Touch::kNone && count > 0)
-      touch_[pixel] = count > kMostTriangles ? Touch::kRays : Touch::kOpaque;
+      touch_[pixel] = count > kMaxTriangles ? Touch::kRays : Touch::kOpaque;
     first_[pixel + 1] += first_[pixel];
   }
   by_pixel_.resize(first_.back());

@@ -184,8 +184,8 @@ Picture PatchCodec::coded(const Picture& patch, const Picture& reference) {
       std::find_if(loops.begin(), loops.end(), [&](const Loop& l) { return l.fits(patch); });
   if (loop == loops.end()) {
     // Each loop has one size; an intruder's size changes slowly.
-    constexpr std::size_t kMostLoops = 4;
-    if (loops.size() == kMostLoops) loops.pop_back();
+    constexpr std::size_t kMaxLoops = 4;
+    if (loops.size() == kMaxLoops) loops.pop_back();
     loops.emplace_front(patch.width, patch.height, patch.colour.chroma, state_->quantiser);
     loop = loops.begin();
   }

@@ -24,7 +24,7 @@ namespace {
 
 // Every frame up to the last that is labelled is held, and numbers in the names of pictures can be
 // anything: 9 hours at 30 frames/s.
-constexpr std::int64_t kMostFrames = 1'000'000;
+constexpr std::int64_t kMaxFrames = 1'000'000;
 
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
   video::ReaderOptions options;
@@ -87,10 +87,9 @@ Finished open_labelled(const fs::path& folder) {
   finished.video = clip.media;
   if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
   for (const exchange::LabelledFrame& frame : clip.frames) {
-    if (frame.frame >= kMostFrames)
-      throw Error(
-          fmt::format("labels frame {}; expected frames below {}", frame.frame, kMostFrames),
-          {(folder / "labels.jsonl").string()});
+    if (frame.frame >= kMaxFrames)
+      throw Error(fmt::format("labels frame {}; expected frames below {}", frame.frame, kMaxFrames),
+                  {(folder / "labels.jsonl").string()});
     while (std::ssize(finished.truth.frames) < frame.frame) {
       finished.truth.frames.emplace_back();
       finished.truth.frames.back().frame = std::ssize(finished.truth.frames) - 1;

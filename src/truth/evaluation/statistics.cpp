@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kDraws = 10'000;
 constexpr int kSignDraws = 20'000;
-constexpr std::size_t kMostExact = 16;
+constexpr std::size_t kMaxExact = 16;
 
 // Interpolates between the two nearest of the sorted values (Hyndman and Fan 1996, type 7).
 double quantile(const std::vector<double>& sorted, double share) {
@@ -36,7 +36,7 @@ double sign_test(const std::vector<double>& differences) {
   const double wanted = std::abs(sum) - 1e-12 * size;
   const std::size_t n = differences.size();
   std::int64_t as_far = 0;
-  if (n <= kMostExact) {
+  if (n <= kMaxExact) {
     const std::uint32_t all = std::uint32_t{1} << n;
     for (std::uint32_t signs = 0; signs < all; ++signs) {
       double changed = 0;

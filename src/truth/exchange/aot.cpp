@@ -173,8 +173,7 @@ class FlightReader {
     }
     const fs::path pictures = file_.parent_path().parent_path() / "Images" / clip_.name;
     if (!entries(pictures).empty()) clip_.media = pictures;
-    const auto frames =
-        whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMostFrames);
+    const auto frames = whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMaxFrames);
     if (!frames) about.fail("number_of_frames is no number of frames");
     clip_.frames.resize(static_cast<std::size_t>(*frames));
     const std::vector<JsonObject> entities = flight_.objects("entities");
@@ -194,7 +193,7 @@ class FlightReader {
   void add(const JsonObject& entity) {
     const JsonObject blob = entity.object("blob");
     const std::int64_t number = blob.whole("frame");
-    if (number < 0 || number > kMostFrames) blob.fail("frame is out of range");
+    if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
     const auto i = static_cast<std::size_t>(number);
     if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
     LabelledFrame& frame = clip_.frames[i];

@@ -206,7 +206,7 @@ class CvatReader {
     clip_.name = task.child_value("name");
     if (clip_.name.empty() || clip_.name.find('/') != std::string::npos)
       clip_.name = file_.parent_path().filename().string();
-    const auto frames = whole_in(number_in(task.child_value("size")).value_or(0), 0, kMostFrames);
+    const auto frames = whole_in(number_in(task.child_value("size")).value_or(0), 0, kMaxFrames);
     if (!frames) xml_.fail(task, "has a size that is no number of frames");
     clip_.frames.resize(static_cast<std::size_t>(*frames));
     const pugi::xml_node size = task.child("original_size");
@@ -219,7 +219,7 @@ class CvatReader {
   // In "CVAT for images 1.1" these elements contain the boxes. In a file of tracks they only name
   // the pictures.
   void add_image(const pugi::xml_node& image) {
-    const auto number = whole_in(xml_.attribute(image, "id"), 0, kMostFrames);
+    const auto number = whole_in(xml_.attribute(image, "id"), 0, kMaxFrames);
     if (!number) xml_.fail(image, "has an id that is no whole number from 0 on");
     const auto frame = static_cast<std::size_t>(*number);
     if (frame >= clip_.frames.size()) clip_.frames.resize(frame + 1);
@@ -238,7 +238,7 @@ class CvatReader {
     std::optional<Label> last;
     std::size_t last_frame = 0;
     for (const pugi::xml_node& box : track.children("box")) {
-      const auto number = whole_in(xml_.attribute(box, "frame"), 0, kMostFrames);
+      const auto number = whole_in(xml_.attribute(box, "frame"), 0, kMaxFrames);
       if (!number) xml_.fail(box, "has a frame that is no whole number from 0 on");
       const auto frame = static_cast<std::size_t>(*number);
       const Label label = label_of(xml_, box, track.attribute("label").value(), *id + 1);

@@ -138,7 +138,7 @@ class MotWriter : public IndexedWriter {
   std::map<std::string, std::string> maps_;
 };
 
-constexpr std::int64_t kMostTracks = 1'000'000'000;
+constexpr std::int64_t kMaxTracks = 1'000'000'000;
 
 // The folder of one sequence.
 class SequenceFolder {
@@ -174,7 +174,7 @@ class SequenceFolder {
       clip_.frame_rate_hz = rate;
     clip_.width = side_of(number_in(about, "imWidth"));
     clip_.height = side_of(number_in(about, "imHeight"));
-    const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMostFrames);
+    const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
     if (!frames) throw Error("seqLength is no number of frames", {file.string()});
     clip_.frames.resize(static_cast<std::size_t>(*frames));
     for (const Line& line : lines_of(file)) {
@@ -189,7 +189,7 @@ class SequenceFolder {
     for (const Line& line : lines_of(file)) {
       const std::size_t comma = line.text.find(',');
       const auto number = numbers_of({line.number, line.text.substr(0, comma)}, file);
-      const auto track = number.size() == 1 ? whole_in(number[0], 0, kMostTracks) : std::nullopt;
+      const auto track = number.size() == 1 ? whole_in(number[0], 0, kMaxTracks) : std::nullopt;
       if (!track || comma == std::string::npos)
         throw Error("is no 'id,class'", {file.string(), line.number});
       categories_[*track] = line.text.substr(comma + 1);
@@ -198,9 +198,9 @@ class SequenceFolder {
 
   void add(const std::vector<double>& n, const Where& where) {
     if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
-    const auto frame = whole_in(n[0], 1, kMostFrames);
+    const auto frame = whole_in(n[0], 1, kMaxFrames);
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
-    const auto track = whole_in(n[1], -1, kMostTracks);
+    const auto track = whole_in(n[1], -1, kMaxTracks);
     if (!track) throw Error("the id is no whole number", where);
     if (n.size() > 6 && n[6] == 0)
       return left_out_.add("lines that are not to be considered (conf 0)", to_string(where));

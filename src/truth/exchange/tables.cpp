@@ -47,7 +47,7 @@ Clips read_evision(const fs::path& source, const ReadOptions& options) {
       const auto& frame = evision.frames[i];
       const auto number =
           static_cast<std::int64_t>(frame ? frame->number - 1 : static_cast<int>(i));
-      if (number > kMostFrames)
+      if (number > kMaxFrames)
         throw Error("frame_" + std::to_string(number + 1) + " is beyond any clip", {file.string()});
       // Numbers that the file skips are frames without any information.
       while (std::ssize(clip.frames) < number)
@@ -84,7 +84,7 @@ Clips read_csv(const fs::path& source, const ReadOptions& options) {
       const std::vector<double> n = numbers_of(line, file);
       if (n.size() < 5)
         throw Error(fmt::format("has {} columns; expected frame,x,y,w,h", n.size()), where);
-      const auto i = whole_in(n[0], 0, kMostFrames);
+      const auto i = whole_in(n[0], 0, kMaxFrames);
       if (!i) throw Error("the frame is no whole number from 0 on", where);
       while (std::ssize(clip.frames) <= *i)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});

@@ -38,7 +38,7 @@ std::optional<double> number_in(const std::map<std::string, std::string>& settin
 
 // Largest number of frames of a clip, 4.6 hours at 30 frames/s. A longer clip is taken for an error
 // in its file.
-constexpr std::int64_t kMostFrames = 500'000;
+constexpr std::int64_t kMaxFrames = 500'000;
 
 // The number as an integer where it is whole and within [low, high]; else empty.
 std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);

@@ -113,7 +113,7 @@ class Sweep {
 // A spinning part passes through many angles during the exposure. So many angles are taken that
 // neighbours are a few degrees apart, and the part counts as present at each of them all the time.
 constexpr double kSpinStepTurns = 1.0 / 120;
-constexpr int kMostSpinSteps = 120;
+constexpr int kMaxSpinSteps = 120;
 
 void add_swept(const Sight& sight,
                const SilhouettePoints& silhouette,
@@ -128,7 +128,7 @@ void add_swept(const Sight& sight,
     const aircraft::Part& part = silhouette.mesh->parts[i];
     const double turns = part.spins ? std::abs(part.revolutions_per_s) * open_s : 0;
     const int steps =
-        1 + std::min(kMostSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
+        1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
     for (int step = 0; step < steps; ++step) {
       const double dt_s = steps > 1 ? open_s * (double(step) / (steps - 1) - 0.5) : 0;
       const Eigen::Affine3d body_from_part =

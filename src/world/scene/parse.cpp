@@ -12,7 +12,7 @@ namespace airtruth::scene {
 namespace {
 
 constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kMostFrames = 1'000'000'000;
+constexpr std::int64_t kMaxFrames = 1'000'000'000;
 
 std::string name_of(const TableReader& root, const fs::path& file) {
   if (const auto name = root.file_name("name")) return *name;
@@ -30,8 +30,8 @@ Background background_from(const TableReader& table) {
     throw Error("[background] has no video; expected the path of a video file", table.where());
   background.video = *video;
   background.mask = table.path("mask");
-  background.first_frame = table.whole("first_frame", 0, kMostFrames).value_or(0);
-  background.frame_count = table.whole("frame_count", 1, kMostFrames);
+  background.first_frame = table.whole("first_frame", 0, kMaxFrames).value_or(0);
+  background.frame_count = table.whole("frame_count", 1, kMaxFrames);
   return background;
 }
 

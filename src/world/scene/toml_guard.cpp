@@ -7,7 +7,7 @@ namespace airtruth::scene {
 namespace {
 
 constexpr int kDeepestBrackets = 32;
-constexpr int kMostDots = 16;
+constexpr int kMaxDots = 16;
 
 // Scans TOML as its lexer does: it skips strings and comments. On text that is not TOML the scan
 // and the parser may disagree, but only after the place where the parser stops.
@@ -34,7 +34,7 @@ class Walk {
     if (c == '.') ++dots_;
     if (c == '\n' || c == ',' || c == '=' || c == '{' || c == '}') dots_ = 0;
     if (c == '\n') ++line_;
-    if (brackets_ > kDeepestBrackets || dots_ > kMostDots)
+    if (brackets_ > kDeepestBrackets || dots_ > kMaxDots)
       throw Error("is nested too deeply; a scene needs two levels", {file_, line_, 0});
     ++at_;
   }
