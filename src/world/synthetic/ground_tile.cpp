@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
@@ -82,24 +83,13 @@ Ground::Ground(double texel_m,
   sunlight_ *= 0.25F + 0.9F * up;
   skylight_ = linear_rgb(0.20F, 0.25F, 0.33F);
   shadow_ = clouds.ground_shadow(kShadowCells);
-  haze_.resize(kHazeSectors);
-  const Vector3 level_sun = Vector3(sun_.x(), sun_.y(), 0).normalized();
-  const double level = std::hypot(sun_.x(), sun_.y());
-  for (int i = 0; i < kHazeSectors; ++i) {
-    const double cosine =
-        std::clamp((2.0 * i / (kHazeSectors - 1) - 1) / std::max(level, 1e-6), -1.0, 1.0);
-    const Vector3 side(-level_sun.y(), level_sun.x(), 0);
-    haze_[static_cast<std::size_t>(i)] =
-        sky.haze(cosine * level_sun + std::sqrt(1 - cosine * cosine) * side);
-  }
+  make_haze(sky);
   detail_.resize(std::size_t{kDetailCells} * kDetailCells);
   for (int y = 0; y < kDetailCells; ++y)
     for (int x = 0; x < kDetailCells; ++x)
       detail_[static_cast<std::size_t>(y * kDetailCells + x)] = fractal(
           static_cast<float>(x) / 16, static_cast<float>(y) / 16, 4, kDetailCells / 16, seed + 41);
-  levels_.push_back({size,
-                     std::vector<std::uint32_t>(static_cast<std::size_t>(size) *
-                                                static_cast<std::size_t>(size))});
+  map_ = MipMap::with_size(size);
   const Land land(seed);
   paint(land);
   plant(land, seed + 50);
@@ -108,15 +98,27 @@ Ground::Ground(double texel_m,
   find_peaks();
 }
 
+void Ground::make_haze(const Sky& sky) {
+  const Vector3 level_sun = Vector3(sun_.x(), sun_.y(), 0).normalized();
+  const double level = std::hypot(sun_.x(), sun_.y());
+  const Vector3 side(-level_sun.y(), level_sun.x(), 0);
+  for (int i = 0; i < kHazeSectors; ++i) {
+    const double cosine =
+        std::clamp((2.0 * i / (kHazeSectors - 1) - 1) / std::max(level, 1e-6), -1.0, 1.0);
+    const LinearRgb haze = sky.haze(cosine * level_sun + std::sqrt(1 - cosine * cosine) * side);
+    for (int c = 0; c < 3; ++c)
+      haze_[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = haze[c];
+  }
+}
+
 std::uint32_t& Ground::texel(int x, int y) {
-  Level& base = levels_.front();
-  const int wrap = base.size - 1;
-  return base.texels[static_cast<std::size_t>(y & wrap) * static_cast<std::size_t>(base.size) +
+  const int wrap = map_.size - 1;
+  return map_.texels[static_cast<std::size_t>(y & wrap) * static_cast<std::size_t>(map_.size) +
                      static_cast<std::size_t>(x & wrap)];
 }
 
 void Ground::paint(const Land& land) {
-  const int size = levels_.front().size;
+  const int size = map_.size;
   tbb::parallel_for(0, size, [&](int y) {
     for (int x = 0; x < size; ++x) {
       const Place place = land.at((static_cast<float>(x) + 0.5F) * texel_m_,
@@ -248,28 +250,29 @@ void Ground::build_barn(std::uint32_t id) {
 }
 
 void Ground::find_peaks() {
-  const Level& base = levels_.front();
   int cells = static_cast<int>(kLand_m / 10);
-  const int ratio = base.size / cells;
+  const int size = map_.size;
+  const int ratio = size / cells;
   const auto at = [](int x, int y, int n) {
     return static_cast<std::size_t>((y & (n - 1)) * n + (x & (n - 1)));
   };
   std::vector<std::uint8_t> highest(static_cast<std::size_t>(cells * cells), 0);
   tbb::parallel_for(0, cells, [&](int row) {
     for (int y = row * ratio; y < (row + 1) * ratio; ++y)
-      for (int x = 0; x < base.size; ++x) {
+      for (int x = 0; x < size; ++x) {
         std::uint8_t& cell = highest[at(x / ratio, row, cells)];
         cell = std::max(cell, static_cast<std::uint8_t>(texel(x, y) >> 24));
       }
   });
-  while (cells >= 4) {
+  for (std::int32_t& first : first_peak_) {
     std::vector<std::uint8_t> around(highest.size(), 0);
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x)
         for (int k = 0; k < 9; ++k)
           around[at(x, y, cells)] =
               std::max(around[at(x, y, cells)], highest[at(x + k % 3 - 1, y + k / 3 - 1, cells)]);
-    peaks_.push_back(std::move(around));
+    first = static_cast<std::int32_t>(peaks_.size());
+    peaks_.insert(peaks_.end(), around.begin(), around.end());
     const int half = cells / 2;
     std::vector<std::uint8_t> coarse(static_cast<std::size_t>(half * half), 0);
     for (int y = 0; y < cells; ++y)
@@ -303,19 +306,17 @@ std::uint32_t mean_of(const std::array<std::uint32_t, 4>& texels) {
 }  // namespace
 
 void Ground::make_levels() {
-  while (levels_.back().size > 2) {
-    const Level& fine = levels_.back();
-    Level coarse{fine.size / 2, {}};
-    const auto half = static_cast<std::size_t>(coarse.size);
-    const auto full = static_cast<std::size_t>(fine.size);
-    coarse.texels.resize(half * half);
+  for (std::size_t level = 1; level < static_cast<std::size_t>(map_.levels); ++level) {
+    const std::uint32_t* fine = &map_.texels[static_cast<std::size_t>(map_.first[level - 1])];
+    std::uint32_t* coarse = &map_.texels[static_cast<std::size_t>(map_.first[level])];
+    const auto half = static_cast<std::size_t>(map_.wrap[level]) + 1;
+    const std::size_t full = 2 * half;
     tbb::parallel_for(std::size_t{0}, half, [&](std::size_t y) {
       for (std::size_t x = 0; x < half; ++x) {
-        const std::uint32_t* p = &fine.texels[2 * y * full + 2 * x];
-        coarse.texels[y * half + x] = mean_of({p[0], p[1], p[full], p[full + 1]});
+        const std::uint32_t* p = fine + 2 * y * full + 2 * x;
+        coarse[y * half + x] = mean_of({p[0], p[1], p[full], p[full + 1]});
       }
     });
-    levels_.push_back(std::move(coarse));
   }
 }
 
