@@ -66,6 +66,22 @@ struct Colour {
   }
 };
 
+// Copies the rays that the search names.
+AIRTRUTH_SYNTHETIC_VECTORS
+void select_rays(const Rays& rays,
+                 const Floats& far_m,
+                 const Floats& across,
+                 const Floats& peak_m,
+                 Search& __restrict search) {
+  const int count = search.count;
+  select(rays.north, search.ray, count, search.north);
+  select(rays.east, search.ray, count, search.east);
+  select(rays.down, search.ray, count, search.down);
+  select(far_m, search.ray, count, search.far_m);
+  select(across, search.ray, count, search.across);
+  select(peak_m, search.ray, count, search.peak_m);
+}
+
 }  // namespace
 
 // The distance to the level ground, and the cell of greatest heights around the ray's last part.
@@ -103,18 +119,15 @@ void Ground::reach(const Eye& eye, const Rays& rays, Points& __restrict points) 
 
 void Ground::meet(const Eye& eye, const Rays& rays, Points& points) const {
   Search search;
+  alignas(64) Floats peak_m;
   for (int i = 0; i < rays.count; ++i) {
     const std::uint8_t peak = peaks_[static_cast<std::size_t>(points.cell[i])];
-    if (peak == 0 || points.far_m[i] >= kReliefEnd_m) continue;
-    const int k = search.count++;
-    search.ray[k] = i;
-    search.north[k] = rays.north[i];
-    search.east[k] = rays.east[i];
-    search.down[k] = rays.down[i];
-    search.far_m[k] = points.far_m[i];
-    search.across[k] = points.across[i];
-    search.peak_m[k] = static_cast<float>(peak) * (kHighest_m / 255);
+    peak_m[i] = static_cast<float>(peak) * (kHighest_m / 255);
+    search.ray[search.count] = i;
+    search.count += (peak != 0) & (points.far_m[i] < kReliefEnd_m) ? 1 : 0;
   }
+  if (search.count == 0) return;
+  select_rays(rays, points.far_m, points.across, peak_m, search);
   synthetic::meet({&map_, texel_m_, kHighest_m}, eye, search);
   for (int k = 0; k < search.count; ++k) {
     if (search.distance_m[k] < 0) continue;

@@ -113,8 +113,8 @@ void Ground::make_haze(const Sky& sky) {
 
 std::uint32_t& Ground::texel(int x, int y) {
   const int wrap = map_.size - 1;
-  return map_.texels[static_cast<std::size_t>(y & wrap) * static_cast<std::size_t>(map_.size) +
-                     static_cast<std::size_t>(x & wrap)];
+  return map_
+      .texels[static_cast<std::size_t>(index_of_row(y & wrap, wrap) + index_in_row(x & wrap))];
 }
 
 void Ground::paint(const Land& land) {
@@ -309,12 +309,11 @@ void Ground::make_levels() {
   for (std::size_t level = 1; level < static_cast<std::size_t>(map_.levels); ++level) {
     const std::uint32_t* fine = &map_.texels[static_cast<std::size_t>(map_.first[level - 1])];
     std::uint32_t* coarse = &map_.texels[static_cast<std::size_t>(map_.first[level])];
-    const auto half = static_cast<std::size_t>(map_.wrap[level]) + 1;
-    const std::size_t full = 2 * half;
-    tbb::parallel_for(std::size_t{0}, half, [&](std::size_t y) {
-      for (std::size_t x = 0; x < half; ++x) {
-        const std::uint32_t* p = fine + 2 * y * full + 2 * x;
-        coarse[y * half + x] = mean_of({p[0], p[1], p[full], p[full + 1]});
+    const std::int32_t wrap = map_.wrap[level];
+    tbb::parallel_for(0, wrap + 1, [&](std::int32_t y) {
+      for (std::int32_t x = 0; x <= wrap; ++x) {
+        const std::uint32_t* p = fine + index_of_row(2 * y, 2 * wrap + 1) + index_in_row(2 * x);
+        coarse[index_of_row(y, wrap) + index_in_row(x)] = mean_of({p[0], p[1], p[4], p[5]});
       }
     });
   }

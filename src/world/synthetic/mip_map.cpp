@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/synthetic/mip_map.h"
 
+#include <algorithm>
+
 namespace airtruth::synthetic {
 
 MipMap MipMap::with_size(int size) {
@@ -12,7 +14,7 @@ MipMap MipMap::with_size(int size) {
     map.first[level] = total;
     map.wrap[level] = side - 1;
     map.scale[level] = static_cast<float>(side) / static_cast<float>(size);
-    total += side * side;
+    total += std::max(side * side, 16);
   }
   map.texels.resize(static_cast<std::size_t>(total));
   return map;

@@ -11,7 +11,8 @@ namespace airtruth::synthetic {
 
 // A square tile that repeats, with its mip levels (Williams 1983) one after the other in memory. A
 // texel packs the square roots of red, green and blue, and the height, from the lowest byte to the
-// highest.
+// highest. Squares of 4 x 4 texels are stored together, so that neighbours in any direction are
+// mostly on the same line of the cache.
 struct MipMap {
   static constexpr int kMaxLevels = 16;
   std::vector<std::uint32_t> texels;
@@ -27,6 +28,12 @@ struct MipMap {
   static MipMap with_size(int size);
 };
 
+// Index of a texel of a level is the sum of these two and of the index of the level's first texel.
+inline std::int32_t index_of_row(std::int32_t y, std::int32_t wrap) {
+  return (y & ~3) * (wrap + 1) + (y & 3) * 4;
+}
+inline std::int32_t index_in_row(std::int32_t x) { return (x & ~3) * 4 + (x & 3); }
+
 // The four texels around a place and the weights of the right and of the lower ones, 0 to 16.
 struct Neighbours {
   std::int32_t upper_left, upper_right, lower_left, lower_right;
@@ -37,10 +44,10 @@ struct Neighbours {
 inline Neighbours neighbours(float x, float y, std::int32_t first, std::int32_t wrap) {
   const std::int32_t ix = floor_int(x);
   const std::int32_t iy = floor_int(y);
-  const std::int32_t upper = first + (iy & wrap) * (wrap + 1);
-  const std::int32_t lower = first + ((iy + 1) & wrap) * (wrap + 1);
-  const std::int32_t left = ix & wrap;
-  const std::int32_t right = (ix + 1) & wrap;
+  const std::int32_t upper = first + index_of_row(iy & wrap, wrap);
+  const std::int32_t lower = first + index_of_row((iy + 1) & wrap, wrap);
+  const std::int32_t left = index_in_row(ix & wrap);
+  const std::int32_t right = index_in_row((ix + 1) & wrap);
   const auto sixteenths = [](float part) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(part * 16));
   };

@@ -19,7 +19,6 @@ constexpr float kFarthest_m = 1e9F;
 // something at `inside_m` once it has met it.
 struct March {
   int count = 0;
-  alignas(64) Integers ray;
   alignas(64) Integers level;
   alignas(64) Integers first;
   alignas(64) Integers wrap;
@@ -68,7 +67,6 @@ void start(const HeightField& field, const Search& search, March& __restrict m) 
     m.level[i] = std::clamp(static_cast<int>(level), 0, top);
     m.step_m[i] = step;
     m.clear_m[i] = search.far_m[i] - search.peak_m[i] / search.down[i];
-    m.ray[i] = i;
     m.north[i] = search.north[i];
     m.east[i] = search.east[i];
     m.down[i] = search.down[i];
@@ -94,7 +92,7 @@ void step(const View& view, March& __restrict m) {
     const float y = (view.eye.east_m + inside * m.east[i]) * view.per_texel;
     const std::int32_t ix = floor_int(x * m.scale[i]) & m.wrap[i];
     const std::int32_t iy = floor_int(y * m.scale[i]) & m.wrap[i];
-    const std::uint32_t texel = texels[m.first[i] + iy * (m.wrap[i] + 1) + ix];
+    const std::uint32_t texel = texels[m.first[i] + index_of_row(iy, m.wrap[i]) + index_in_row(ix)];
     const float height_m = static_cast<float>(static_cast<std::int32_t>(texel >> 24)) * view.byte_m;
     const bool free = (m.far_m[i] - inside) * m.down[i] >= height_m;
     m.clear_m[i] = free ? inside : m.clear_m[i];
@@ -102,18 +100,20 @@ void step(const View& view, March& __restrict m) {
   }
 }
 
-void move(const March& from, int i, March& to, int j) {
-  to.ray[j] = from.ray[i];
-  to.first[j] = from.first[i];
-  to.wrap[j] = from.wrap[i];
-  to.scale[j] = from.scale[i];
-  to.north[j] = from.north[i];
-  to.east[j] = from.east[i];
-  to.down[j] = from.down[i];
-  to.far_m[j] = from.far_m[i];
-  to.peak_m[j] = from.peak_m[i];
-  to.clear_m[j] = from.clear_m[i];
-  to.inside_m[j] = from.inside_m[i];
+// Copies the chosen rays.
+AIRTRUTH_SYNTHETIC_VECTORS
+void select_rays(const March& from, const Integers& chosen, int count, March& __restrict to) {
+  select(from.first, chosen, count, to.first);
+  select(from.wrap, chosen, count, to.wrap);
+  select(from.scale, chosen, count, to.scale);
+  select(from.north, chosen, count, to.north);
+  select(from.east, chosen, count, to.east);
+  select(from.down, chosen, count, to.down);
+  select(from.far_m, chosen, count, to.far_m);
+  select(from.peak_m, chosen, count, to.peak_m);
+  select(from.clear_m, chosen, count, to.clear_m);
+  select(from.inside_m, chosen, count, to.inside_m);
+  to.count = count;
 }
 
 // Halves the interval of the rays that reach the ground before `end_m`.
@@ -153,21 +153,25 @@ void meet(const HeightField& field, const Eye& eye, Search& search) {
   March all;
   start(field, search, all);
   for (int i = 0; i < kMarch; ++i) step(view, all);
+  // The rays that met something.
   March met;
+  alignas(64) Integers chosen;
+  int count = 0;
   bool near = false;
   for (int i = 0; i < all.count; ++i) {
     search.distance_m[i] = -1;
-    if (all.inside_m[i] < 0) continue;
+    chosen[count] = i;
+    count += all.inside_m[i] >= 0 ? 1 : 0;
     near |= all.far_m[i] < kNear_m;
-    move(all, i, met, met.count++);
   }
+  select_rays(all, chosen, count, met);
   for (int i = 0; i < kFarBisections; ++i) bisect(view, kFarthest_m, met);
   for (int i = kFarBisections; near && i < kNearBisections; ++i) bisect(view, kNear_m, met);
   alignas(64) Floats factor;
   shade(view, met, factor);
   for (int i = 0; i < met.count; ++i) {
-    search.distance_m[met.ray[i]] = met.inside_m[i];
-    search.shade[met.ray[i]] = factor[i];
+    search.distance_m[chosen[i]] = met.inside_m[i];
+    search.shade[chosen[i]] = factor[i];
   }
 }
 

@@ -44,6 +44,15 @@ struct Search {
   alignas(64) Floats shade;
 };
 
+// Copies the numbers of the chosen places to the front.
+template <typename Number>
+[[gnu::always_inline]] inline void select(const Number* from,
+                                          const std::int32_t* chosen,
+                                          int count,
+                                          Number* __restrict to) {
+  for (int i = 0; i < count; ++i) to[i] = from[chosen[i]];
+}
+
 // Traces rays through the height field in a few equal steps, and bisects the step on which they
 // meet it (relief mapping; Policarpo, Oliveira and Comba 2005).
 void meet(const HeightField& field, const Eye& eye, Search& search);

@@ -5,84 +5,72 @@
 
 namespace airtruth::synthetic {
 
-RowPainter::RowPainter(const Scenery& scenery) : scenery_(scenery), directions_(scenery.width) {
-  sky_.reserve(static_cast<std::size_t>(scenery.width));
-  ground_.reserve(static_cast<std::size_t>(scenery.width));
+namespace {
+
+// The height above the horizon in pixels, plus one half: from 0 to 1 a pixel sees both sides.
+inline float above_horizon(float focal_px, float down) { return focal_px * -down + 0.5F; }
+
+AIRTRUTH_SYNTHETIC_VECTORS
+void find_ground(const float* down,
+                 float focal_px,
+                 std::size_t width,
+                 std::uint8_t* __restrict sees_ground) {
+  for (std::size_t x = 0; x < width; ++x)
+    sees_ground[x] = above_horizon(focal_px, down[x]) >= 1 ? 0 : 1;
 }
+
+}  // namespace
+
+RowPainter::RowPainter(const Scenery& scenery)
+    : scenery_(scenery),
+      directions_(scenery.width),
+      sees_(static_cast<std::size_t>(scenery.width)) {}
 
 void RowPainter::paint(int y, const Moment& moment, LightRow& row) {
   scenery_.view.row(y, moment.nodes, directions_, row.fall_off);
   sort_pixels(y);
-  paint_sky(row);
-  paint_ground(moment.eye, row);
+  for (std::size_t first = 0; first < sees_.size();) {
+    std::size_t end = first + 1;
+    while (end < sees_.size() && end - first < kBatch && sees_[end] == sees_[first]) ++end;
+    paint_run(first, end, moment.eye, row);
+    first = end;
+  }
   if (!moment.discs.empty()) Clutter::draw(moment.discs, y, scenery_.width, row);
   paint_own_aircraft(y, row);
 }
 
-// The height above the horizon in pixels, plus one half: from 0 to 1 a pixel sees both sides.
-static float above_horizon(float focal_px, float down) { return focal_px * -down + 0.5F; }
-
-void RowPainter::add_pixel(int x) {
-  const bool sky =
-      above_horizon(scenery_.focal_px, directions_.down[static_cast<std::size_t>(x)]) >= 1;
-  (sky ? sky_ : ground_).push_back(x);
-}
-
-// Leaves out pixels that the own aircraft hides.
 void RowPainter::sort_pixels(int y) {
-  sky_.clear();
-  ground_.clear();
-  const auto row = static_cast<std::size_t>(y);
-  const int width = scenery_.width;
-  const int first = std::min(scenery_.own.first[row], width);
-  const int last = std::max(scenery_.own.last[row], first);
-  const LinearRgb* layer = scenery_.own.layer.data() + row * static_cast<std::size_t>(width);
-  for (int x = 0; x < first; ++x) add_pixel(x);
-  for (int x = first; x < last; ++x)
-    if (layer[x][3] < 1) add_pixel(x);
-  for (int x = last; x < width; ++x) add_pixel(x);
+  find_ground(directions_.down.data(), scenery_.focal_px, sees_.size(), sees_.data());
+  const auto line = static_cast<std::size_t>(y);
+  const LinearRgb* layer = scenery_.own.layer.data() + line * sees_.size();
+  for (int x = scenery_.own.first[line]; x < scenery_.own.last[line]; ++x)
+    if (layer[x][3] >= 1) sees_[static_cast<std::size_t>(x)] = kAircraft;
 }
 
-void RowPainter::gather(const std::vector<int>& pixels, std::size_t start) {
-  rays_.count = static_cast<int>(std::min(pixels.size() - start, std::size_t{kBatch}));
-  for (int i = 0; i < rays_.count; ++i) {
-    const auto x = static_cast<std::size_t>(pixels[start + static_cast<std::size_t>(i)]);
-    rays_.north[i] = directions_.north[x];
-    rays_.east[i] = directions_.east[x];
-    rays_.down[i] = directions_.down[x];
-  }
-}
-
-void RowPainter::scatter(const std::vector<int>& pixels, std::size_t start, LightRow& row) const {
-  for (int i = 0; i < rays_.count; ++i) {
-    const auto x = static_cast<std::size_t>(pixels[start + static_cast<std::size_t>(i)]);
-    row.red[x] = light_.red[i];
-    row.green[x] = light_.green[i];
-    row.blue[x] = light_.blue[i];
-  }
-}
-
-void RowPainter::paint_sky(LightRow& row) {
-  for (std::size_t start = 0; start < sky_.size(); start += kBatch) {
-    gather(sky_, start);
+void RowPainter::paint_run(std::size_t first, std::size_t end, const Eye& eye, LightRow& row) {
+  const std::uint8_t sees = sees_[first];
+  if (sees == kAircraft) return;
+  const std::size_t count = end - first;
+  rays_.count = static_cast<int>(count);
+  std::copy_n(&directions_.north[first], count, rays_.north);
+  std::copy_n(&directions_.east[first], count, rays_.east);
+  std::copy_n(&directions_.down[first], count, rays_.down);
+  if (sees == kSky) {
     scenery_.panorama.seen(rays_, light_);
-    scatter(sky_, start, row);
-  }
-}
-
-void RowPainter::paint_ground(const Eye& eye, LightRow& row) {
-  for (std::size_t start = 0; start < ground_.size(); start += kBatch) {
-    gather(ground_, start);
+  } else {
     for (int i = 0; i < rays_.count; ++i) rays_.down[i] = std::max(rays_.down[i], 1e-5F);
     scenery_.ground.seen(eye, rays_, light_);
-    soften_horizon(ground_, start);
-    scatter(ground_, start, row);
+    soften_horizon(first);
   }
+  std::copy_n(light_.red, count, &row.red[first]);
+  std::copy_n(light_.green, count, &row.green[first]);
+  std::copy_n(light_.blue, count, &row.blue[first]);
 }
 
-void RowPainter::soften_horizon(const std::vector<int>& pixels, std::size_t start) {
+// Blends ground and sky in the pixels that the horizon crosses.
+void RowPainter::soften_horizon(std::size_t first) {
   for (int i = 0; i < rays_.count; ++i) {
-    const auto x = static_cast<std::size_t>(pixels[start + static_cast<std::size_t>(i)]);
+    const std::size_t x = first + static_cast<std::size_t>(i);
     const float down = directions_.down[x];
     const float sky_share = above_horizon(scenery_.focal_px, down);
     if (sky_share <= 0) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "world/synthetic/clutter.h"
@@ -37,20 +38,17 @@ class RowPainter {
   void paint(int y, const Moment& moment, LightRow& row);
 
  private:
+  // What the pixels of a run see: only sky and hills, the ground (or the horizon), or nothing but
+  // the own aircraft.
+  enum Sees : std::uint8_t { kSky, kGround, kAircraft };
   void sort_pixels(int y);
-  void add_pixel(int x);
-  void paint_sky(LightRow& row);
-  void paint_ground(const Eye& eye, LightRow& row);
+  void paint_run(std::size_t first, std::size_t end, const Eye& eye, LightRow& row);
+  void soften_horizon(std::size_t first);
   void paint_own_aircraft(int y, LightRow& row) const;
-  void gather(const std::vector<int>& pixels, std::size_t start);
-  void scatter(const std::vector<int>& pixels, std::size_t start, LightRow& row) const;
-  void soften_horizon(const std::vector<int>& pixels, std::size_t start);
 
   Scenery scenery_;
   RayRow directions_;
-  // Pixels that see the sky or hills alone, and pixels that see the ground.
-  std::vector<int> sky_;
-  std::vector<int> ground_;
+  std::vector<std::uint8_t> sees_;
   Rays rays_;
   Light light_;
 };
