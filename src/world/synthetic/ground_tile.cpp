@@ -22,23 +22,36 @@ std::uint32_t pack(const LinearRgb& albedo, float height_m) {
          byte(std::sqrt(albedo[2])) << 16 | byte(height_m / Ground::kHighest_m) << 24;
 }
 
+// The texels of bare ground.
+AIRTRUTH_SYNTHETIC_VECTORS
+void pack_ground(const Places& places, Integers& __restrict packed) {
+  const auto byte = [](float albedo) {
+    return static_cast<std::int32_t>(clamp01(std::sqrt(albedo)) * 255 + 0.5F);
+  };
+  const int count = places.count;
+  for (int k = 0; k < count; ++k)
+    packed[k] = byte(places.albedo.red[k]) | byte(places.albedo.green[k]) << 8 |
+                byte(places.albedo.blue[k]) << 16;
+}
+
 struct Tree {
   float north_m, east_m, radius_m, height_m;
   LinearRgb colour;
 };
 
 // The tree at a place, if one grows there; `id` is the place's random number.
-std::optional<Tree> tree_at(const Place& place, float north, float east, std::uint32_t id) {
-  if (place.track_m < 4.5F || place.river_m < 11) return std::nullopt;
-  float chance = 0.86F * place.wood + (place.field ? 0.0035F : 0.012F);
-  if (place.river_m < 40)
-    chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, place.river_m));
-  if (place.hedge && place.track_m < 11) chance = std::max(chance, 0.62F);
+std::optional<Tree> tree_at(const Places& places, int k, std::uint32_t id) {
+  const float track_m = places.track_m[k];
+  const float river_m = places.river_m[k];
+  if (track_m < 4.5F || river_m < 11) return std::nullopt;
+  float chance = 0.86F * places.wood[k] + (places.field[k] != 0 ? 0.0035F : 0.012F);
+  if (river_m < 40) chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, river_m));
+  if (places.hedge[k] != 0 && track_m < 11) chance = std::max(chance, 0.62F);
   if (unit(mix(id + 1)) >= chance) return std::nullopt;
   const float size = unit(mix(id + 2));
   const LinearRgb green =
       lerp(0.75F, 1.35F, unit(mix(id + 3))) * linear_rgb(0.062F, 0.082F, 0.030F);
-  return Tree{north, east, 2.0F + 2.6F * size, 4.0F + 6.5F * size, green};
+  return Tree{places.north_m[k], places.east_m[k], 2.0F + 2.6F * size, 4.0F + 6.5F * size, green};
 }
 
 // The trees of all planting cells, row by row.
@@ -46,12 +59,19 @@ std::vector<std::vector<Tree>> trees_on(const Land& land, std::uint32_t seed) {
   const int cells = static_cast<int>(kLand_m / kPlanting_m);
   std::vector<std::vector<Tree>> rows(static_cast<std::size_t>(cells));
   tbb::parallel_for(0, cells, [&](int j) {
-    for (int i = 0; i < cells; ++i) {
-      const std::uint32_t id = hash(i, j, seed);
-      const float north = (static_cast<float>(i) + unit(id)) * kPlanting_m;
-      const float east = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
-      if (const auto tree = tree_at(land.at(north, east), north, east, id))
-        rows[static_cast<std::size_t>(j)].push_back(*tree);
+    Places places;
+    for (int first = 0; first < cells; first += kBatch) {
+      places.count = std::min(kBatch, cells - first);
+      for (int k = 0; k < places.count; ++k) {
+        const int i = first + k;
+        const std::uint32_t id = hash(i, j, seed);
+        places.north_m[k] = (static_cast<float>(i) + unit(id)) * kPlanting_m;
+        places.east_m[k] = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
+      }
+      land.cover(places);
+      for (int k = 0; k < places.count; ++k)
+        if (const auto tree = tree_at(places, k, hash(first + k, j, seed)))
+          rows[static_cast<std::size_t>(j)].push_back(*tree);
     }
   });
   return rows;
@@ -120,10 +140,18 @@ std::uint32_t& Ground::texel(int x, int y) {
 void Ground::paint(const Land& land) {
   const int size = map_.size;
   tbb::parallel_for(0, size, [&](int y) {
-    for (int x = 0; x < size; ++x) {
-      const Place place = land.at((static_cast<float>(x) + 0.5F) * texel_m_,
-                                  (static_cast<float>(y) + 0.5F) * texel_m_);
-      texel(x, y) = pack(place.albedo, 0);
+    Places places;
+    alignas(64) Integers packed;
+    for (int first = 0; first < size; first += kBatch) {
+      places.count = std::min(kBatch, size - first);
+      for (int k = 0; k < places.count; ++k) {
+        places.north_m[k] = (static_cast<float>(first + k) + 0.5F) * texel_m_;
+        places.east_m[k] = (static_cast<float>(y) + 0.5F) * texel_m_;
+      }
+      land.cover(places);
+      pack_ground(places, packed);
+      for (int k = 0; k < places.count; ++k)
+        texel(first + k, y) = static_cast<std::uint32_t>(packed[k]);
     }
   });
 }
