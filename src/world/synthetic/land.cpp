@@ -31,6 +31,53 @@ inline void blend(Light& ground, int i, float red, float green, float blue, floa
   ground.blue[i] += (blue - ground.blue[i]) * share;
 }
 
+// The search for the nearest centre of a block and for the second nearest; in blocks.
+struct Nearest {
+  alignas(64) Floats x;
+  alignas(64) Floats y;
+  // From the nearest centre.
+  alignas(64) Floats dx;
+  alignas(64) Floats dy;
+  alignas(64) Floats square;
+  alignas(64) Floats second_square;
+  alignas(64) Integers centre;
+  alignas(64) Integers second;
+};
+
+struct Cell {
+  int x, y;
+};
+
+// Compares the distances with those to the centre of a neighbouring cell.
+AIRTRUTH_SYNTHETIC_VECTORS
+void compare(const float* __restrict north,
+             const float* __restrict east,
+             int blocks,
+             const Cell& cell,
+             int count,
+             Nearest& __restrict nearest) {
+  const Cell step = cell;
+  for (int k = 0; k < count; ++k) {
+    const int cx = floor_int(nearest.x[k]);
+    const int cy = floor_int(nearest.y[k]);
+    const int centre = ((cy + step.y) & (blocks - 1)) * blocks + ((cx + step.x) & (blocks - 1));
+    const float fx = nearest.x[k] - static_cast<float>(cx);
+    const float fy = nearest.y[k] - static_cast<float>(cy);
+    const float dx = fx - static_cast<float>(step.x) - north[centre];
+    const float dy = fy - static_cast<float>(step.y) - east[centre];
+    const float square = dx * dx + dy * dy;
+    const bool closer = square < nearest.square[k];
+    const bool between = square < nearest.second_square[k];
+    nearest.second_square[k] =
+        closer ? nearest.square[k] : (between ? square : nearest.second_square[k]);
+    nearest.second[k] = closer ? nearest.centre[k] : (between ? centre : nearest.second[k]);
+    nearest.square[k] = closer ? square : nearest.square[k];
+    nearest.centre[k] = closer ? centre : nearest.centre[k];
+    nearest.dx[k] = closer ? dx : nearest.dx[k];
+    nearest.dy[k] = closer ? dy : nearest.dy[k];
+  }
+}
+
 // Roads and tracks along the borders of the blocks, with their verges.
 AIRTRUTH_SYNTHETIC_VECTORS
 void add_tracks(const Integers& borders, Places& __restrict places) {
@@ -131,42 +178,27 @@ void Land::read_slow_map(const Places& places, Work& work) const {
 }
 
 // Blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent borders.
-AIRTRUTH_SYNTHETIC_VECTORS
-void Land::find_blocks(Places& __restrict places, Work& __restrict work) const {
+void Land::find_blocks(Places& places, Work& work) const {
   constexpr float kBlock_m = kLand_m / kBlocks;
-  const float* centre_north = centres_.north.data();
-  const float* centre_east = centres_.east.data();
-  const int count = places.count;
-  for (int k = 0; k < count; ++k) {
-    const float x = places.north_m[k] / kBlock_m + work.bend_north[k];
-    const float y = places.east_m[k] / kBlock_m + work.bend_east[k];
-    const int cx = floor_int(x);
-    const int cy = floor_int(y);
-    const float fx = x - static_cast<float>(cx);
-    const float fy = y - static_cast<float>(cy);
-    float nearest = 1e9F, second = 1e9F, best_dx = 0, best_dy = 0;
-    std::int32_t best = 0, other = 0;
-    for (int step = 0; step < 9; ++step) {
-      const int i = step % 3 - 1;
-      const int j = step / 3 - 1;
-      const int centre = ((cy + j) & (kBlocks - 1)) * kBlocks + ((cx + i) & (kBlocks - 1));
-      const float dx = fx - static_cast<float>(i) - centre_north[centre];
-      const float dy = fy - static_cast<float>(j) - centre_east[centre];
-      const float d = dx * dx + dy * dy;
-      const bool closer = d < nearest;
-      const bool between = d < second;
-      second = closer ? nearest : (between ? d : second);
-      other = closer ? best : (between ? centre : other);
-      nearest = closer ? d : nearest;
-      best = closer ? centre : best;
-      best_dx = closer ? dx : best_dx;
-      best_dy = closer ? dy : best_dy;
-    }
-    work.block[k] = best;
-    work.neighbour[k] = other;
-    work.north_m[k] = best_dx * kBlock_m;
-    work.east_m[k] = best_dy * kBlock_m;
-    places.track_m[k] = 0.5F * (std::sqrt(second) - std::sqrt(nearest)) * kBlock_m;
+  Nearest nearest;
+  for (int k = 0; k < places.count; ++k) {
+    nearest.x[k] = places.north_m[k] / kBlock_m + work.bend_north[k];
+    nearest.y[k] = places.east_m[k] / kBlock_m + work.bend_east[k];
+    nearest.square[k] = 1e9F;
+    nearest.second_square[k] = 1e9F;
+    nearest.centre[k] = 0;
+    nearest.second[k] = 0;
+  }
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i)
+      compare(centres_.north.data(), centres_.east.data(), kBlocks, {i, j}, places.count, nearest);
+  for (int k = 0; k < places.count; ++k) {
+    work.block[k] = nearest.centre[k];
+    work.neighbour[k] = nearest.second[k];
+    work.north_m[k] = nearest.dx[k] * kBlock_m;
+    work.east_m[k] = nearest.dy[k] * kBlock_m;
+    places.track_m[k] =
+        0.5F * (std::sqrt(nearest.second_square[k]) - std::sqrt(nearest.square[k])) * kBlock_m;
   }
 }
 

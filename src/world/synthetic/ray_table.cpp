@@ -55,6 +55,11 @@ std::vector<RayNode> RayTable::directions_in_world(const Quaternion& world_from_
   return nodes;
 }
 
+// Interpolates the pixels between two nodes.
+void RayTable::fill(float left, float step, float* pixels) {
+  for (int x = 0; x < kPitch; ++x) pixels[x] = left + step * (static_cast<float>(x) + 0.5F);
+}
+
 void RayTable::row(int y,
                    const std::vector<RayNode>& nodes,
                    RayRow& directions,
@@ -67,13 +72,10 @@ void RayTable::row(int y,
     const RayNode right = upper[column + 1] + (lower[column + 1] - upper[column + 1]) * below;
     const RayNode step = (right - left) / kPitch;
     const std::size_t first = static_cast<std::size_t>(column) * kPitch;
-    for (std::size_t x = 0; x < kPitch; ++x) {
-      const float along = static_cast<float>(x) + 0.5F;
-      directions.north[first + x] = left[0] + step[0] * along;
-      directions.east[first + x] = left[1] + step[1] * along;
-      directions.down[first + x] = left[2] + step[2] * along;
-      fall_off[first + x] = left[3] + step[3] * along;
-    }
+    fill(left[0], step[0], &directions.north[first]);
+    fill(left[1], step[1], &directions.east[first]);
+    fill(left[2], step[2], &directions.down[first]);
+    fill(left[3], step[3], &fall_off[first]);
     left = right;
   }
 }

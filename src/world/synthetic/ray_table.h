@@ -33,6 +33,8 @@ class RayTable {
 
  private:
   static constexpr int kPitch = 8;
+  static void fill(float left, float step, float* pixels);
+
   int columns_;
   int rows_;
   std::vector<RayNode> rays_in_body_;
