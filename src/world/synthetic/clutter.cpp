@@ -40,7 +40,7 @@ std::vector<Clutter::Disc> Clutter::at(double time_s) const {
   return discs;
 }
 
-void Clutter::draw(const std::vector<Disc>& discs, int y, int width, LinearRgb* row) {
+void Clutter::draw(const std::vector<Disc>& discs, int y, int width, LightRow& row) {
   for (const Disc& disc : discs) {
     const float dy = static_cast<float>(y) + 0.5F - disc.y;
     if (std::abs(dy) >= disc.radius) continue;
@@ -53,10 +53,12 @@ void Clutter::draw(const std::vector<Disc>& discs, int y, int width, LinearRgb* 
       if (edge <= 0) continue;
       const float scale = 4.5F / disc.radius;
       const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
-      LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
-      // The lens's fall-off belongs to the pixel and not to the disc.
-      tone[3] = row[x][3];
-      row[x] += (tone - row[x]) * smoothstep(0.0F, 0.25F, edge);
+      const LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
+      const float covered = smoothstep(0.0F, 0.25F, edge);
+      const auto i = static_cast<std::size_t>(x);
+      row.red[i] += (tone[0] - row.red[i]) * covered;
+      row.green[i] += (tone[1] - row.green[i]) * covered;
+      row.blue[i] += (tone[2] - row.blue[i]) * covered;
     }
   }
 }

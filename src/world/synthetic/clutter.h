@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "world/synthetic/light_row.h"
 #include "world/synthetic/noise.h"
 
 namespace airtruth::synthetic {
@@ -22,7 +23,7 @@ class Clutter {
   };
   std::vector<Disc> at(double time_s) const;
   // Draws the discs over a row of light.
-  static void draw(const std::vector<Disc>& discs, int y, int width, LinearRgb* row);
+  static void draw(const std::vector<Disc>& discs, int y, int width, LightRow& row);
 
  private:
   int width_;

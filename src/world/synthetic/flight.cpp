@@ -9,12 +9,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
-#include "world/synthetic/clutter.h"
 #include "world/synthetic/flight_path.h"
-#include "world/synthetic/ground.h"
-#include "world/synthetic/own_aircraft.h"
-#include "world/synthetic/panorama.h"
-#include "world/synthetic/ray_table.h"
+#include "world/synthetic/row_painter.h"
 #include "world/synthetic/sensor.h"
 
 namespace airtruth::synthetic {
@@ -99,12 +95,7 @@ struct Flight::Impl {
         ground(make_world()) {}
 
   Ground make_world();
-  LinearRgb light_at(const RayNode& direction, const trajectory::State& state) const;
-  void draw_row(int y,
-                const std::vector<RayNode>& nodes,
-                const trajectory::State& state,
-                const std::vector<Clutter::Disc>& discs,
-                LinearRgb* row) const;
+  Moment moment(int index) const;
   void check_index(int index) const {
     check(index >= 0 && index < options.frame_count, "a frame outside the flight was asked for");
   }
@@ -143,42 +134,12 @@ Ground Flight::Impl::make_world() {
           stream(options, "ground")};
 }
 
-LinearRgb Flight::Impl::light_at(const RayNode& d, const trajectory::State& state) const {
-  const float up = -d[2];
-  const float blend = static_cast<float>(lens.focal_px()) * up + 0.5F;
-  if (blend >= 1) return panorama.at(d[0], d[1], up);
+Moment Flight::Impl::moment(int index) const {
+  const trajectory::State state = path.shaken(index);
   const Vector3 eye = start_in_land_m + state.position_in_world;
-  const LinearRgb below = ground.seen(static_cast<float>(eye.x()),
-                                      static_cast<float>(eye.y()),
-                                      static_cast<float>(-eye.z()),
-                                      d[0],
-                                      d[1],
-                                      std::max(-up, 1e-5F));
-  if (blend <= 0) return below;
-  return below + (panorama.at(d[0], d[1], up) - below) * blend;
-}
-
-void Flight::Impl::draw_row(int y,
-                            const std::vector<RayNode>& nodes,
-                            const trajectory::State& state,
-                            const std::vector<Clutter::Disc>& discs,
-                            LinearRgb* row) const {
-  const auto r = static_cast<std::size_t>(y);
-  const std::size_t base = r * static_cast<std::size_t>(options.width);
-  view.for_each_in_row(y, nodes, [&](int x, const RayNode& d) {
-    const bool hidden = x >= own.first[r] && x < own.last[r] &&
-                        own.layer[base + static_cast<std::size_t>(x)][3] >= 1;
-    if (!hidden) row[x] = light_at(d, state);
-    row[x][3] = d[3];
-  });
-  if (!discs.empty()) Clutter::draw(discs, y, options.width, row);
-  for (int x = own.first[r]; x < own.last[r]; ++x) {
-    const LinearRgb& over = own.layer[base + static_cast<std::size_t>(x)];
-    const float shading = row[x][3];
-    row[x] = row[x] * (1 - over[3]) + over;
-    row[x][3] = shading;
-  }
-  for (int x = 0; x < options.width; ++x) row[x] *= row[x][3];
+  return {view.directions_in_world(state.world_from_body, 1),
+          {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
+          clutter.at(index / options.frame_rate_hz)};
 }
 
 Flight::Flight(const FlightOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -190,18 +151,22 @@ image::Picture Flight::frame(int index) const {
   const int width = impl_->options.width;
   const int height = impl_->options.height;
   image::Picture picture = image::make_picture(width, height, image::Colour{});
-  const trajectory::State state = impl_->path.shaken(index);
-  const std::vector<RayNode> nodes = impl_->view.directions_in_world(state.world_from_body, 1);
-  const auto discs = impl_->clutter.at(index / impl_->options.frame_rate_hz);
+  const Moment moment = impl_->moment(index);
+  const Scenery scenery{impl_->view,
+                        impl_->panorama,
+                        impl_->ground,
+                        impl_->own,
+                        width,
+                        static_cast<float>(impl_->lens.focal_px())};
   Sensor::Exposure exposure = impl_->sensor.start();
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   tbb::parallel_for(0, tasks, [&](int task) {
-    std::vector<LinearRgb> rows(2 * static_cast<std::size_t>(width), LinearRgb::Zero());
-    LinearRgb* upper = rows.data();
-    LinearRgb* lower = upper + width;
+    RowPainter painter(scenery);
+    LightRow upper(width);
+    LightRow lower(width);
     for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
-      impl_->draw_row(y, nodes, state, discs, upper);
-      if (y + 1 < height) impl_->draw_row(y + 1, nodes, state, discs, lower);
+      painter.paint(y, moment, upper);
+      if (y + 1 < height) painter.paint(y + 1, moment, lower);
       impl_->sensor.expose(index, y, upper, y + 1 < height ? lower : upper, exposure, picture);
     }
   });

@@ -2,215 +2,224 @@
 #include "world/synthetic/ground.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace airtruth::synthetic {
 namespace {
 
-// Number of steps through the height field.
-constexpr int kMarch = 7;
 // Beyond this distance the ground is flat.
 constexpr float kReliefEnd_m = 5000;
 // Distance at which the hills begin.
 constexpr float kFarthest_m = 26000;
 constexpr float kPeakCell_m = 10;
 constexpr float kDetail_m = 0.4F;
+// Distance up to which the ground has detail that is finer than its texels.
+constexpr float kDetailEnd_m = 1200;
+// The optical depth at which nothing of the light is left in single precision.
+constexpr float kOpaque = 80;
 
-// Bilinear interpolation of four bytes at once, each in 16 bits of a word.
-inline std::uint64_t spread(std::uint32_t t) {
-  return (t & 0x00FF00FFU) | (static_cast<std::uint64_t>((t >> 8) & 0x00FF00FFU) << 32);
-}
-
-// Red, blue, green and height, each as 0..255 times 256.
-[[gnu::always_inline]] inline std::uint64_t bilinear(const std::uint32_t* texels,
-                                                     int size,
-                                                     float x,
-                                                     float y) {
+// Bilinear interpolation in a square table that repeats.
+[[gnu::always_inline]] inline float interpolated(const float* table, int cells, float x, float y) {
   const int ix = floor_int(x);
   const int iy = floor_int(y);
-  const auto fx = static_cast<std::uint32_t>((x - static_cast<float>(ix)) * 16);
-  const auto fy = static_cast<std::uint32_t>((y - static_cast<float>(iy)) * 16);
-  const int wrap = size - 1;
-  const std::uint32_t* upper = texels + static_cast<std::ptrdiff_t>(iy & wrap) * size;
-  const std::uint32_t* lower = texels + static_cast<std::ptrdiff_t>((iy + 1) & wrap) * size;
+  const float fx = x - static_cast<float>(ix);
+  const float fy = y - static_cast<float>(iy);
+  const int wrap = cells - 1;
+  const int upper = (iy & wrap) * cells;
+  const int lower = ((iy + 1) & wrap) * cells;
   const int left = ix & wrap;
   const int right = (ix + 1) & wrap;
-  return spread(upper[left]) * ((16 - fx) * (16 - fy)) + spread(upper[right]) * (fx * (16 - fy)) +
-         spread(lower[left]) * ((16 - fx) * fy) + spread(lower[right]) * (fx * fy);
+  return lerp(lerp(table[upper + left], table[upper + right], fx),
+              lerp(table[lower + left], table[lower + right], fx),
+              fy);
 }
 
-// Base-2 logarithm with an error below 0.09, which suffices to choose a mip level.
-float fast_log2(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return static_cast<float>(bits) * 0x1p-23F - 126.94F;
+// Square roots of red, green and blue of one mip level, 0 to 65280.
+struct Roots {
+  float red, green, blue;
+};
+
+[[gnu::always_inline]] inline Roots roots(
+    const std::uint32_t* texels, float x, float y, std::int32_t first, std::int32_t wrap) {
+  const Neighbours n = neighbours(x, y, first, wrap);
+  const std::uint32_t red_blue =
+      weighted(texels, n, [](std::uint32_t texel) { return texel & 0x00FF00FFU; });
+  const std::uint32_t green =
+      weighted(texels, n, [](std::uint32_t texel) { return (texel >> 8) & 0xFFU; });
+  const auto real = [](std::uint32_t sum) {
+    return static_cast<float>(static_cast<std::int32_t>(sum));
+  };
+  return {real(red_blue & 0xFFFFU), real(green), real(red_blue >> 16)};
 }
 
-LinearRgb unpack(std::uint64_t word) {
-  return {static_cast<float>(word & 0xFFFF),
-          static_cast<float>((word >> 32) & 0xFFFF),
-          static_cast<float>((word >> 16) & 0xFFFF),
-          static_cast<float>(word >> 48)};
+// Light of the ground through the air, of one colour.
+struct Colour {
+  const float* haze;
+  float sunlight;
+  float skylight;
+  [[gnu::always_inline]] float seen(float root, float grain, float lit, float shade) const {
+    return root * root * grain * (sunlight * lit + skylight) * shade;
+  }
+  [[gnu::always_inline]] float veiled(float light, int sector, float part, float fog) const {
+    const float veil = haze[sector] + (haze[sector + 1] - haze[sector]) * part;
+    return light + (veil - light) * fog;
+  }
+};
+
+// Copies the rays that the search names.
+AIRTRUTH_SYNTHETIC_VECTORS
+void select_rays(const Rays& rays,
+                 const Floats& far_m,
+                 const Floats& across,
+                 const Floats& peak_m,
+                 Search& __restrict search) {
+  const int count = search.count;
+  select(rays.north, search.ray, count, search.north);
+  select(rays.east, search.ray, count, search.east);
+  select(rays.down, search.ray, count, search.down);
+  select(far_m, search.ray, count, search.far_m);
+  select(across, search.ray, count, search.across);
+  select(peak_m, search.ray, count, search.peak_m);
 }
 
 }  // namespace
 
-LinearRgb Ground::haze(float north, float east) const {
-  const float cosine = std::clamp(
-      north * static_cast<float>(sun_.x()) + east * static_cast<float>(sun_.y()), -1.0F, 1.0F);
-  const float at = (cosine * 0.5F + 0.5F) * (kHazeSectors - 1.001F);
-  const auto i = static_cast<std::size_t>(at);
-  return haze_[i] + (haze_[i + 1] - haze_[i]) * (at - static_cast<float>(i));
-}
-
-float Ground::height_m(float x, float y, int level) const {
-  const Level& mip = levels_[static_cast<std::size_t>(level)];
-  const float scale = 1.0F / static_cast<float>(1 << level);
-  const int wrap = mip.size - 1;
-  const int ix = floor_int(x * scale) & wrap;
-  const int iy = floor_int(y * scale) & wrap;
-  return static_cast<float>(
-             mip.texels[static_cast<std::size_t>(iy) * static_cast<std::size_t>(mip.size) +
-                        static_cast<std::size_t>(ix)] >>
-             24) *
-         (kHighest_m / 255);
-}
-
-float Ground::smooth_height_m(float x, float y, int level) const {
-  const Level& mip = levels_[static_cast<std::size_t>(level)];
-  const float scale = 1.0F / static_cast<float>(1 << level);
-  return static_cast<float>(
-             bilinear(mip.texels.data(), mip.size, x * scale - 0.5F, y * scale - 0.5F) >> 48) *
-         (kHighest_m / 65280);
-}
-
-// Trilinear interpolation at texel positions of level 0, measured from texel centres.
-LinearRgb Ground::colour(float x, float y, float level) const {
-  const float top = static_cast<float>(levels_.size() - 2);
-  level = std::clamp(level, 0.0F, top);
-  const int whole = std::min(static_cast<int>(level), static_cast<int>(top) - 1);
-  const float part = level - static_cast<float>(whole);
-  const auto at = [&](int i) {
-    const float scale = 1.0F / static_cast<float>(1 << i);
-    const Level& mip = levels_[static_cast<std::size_t>(i)];
-    return unpack(bilinear(mip.texels.data(), mip.size, x * scale - 0.5F, y * scale - 0.5F));
-  };
-  const LinearRgb fine = at(whole);
-  return (fine + (at(whole + 1) - fine) * part) * (1.0F / (256 * 255));
-}
-
-float Ground::sunlit(float north_m, float east_m) const {
-  const float scale = kShadowCells / static_cast<float>(Clouds::period_m());
-  const float x = north_m * scale;
-  const float y = east_m * scale;
-  const int ix = floor_int(x);
-  const int iy = floor_int(y);
-  const auto at = [&](int i, int j) {
-    return shadow_[static_cast<std::size_t>(((iy + j) & (kShadowCells - 1)) * kShadowCells +
-                                            ((ix + i) & (kShadowCells - 1)))];
-  };
-  const float fx = x - static_cast<float>(ix);
-  return lerp(
-      lerp(at(0, 0), at(1, 0), fx), lerp(at(0, 1), at(1, 1), fx), y - static_cast<float>(iy));
-}
-
-float Ground::detail(float north_m, float east_m) const {
-  const float x = north_m / kDetail_m;
-  const float y = east_m / kDetail_m;
-  const int ix = floor_int(x);
-  const int iy = floor_int(y);
-  const auto at = [&](int i, int j) {
-    return detail_[static_cast<std::size_t>(((iy + j) & (kDetailCells - 1)) * kDetailCells +
-                                            ((ix + i) & (kDetailCells - 1)))];
-  };
-  const float fx = x - static_cast<float>(ix);
-  return lerp(
-      lerp(at(0, 0), at(1, 0), fx), lerp(at(0, 1), at(1, 1), fx), y - static_cast<float>(iy));
-}
-
-float Ground::peak_m(float north_m, float east_m, float span_m) const {
-  std::size_t level = 0;
-  float cell_m = kPeakCell_m;
-  while (2 * cell_m < span_m && level + 1 < peaks_.size()) {
-    cell_m *= 2;
-    ++level;
-  }
-  const int cells = static_cast<int>(kLand_m / cell_m);
-  const int x = floor_int(north_m / cell_m) & (cells - 1);
-  const int y = floor_int(east_m / cell_m) & (cells - 1);
-  return static_cast<float>(peaks_[level][static_cast<std::size_t>(y * cells + x)]) *
-         (kHighest_m / 255);
-}
-
-std::optional<Ground::Meeting> Ground::meet(float eye_north_m,
-                                            float eye_east_m,
-                                            float north,
-                                            float east,
-                                            float down,
-                                            float far_m,
-                                            float across) const {
-  const float span_m = kHighest_m / down;
-  const float middle_m = far_m - 0.5F * span_m;
-  const float peak = peak_m(eye_north_m + middle_m * north, eye_east_m + middle_m * east, span_m);
-  if (peak <= 0) return std::nullopt;
-  const float inverse = 1 / texel_m_;
-  const float step = peak / down / kMarch;
-  const int level = std::clamp(static_cast<int>(std::max(across, fast_log2(step * 0.4F * inverse))),
-                               0,
-                               static_cast<int>(levels_.size()) - 2);
-  const auto x = [&](float s) { return (eye_north_m + s * north) * inverse; };
-  const auto y = [&](float s) { return (eye_east_m + s * east) * inverse; };
-  const int refinements = far_m < 600 ? 4 : 2;
-  float clear = far_m - peak / down;
-  for (int i = 0; i < kMarch; ++i) {
-    float inside = clear + step;
-    if ((far_m - inside) * down >= height_m(x(inside), y(inside), level)) {
-      clear = inside;
-      continue;
+// The distance to the level ground, and the cell of greatest heights around the ray's last part.
+AIRTRUTH_SYNTHETIC_VECTORS
+void Ground::reach(const Eye& eye, const Rays& rays, Points& __restrict points) const {
+  const int count = rays.count;
+  const std::int32_t* first = first_peak_.data();
+  const float per_texel = 1 / texel_m_;
+  const float pixel_rad = pixel_rad_;
+  for (int i = 0; i < count; ++i) {
+    const float far_m = eye.height_m / std::max(rays.down[i], 1e-5F);
+    const float reach_m = std::min(far_m, kFarthest_m);
+    points.far_m[i] = far_m;
+    points.reach_m[i] = reach_m;
+    points.distance_m[i] = reach_m;
+    points.shade[i] = 1;
+    points.across[i] = fast_log2(std::max(reach_m * pixel_rad * per_texel, 0.01F));
+    const float span_m = kHighest_m / rays.down[i];
+    const float middle_m = far_m - 0.5F * span_m;
+    std::int32_t level = 0;
+    float cell_m = kPeakCell_m;
+    for (int k = 1; k < kPeakLevels; ++k) {
+      const bool wider = 2 * cell_m < span_m;
+      cell_m = wider ? 2 * cell_m : cell_m;
+      level += wider ? 1 : 0;
     }
-    for (int k = 0; k < refinements; ++k) {
-      const float s = 0.5F * (clear + inside);
-      ((far_m - s) * down < smooth_height_m(x(s), y(s), level) ? inside : clear) = s;
-    }
-    const float ray_m = (far_m - inside) * down;
-    const float behind = inside + 0.8F * texel_m_;
-    const float top_m = smooth_height_m(x(behind), y(behind), level);
-    return Meeting{inside, 1 - 0.5F * clamp01((top_m - ray_m) / (0.6F * peak))};
+    const int cells = static_cast<int>(kLand_m / cell_m);
+    const int x = floor_int((eye.north_m + middle_m * rays.north[i]) / cell_m) & (cells - 1);
+    const int y = floor_int((eye.east_m + middle_m * rays.east[i]) / cell_m) & (cells - 1);
+    points.level[i] = level;
+    points.cell[i] = y * cells + x;
   }
-  return std::nullopt;
+  for (int i = 0; i < count; ++i) points.cell[i] += first[points.level[i]];
 }
 
-LinearRgb Ground::seen(float eye_north_m,
-                       float eye_east_m,
-                       float eye_height_m,
-                       float north,
-                       float east,
-                       float down) const {
-  const float far_m = eye_height_m / std::max(down, 1e-5F);
-  const float reach_m = std::min(far_m, kFarthest_m);
-  const LinearRgb veil = haze(north, east);
-  float t = reach_m;
-  float shade = 1;
-  const float inverse = 1 / texel_m_;
-  const float across = fast_log2(std::max(t * pixel_rad_ * inverse, 0.01F));
-  if (far_m < kReliefEnd_m && eye_height_m > kHighest_m) {
-    if (const auto met = meet(eye_north_m, eye_east_m, north, east, down, far_m, across)) {
-      t = met->distance_m;
-      shade = met->shade;
-    }
+void Ground::meet(const Eye& eye, const Rays& rays, Points& points) const {
+  Search search;
+  alignas(64) Floats peak_m;
+  for (int i = 0; i < rays.count; ++i) {
+    const std::uint8_t peak = peaks_[static_cast<std::size_t>(points.cell[i])];
+    peak_m[i] = static_cast<float>(peak) * (kHighest_m / 255);
+    search.ray[search.count] = i;
+    search.count += (peak != 0) & (points.far_m[i] < kReliefEnd_m) ? 1 : 0;
   }
-  const float north_m = eye_north_m + t * north;
-  const float east_m = eye_east_m + t * east;
-  const float along = std::min(-fast_log2(std::max(down, 1e-4F)), 5.0F);
-  const float x = north_m * inverse;
-  const float y = east_m * inverse;
-  const LinearRgb root = colour(x, y, across + 0.5F * along - 0.6F);
-  LinearRgb albedo = root * root;
-  if (t < 1200) albedo *= 1 + (1 - t / 1200) * (detail(north_m, east_m) - 0.5F) * 0.7F;
-  const float lit = sunlit(north_m, east_m);
-  const float fog = 1 - std::exp(-reach_m * extinction_per_m_);
-  const LinearRgb up = albedo * (sunlight_ * lit + skylight_) * shade;
-  return up + (veil - up) * fog;
+  if (search.count == 0) return;
+  select_rays(rays, points.far_m, points.across, peak_m, search);
+  synthetic::meet({&map_, texel_m_, kHighest_m}, eye, search);
+  for (int k = 0; k < search.count; ++k) {
+    if (search.distance_m[k] < 0) continue;
+    points.distance_m[search.ray[k]] = search.distance_m[k];
+    points.shade[search.ray[k]] = search.shade[k];
+  }
+}
+
+// Where the tables are read: the mip level and the sector of the haze.
+AIRTRUTH_SYNTHETIC_VECTORS
+void Ground::look_up(const Eye& eye, const Rays& rays, Points& __restrict points) const {
+  const int count = rays.count;
+  const int top = map_.levels - 2;
+  const float extinction_per_m = extinction_per_m_;
+  const auto sun_north = static_cast<float>(sun_.x());
+  const auto sun_east = static_cast<float>(sun_.y());
+  for (int i = 0; i < count; ++i) {
+    const float along = std::min(-fast_log2(std::max(rays.down[i], 1e-4F)), 5.0F);
+    const float level =
+        std::clamp(points.across[i] + 0.5F * along - 0.6F, 0.0F, static_cast<float>(top));
+    points.level[i] = std::min(static_cast<int>(level), top - 1);
+    points.level_part[i] = level - static_cast<float>(points.level[i]);
+    const float cosine =
+        std::clamp(rays.north[i] * sun_north + rays.east[i] * sun_east, -1.0F, 1.0F);
+    const float at = (cosine * 0.5F + 0.5F) * (kHazeSectors - 1.001F);
+    points.sector[i] = static_cast<int>(at);
+    points.sector_part[i] = at - static_cast<float>(points.sector[i]);
+    points.fog[i] = 1 - exp_of_negative(std::max(-points.reach_m[i] * extinction_per_m, -kOpaque));
+    points.north_m[i] = eye.north_m + points.distance_m[i] * rays.north[i];
+    points.east_m[i] = eye.east_m + points.distance_m[i] * rays.east[i];
+  }
+}
+
+// The square roots of the ground's colour.
+AIRTRUTH_SYNTHETIC_VECTORS
+void Ground::colour(const Points& points, int count, Light& __restrict light) const {
+  const std::uint32_t* texels = map_.texels.data();
+  const std::int32_t* first = map_.first.data();
+  const std::int32_t* wrap = map_.wrap.data();
+  const float* scale = map_.scale.data();
+  const float per_texel = 1 / texel_m_;
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t level = points.level[i];
+    const float x = points.north_m[i] * per_texel;
+    const float y = points.east_m[i] * per_texel;
+    const Roots fine =
+        roots(texels, x * scale[level] - 0.5F, y * scale[level] - 0.5F, first[level], wrap[level]);
+    const Roots coarse = roots(texels,
+                               x * scale[level + 1] - 0.5F,
+                               y * scale[level + 1] - 0.5F,
+                               first[level + 1],
+                               wrap[level + 1]);
+    constexpr float kUnit = 1.0F / (256 * 255);
+    light.red[i] = lerp(fine.red, coarse.red, points.level_part[i]) * kUnit;
+    light.green[i] = lerp(fine.green, coarse.green, points.level_part[i]) * kUnit;
+    light.blue[i] = lerp(fine.blue, coarse.blue, points.level_part[i]) * kUnit;
+  }
+}
+
+AIRTRUTH_SYNTHETIC_VECTORS
+void Ground::shine(const Points& points, int count, Light& __restrict light) const {
+  const float* shadow = shadow_.data();
+  const float* detail = detail_.data();
+  const float per_shadow = kShadowCells / static_cast<float>(Clouds::period_m());
+  const Colour red{haze_[0].data(), sunlight_[0], skylight_[0]};
+  const Colour green{haze_[1].data(), sunlight_[1], skylight_[1]};
+  const Colour blue{haze_[2].data(), sunlight_[2], skylight_[2]};
+  for (int i = 0; i < count; ++i) {
+    const float north_m = points.north_m[i];
+    const float east_m = points.east_m[i];
+    const float mottle =
+        interpolated(detail, kDetailCells, north_m / kDetail_m, east_m / kDetail_m);
+    const float near = std::max(1 - points.distance_m[i] / kDetailEnd_m, 0.0F);
+    const float grain = 1 + near * (mottle - 0.5F) * 0.7F;
+    const float lit = interpolated(shadow, kShadowCells, north_m * per_shadow, east_m * per_shadow);
+    const float shade = points.shade[i];
+    const float fog = points.fog[i];
+    const std::int32_t sector = points.sector[i];
+    const float part = points.sector_part[i];
+    light.red[i] = red.veiled(red.seen(light.red[i], grain, lit, shade), sector, part, fog);
+    light.green[i] = green.veiled(green.seen(light.green[i], grain, lit, shade), sector, part, fog);
+    light.blue[i] = blue.veiled(blue.seen(light.blue[i], grain, lit, shade), sector, part, fog);
+  }
+}
+
+void Ground::seen(const Eye& eye, const Rays& rays, Light& light) const {
+  Points points;
+  reach(eye, rays, points);
+  if (eye.height_m > kHighest_m) meet(eye, rays, points);
+  look_up(eye, rays, points);
+  colour(points, rays.count, light);
+  shine(points, rays.count, light);
 }
 
 }  // namespace airtruth::synthetic

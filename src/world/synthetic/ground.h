@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "world/synthetic/batch.h"
 #include "world/synthetic/clouds.h"
 #include "world/synthetic/land.h"
+#include "world/synthetic/mip_map.h"
 #include "world/synthetic/noise.h"
+#include "world/synthetic/relief.h"
 #include "world/synthetic/sky.h"
 
 namespace airtruth::synthetic {
 
 // The ground as a repeating tile of colour and height with mip levels. Trees and houses rise from
-// it: rays are traced through the height field (relief mapping; Policarpo, Oliveira and Comba
-// 2005).
+// it: rays are traced through the height field.
 class Ground {
  public:
   // Largest height of trees and houses.
@@ -29,31 +31,36 @@ class Ground {
          const Clouds& clouds,
          std::uint32_t seed);
 
-  // The light from the ground towards an eye at that place. `north`, `east` and `down` form a unit
-  // vector with `down` > 0.
-  LinearRgb seen(float eye_north_m,
-                 float eye_east_m,
-                 float eye_height_m,
-                 float north,
-                 float east,
-                 float down) const;
-
-  // The colour to which the ground fades at the horizon, by direction.
-  LinearRgb haze(float north, float east) const;
+  // The light from the ground towards an eye at that place. `down` of all rays is above 0.
+  void seen(const Eye& eye, const Rays& rays, Light& light) const;
 
  private:
   static constexpr int kShadowCells = 512;
   static constexpr int kDetailCells = 256;
   static constexpr int kHazeSectors = 64;
-  struct Level {
-    int size = 0;
-    // Square roots of red, green and blue, and the height.
-    std::vector<std::uint32_t> texels;
-  };
-  struct Texel {
-    // Square roots of the light.
-    LinearRgb colour = LinearRgb::Zero();
-    float height_m = 0;
+  static constexpr int kPeakLevels = 8;
+  // Where rays meet the ground, or what rises from it.
+  struct Points {
+    // Distance along the ray, and the factor of the shade of trees and houses.
+    alignas(64) Floats distance_m;
+    alignas(64) Floats shade;
+    // Distance to the level ground, and the same up to the farthest ground.
+    alignas(64) Floats far_m;
+    alignas(64) Floats reach_m;
+    // Base-2 logarithm of the pixel's width in texels.
+    alignas(64) Floats across;
+    // Index of the cell of greatest height.
+    alignas(64) Integers cell;
+    // The finer of two mip levels, the sector of the haze, and the share of the next of each.
+    alignas(64) Integers level;
+    alignas(64) Floats level_part;
+    alignas(64) Integers sector;
+    alignas(64) Floats sector_part;
+    // Share of the haze in the light, 0 to 1.
+    alignas(64) Floats fog;
+    // Place on the ground.
+    alignas(64) Floats north_m;
+    alignas(64) Floats east_m;
   };
   void paint(const Land& land);
   void plant(const Land& land, std::uint32_t seed);
@@ -62,20 +69,12 @@ class Ground {
   void build_barn(std::uint32_t id);
   void make_levels();
   void find_peaks();
-  float peak_m(float north_m, float east_m, float span_m) const;
-  // The point where a ray meets a tree or a house, with the factor of its shade; empty where the
-  // ray meets none.
-  struct Meeting {
-    float distance_m = 0;
-    float shade = 1;
-  };
-  std::optional<Meeting> meet(float eye_north_m,
-                              float eye_east_m,
-                              float north,
-                              float east,
-                              float down,
-                              float far_m,
-                              float across) const;
+  void make_haze(const Sky& sky);
+  void reach(const Eye& eye, const Rays& rays, Points& points) const;
+  void meet(const Eye& eye, const Rays& rays, Points& points) const;
+  void look_up(const Eye& eye, const Rays& rays, Points& points) const;
+  void colour(const Points& points, int count, Light& light) const;
+  void shine(const Points& points, int count, Light& light) const;
   void tree(float north_m, float east_m, float radius_m, float height_m, const LinearRgb& colour);
   void house(float north_m,
              float east_m,
@@ -86,12 +85,6 @@ class Ground {
              const LinearRgb& roof);
   void darken(float north_m, float east_m, float radius_m, float factor);
   std::uint32_t& texel(int x, int y);
-  // Of the texel.
-  float height_m(float x, float y, int level) const;
-  float smooth_height_m(float x, float y, int level) const;
-  LinearRgb colour(float x, float y, float level) const;
-  float sunlit(float north_m, float east_m) const;
-  float detail(float north_m, float east_m) const;
 
   float texel_m_;
   float pixel_rad_;
@@ -99,13 +92,15 @@ class Ground {
   Vector3 sun_;
   LinearRgb sunlight_;
   LinearRgb skylight_;
-  std::vector<Level> levels_;
-  // Greatest heights in and beside square cells; the cells of each level are twice as wide as those
-  // of the level before. They let rays over open fields skip the search.
-  std::vector<std::vector<std::uint8_t>> peaks_;
+  MipMap map_;
+  // Greatest heights in and beside square cells, level after level; the cells of each level are
+  // twice as wide as those of the level before. They let rays over open fields skip the search.
+  std::vector<std::uint8_t> peaks_;
+  std::array<std::int32_t, kPeakLevels> first_peak_;
   std::vector<float> shadow_;
   std::vector<float> detail_;
-  std::vector<LinearRgb> haze_;
+  // The colour to which the ground fades at the horizon, by the cosine of the angle to the sun.
+  std::array<std::array<float, kHazeSectors>, 3> haze_;
 };
 
 }  // namespace airtruth::synthetic

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
@@ -21,23 +22,36 @@ std::uint32_t pack(const LinearRgb& albedo, float height_m) {
          byte(std::sqrt(albedo[2])) << 16 | byte(height_m / Ground::kHighest_m) << 24;
 }
 
+// The texels of bare ground.
+AIRTRUTH_SYNTHETIC_VECTORS
+void pack_ground(const Places& places, Integers& __restrict packed) {
+  const auto byte = [](float albedo) {
+    return static_cast<std::int32_t>(clamp01(std::sqrt(albedo)) * 255 + 0.5F);
+  };
+  const int count = places.count;
+  for (int k = 0; k < count; ++k)
+    packed[k] = byte(places.albedo.red[k]) | byte(places.albedo.green[k]) << 8 |
+                byte(places.albedo.blue[k]) << 16;
+}
+
 struct Tree {
   float north_m, east_m, radius_m, height_m;
   LinearRgb colour;
 };
 
 // The tree at a place, if one grows there; `id` is the place's random number.
-std::optional<Tree> tree_at(const Place& place, float north, float east, std::uint32_t id) {
-  if (place.track_m < 4.5F || place.river_m < 11) return std::nullopt;
-  float chance = 0.86F * place.wood + (place.field ? 0.0035F : 0.012F);
-  if (place.river_m < 40)
-    chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, place.river_m));
-  if (place.hedge && place.track_m < 11) chance = std::max(chance, 0.62F);
+std::optional<Tree> tree_at(const Places& places, int k, std::uint32_t id) {
+  const float track_m = places.track_m[k];
+  const float river_m = places.river_m[k];
+  if (track_m < 4.5F || river_m < 11) return std::nullopt;
+  float chance = 0.86F * places.wood[k] + (places.field[k] != 0 ? 0.0035F : 0.012F);
+  if (river_m < 40) chance = std::max(chance, 0.75F * smoothstep(40.0F, 22.0F, river_m));
+  if (places.hedge[k] != 0 && track_m < 11) chance = std::max(chance, 0.62F);
   if (unit(mix(id + 1)) >= chance) return std::nullopt;
   const float size = unit(mix(id + 2));
   const LinearRgb green =
       lerp(0.75F, 1.35F, unit(mix(id + 3))) * linear_rgb(0.062F, 0.082F, 0.030F);
-  return Tree{north, east, 2.0F + 2.6F * size, 4.0F + 6.5F * size, green};
+  return Tree{places.north_m[k], places.east_m[k], 2.0F + 2.6F * size, 4.0F + 6.5F * size, green};
 }
 
 // The trees of all planting cells, row by row.
@@ -45,12 +59,19 @@ std::vector<std::vector<Tree>> trees_on(const Land& land, std::uint32_t seed) {
   const int cells = static_cast<int>(kLand_m / kPlanting_m);
   std::vector<std::vector<Tree>> rows(static_cast<std::size_t>(cells));
   tbb::parallel_for(0, cells, [&](int j) {
-    for (int i = 0; i < cells; ++i) {
-      const std::uint32_t id = hash(i, j, seed);
-      const float north = (static_cast<float>(i) + unit(id)) * kPlanting_m;
-      const float east = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
-      if (const auto tree = tree_at(land.at(north, east), north, east, id))
-        rows[static_cast<std::size_t>(j)].push_back(*tree);
+    Places places;
+    for (int first = 0; first < cells; first += kBatch) {
+      places.count = std::min(kBatch, cells - first);
+      for (int k = 0; k < places.count; ++k) {
+        const int i = first + k;
+        const std::uint32_t id = hash(i, j, seed);
+        places.north_m[k] = (static_cast<float>(i) + unit(id)) * kPlanting_m;
+        places.east_m[k] = (static_cast<float>(j) + unit(mix(id))) * kPlanting_m;
+      }
+      land.cover(places);
+      for (int k = 0; k < places.count; ++k)
+        if (const auto tree = tree_at(places, k, hash(first + k, j, seed)))
+          rows[static_cast<std::size_t>(j)].push_back(*tree);
     }
   });
   return rows;
@@ -82,24 +103,13 @@ Ground::Ground(double texel_m,
   sunlight_ *= 0.25F + 0.9F * up;
   skylight_ = linear_rgb(0.20F, 0.25F, 0.33F);
   shadow_ = clouds.ground_shadow(kShadowCells);
-  haze_.resize(kHazeSectors);
-  const Vector3 level_sun = Vector3(sun_.x(), sun_.y(), 0).normalized();
-  const double level = std::hypot(sun_.x(), sun_.y());
-  for (int i = 0; i < kHazeSectors; ++i) {
-    const double cosine =
-        std::clamp((2.0 * i / (kHazeSectors - 1) - 1) / std::max(level, 1e-6), -1.0, 1.0);
-    const Vector3 side(-level_sun.y(), level_sun.x(), 0);
-    haze_[static_cast<std::size_t>(i)] =
-        sky.haze(cosine * level_sun + std::sqrt(1 - cosine * cosine) * side);
-  }
+  make_haze(sky);
   detail_.resize(std::size_t{kDetailCells} * kDetailCells);
   for (int y = 0; y < kDetailCells; ++y)
     for (int x = 0; x < kDetailCells; ++x)
       detail_[static_cast<std::size_t>(y * kDetailCells + x)] = fractal(
           static_cast<float>(x) / 16, static_cast<float>(y) / 16, 4, kDetailCells / 16, seed + 41);
-  levels_.push_back({size,
-                     std::vector<std::uint32_t>(static_cast<std::size_t>(size) *
-                                                static_cast<std::size_t>(size))});
+  map_ = MipMap::with_size(size);
   const Land land(seed);
   paint(land);
   plant(land, seed + 50);
@@ -108,20 +118,40 @@ Ground::Ground(double texel_m,
   find_peaks();
 }
 
+void Ground::make_haze(const Sky& sky) {
+  const Vector3 level_sun = Vector3(sun_.x(), sun_.y(), 0).normalized();
+  const double level = std::hypot(sun_.x(), sun_.y());
+  const Vector3 side(-level_sun.y(), level_sun.x(), 0);
+  for (int i = 0; i < kHazeSectors; ++i) {
+    const double cosine =
+        std::clamp((2.0 * i / (kHazeSectors - 1) - 1) / std::max(level, 1e-6), -1.0, 1.0);
+    const LinearRgb haze = sky.haze(cosine * level_sun + std::sqrt(1 - cosine * cosine) * side);
+    for (int c = 0; c < 3; ++c)
+      haze_[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = haze[c];
+  }
+}
+
 std::uint32_t& Ground::texel(int x, int y) {
-  Level& base = levels_.front();
-  const int wrap = base.size - 1;
-  return base.texels[static_cast<std::size_t>(y & wrap) * static_cast<std::size_t>(base.size) +
-                     static_cast<std::size_t>(x & wrap)];
+  const int wrap = map_.size - 1;
+  return map_
+      .texels[static_cast<std::size_t>(index_of_row(y & wrap, wrap) + index_in_row(x & wrap))];
 }
 
 void Ground::paint(const Land& land) {
-  const int size = levels_.front().size;
+  const int size = map_.size;
   tbb::parallel_for(0, size, [&](int y) {
-    for (int x = 0; x < size; ++x) {
-      const Place place = land.at((static_cast<float>(x) + 0.5F) * texel_m_,
-                                  (static_cast<float>(y) + 0.5F) * texel_m_);
-      texel(x, y) = pack(place.albedo, 0);
+    Places places;
+    alignas(64) Integers packed;
+    for (int first = 0; first < size; first += kBatch) {
+      places.count = std::min(kBatch, size - first);
+      for (int k = 0; k < places.count; ++k) {
+        places.north_m[k] = (static_cast<float>(first + k) + 0.5F) * texel_m_;
+        places.east_m[k] = (static_cast<float>(y) + 0.5F) * texel_m_;
+      }
+      land.cover(places);
+      pack_ground(places, packed);
+      for (int k = 0; k < places.count; ++k)
+        texel(first + k, y) = static_cast<std::uint32_t>(packed[k]);
     }
   });
 }
@@ -248,28 +278,29 @@ void Ground::build_barn(std::uint32_t id) {
 }
 
 void Ground::find_peaks() {
-  const Level& base = levels_.front();
   int cells = static_cast<int>(kLand_m / 10);
-  const int ratio = base.size / cells;
+  const int size = map_.size;
+  const int ratio = size / cells;
   const auto at = [](int x, int y, int n) {
     return static_cast<std::size_t>((y & (n - 1)) * n + (x & (n - 1)));
   };
   std::vector<std::uint8_t> highest(static_cast<std::size_t>(cells * cells), 0);
   tbb::parallel_for(0, cells, [&](int row) {
     for (int y = row * ratio; y < (row + 1) * ratio; ++y)
-      for (int x = 0; x < base.size; ++x) {
+      for (int x = 0; x < size; ++x) {
         std::uint8_t& cell = highest[at(x / ratio, row, cells)];
         cell = std::max(cell, static_cast<std::uint8_t>(texel(x, y) >> 24));
       }
   });
-  while (cells >= 4) {
+  for (std::int32_t& first : first_peak_) {
     std::vector<std::uint8_t> around(highest.size(), 0);
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x)
         for (int k = 0; k < 9; ++k)
           around[at(x, y, cells)] =
               std::max(around[at(x, y, cells)], highest[at(x + k % 3 - 1, y + k / 3 - 1, cells)]);
-    peaks_.push_back(std::move(around));
+    first = static_cast<std::int32_t>(peaks_.size());
+    peaks_.insert(peaks_.end(), around.begin(), around.end());
     const int half = cells / 2;
     std::vector<std::uint8_t> coarse(static_cast<std::size_t>(half * half), 0);
     for (int y = 0; y < cells; ++y)
@@ -303,19 +334,16 @@ std::uint32_t mean_of(const std::array<std::uint32_t, 4>& texels) {
 }  // namespace
 
 void Ground::make_levels() {
-  while (levels_.back().size > 2) {
-    const Level& fine = levels_.back();
-    Level coarse{fine.size / 2, {}};
-    const auto half = static_cast<std::size_t>(coarse.size);
-    const auto full = static_cast<std::size_t>(fine.size);
-    coarse.texels.resize(half * half);
-    tbb::parallel_for(std::size_t{0}, half, [&](std::size_t y) {
-      for (std::size_t x = 0; x < half; ++x) {
-        const std::uint32_t* p = &fine.texels[2 * y * full + 2 * x];
-        coarse.texels[y * half + x] = mean_of({p[0], p[1], p[full], p[full + 1]});
+  for (std::size_t level = 1; level < static_cast<std::size_t>(map_.levels); ++level) {
+    const std::uint32_t* fine = &map_.texels[static_cast<std::size_t>(map_.first[level - 1])];
+    std::uint32_t* coarse = &map_.texels[static_cast<std::size_t>(map_.first[level])];
+    const std::int32_t wrap = map_.wrap[level];
+    tbb::parallel_for(0, wrap + 1, [&](std::int32_t y) {
+      for (std::int32_t x = 0; x <= wrap; ++x) {
+        const std::uint32_t* p = fine + index_of_row(2 * y, 2 * wrap + 1) + index_in_row(2 * x);
+        coarse[index_of_row(y, wrap) + index_in_row(x)] = mean_of({p[0], p[1], p[4], p[5]});
       }
     });
-    levels_.push_back(std::move(coarse));
   }
 }
 

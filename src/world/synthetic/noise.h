@@ -29,7 +29,9 @@ inline std::uint32_t hash(int x, int y, std::uint32_t seed) {
 }
 
 // Maps a hash to [0, 1).
-inline float unit(std::uint32_t h) { return static_cast<float>(h >> 8) * 0x1p-24F; }
+inline float unit(std::uint32_t h) {
+  return static_cast<float>(static_cast<std::int32_t>(h >> 8)) * 0x1p-24F;
+}
 
 inline float clamp01(float x) { return x < 0 ? 0.0F : (x > 1 ? 1.0F : x); }
 

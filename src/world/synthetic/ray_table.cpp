@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/synthetic/ray_table.h"
 
-#include <cmath>
-
 namespace airtruth::synthetic {
 namespace {
 
@@ -23,8 +21,7 @@ Vector3 ray_or_nearest(const lens::Lens& lens, const Pixel& pixel) {
 }  // namespace
 
 RayTable::RayTable(const lens::Lens& lens, bool falls_off)
-    : width_(lens.size().width),
-      columns_((lens.size().width + kPitch - 1) / kPitch + 1),
+    : columns_((lens.size().width + kPitch - 1) / kPitch + 1),
       rows_((lens.size().height + kPitch - 1) / kPitch + 1) {
   const Quaternion body_from_cam = cam_from_body().conjugate();
   const Pixel middle(0.5 * lens.size().width, 0.5 * lens.size().height);
@@ -56,6 +53,31 @@ std::vector<RayNode> RayTable::directions_in_world(const Quaternion& world_from_
       nodes.push_back(node);
     }
   return nodes;
+}
+
+// Interpolates the pixels between two nodes.
+void RayTable::fill(float left, float step, float* pixels) {
+  for (int x = 0; x < kPitch; ++x) pixels[x] = left + step * (static_cast<float>(x) + 0.5F);
+}
+
+void RayTable::row(int y,
+                   const std::vector<RayNode>& nodes,
+                   RayRow& directions,
+                   std::vector<float>& fall_off) const {
+  const float below = (static_cast<float>(y % kPitch) + 0.5F) / kPitch;
+  const RayNode* upper = nodes.data() + static_cast<std::ptrdiff_t>(y / kPitch) * columns_;
+  const RayNode* lower = upper + columns_;
+  RayNode left = upper[0] + (lower[0] - upper[0]) * below;
+  for (int column = 0; column + 1 < columns_; ++column) {
+    const RayNode right = upper[column + 1] + (lower[column + 1] - upper[column + 1]) * below;
+    const RayNode step = (right - left) / kPitch;
+    const std::size_t first = static_cast<std::size_t>(column) * kPitch;
+    fill(left[0], step[0], &directions.north[first]);
+    fill(left[1], step[1], &directions.east[first]);
+    fill(left[2], step[2], &directions.down[first]);
+    fill(left[3], step[3], &fall_off[first]);
+    left = right;
+  }
 }
 
 }  // namespace airtruth::synthetic

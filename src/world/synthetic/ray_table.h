@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "world/synthetic/noise.h"
+#include "world/synthetic/light_row.h"
 
 namespace airtruth::synthetic {
 
@@ -26,26 +25,16 @@ class RayTable {
   // Rays of every `stride`-th node, rotated into the world.
   std::vector<RayNode> directions_in_world(const Quaternion& world_from_body, int stride) const;
 
-  // Calls visit(x, direction) from left to right. `nodes` are those of stride 1.
-  template <typename Visit>
-  void for_each_in_row(int y, const std::vector<RayNode>& nodes, const Visit& visit) const {
-    const int row = y / kPitch;
-    const float down = (static_cast<float>(y % kPitch) + 0.5F) / kPitch;
-    const RayNode* upper = nodes.data() + static_cast<std::ptrdiff_t>(row) * columns_;
-    const RayNode* lower = upper + columns_;
-    for (int column = 0; column + 1 < columns_; ++column) {
-      const RayNode left = upper[column] + (lower[column] - upper[column]) * down;
-      const RayNode right = upper[column + 1] + (lower[column + 1] - upper[column + 1]) * down;
-      const RayNode step = (right - left) / kPitch;
-      const int end = std::min((column + 1) * kPitch, width_);
-      for (int x = column * kPitch; x < end; ++x)
-        visit(x, RayNode(left + step * (static_cast<float>(x % kPitch) + 0.5F)));
-    }
-  }
+  // Directions and fall-off of the row's pixels. `nodes` are those of stride 1.
+  void row(int y,
+           const std::vector<RayNode>& nodes,
+           RayRow& directions,
+           std::vector<float>& fall_off) const;
 
  private:
   static constexpr int kPitch = 8;
-  int width_;
+  static void fill(float left, float step, float* pixels);
+
   int columns_;
   int rows_;
   std::vector<RayNode> rays_in_body_;

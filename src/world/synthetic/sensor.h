@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "foundation/image/picture.h"
 #include "world/synthetic/flight.h"
-#include "world/synthetic/noise.h"
+#include "world/synthetic/light_row.h"
 
 namespace airtruth::synthetic {
 
@@ -18,7 +20,7 @@ class Sensor {
 
   // Luma before sharpening, in 1/64 of a code value.
   struct Exposure {
-    std::vector<std::uint16_t> luma;
+    std::unique_ptr<std::uint16_t[]> luma;
   };
   Exposure start() const;
 
@@ -26,8 +28,8 @@ class Sensor {
   // same row. Rows can come in any order and on any thread.
   void expose(int frame,
               int y,
-              const LinearRgb* upper,
-              const LinearRgb* lower,
+              const LightRow& upper,
+              const LightRow& lower,
               Exposure& exposure,
               image::Picture& picture) const;
 
@@ -35,8 +37,7 @@ class Sensor {
   void sharpen(const Exposure& exposure, int y, image::Picture& picture) const;
 
  private:
-  LinearRgb coded(const LinearRgb& light) const;
-  const LinearRgb& grain(int frame, int x, int y) const;
+  void copy_grain(int frame, int y, int channel, float* grain) const;
 
   int width_;
   int height_;
@@ -44,7 +45,8 @@ class Sensor {
   bool ideal_;
   std::uint32_t seed_;
   std::vector<float> curve_;
-  std::vector<LinearRgb> grain_;
+  // Normally distributed, of mean 0 and standard deviation 1: square tiles, one for each use.
+  std::array<std::vector<float>, 3> grain_;
 };
 
 }  // namespace airtruth::synthetic
