@@ -81,20 +81,41 @@ cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
 }
 
 // The length of the blur that gives the still picture the gradient ratio of the moving one; empty
-// if no length up to `most_px` does.
+// if no length up to `most_px` does. The method is the false position of Dowell and Jarratt (1971,
+// "Illinois") in the square of the length, of which the ratio is nearly a linear function.
 std::optional<double> length_of(const cv::Mat& still,
                                 const cv::Mat& moving,
                                 const Pixel& along,
                                 double most_px) {
+  // Largest error of the length as a share of `most_px`, and the number of rounds, which ends an
+  // iteration that does not converge.
+  constexpr double kMaxError = 1.0 / 512;
+  constexpr int kMaxRounds = 9;
   const double wanted = slope_ratio(moving, along);
-  if (slope_ratio(still, along) <= wanted) return 0.0;
-  if (slope_ratio(blurred(still, along, most_px), along) > wanted) return std::nullopt;
-  double low = 0, high = most_px;
-  for (int i = 0; i < 9; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slope_ratio(blurred(still, along, middle), along) > wanted ? low : high) = middle;
+  const auto excess = [&](double squared_px) {
+    return slope_ratio(blurred(still, along, std::sqrt(squared_px)), along) - wanted;
+  };
+  double low = 0, above = excess(0);
+  if (above <= 0) return 0.0;
+  double high = most_px * most_px, below = excess(high);
+  if (below > 0) return std::nullopt;
+  double found = high;
+  for (int round = 0, same = 0; round < kMaxRounds && below < 0; ++round) {
+    const double before = found;
+    found = low + (high - low) * above / (above - below);
+    if (std::abs(std::sqrt(found) - std::sqrt(before)) < kMaxError * most_px) break;
+    const double here = excess(found);
+    const int side = here > 0 ? 1 : -1;
+    if (side > 0) {
+      low = found, above = here;
+      if (same == side) below /= 2;
+    } else {
+      high = found, below = here;
+      if (same == side) above /= 2;
+    }
+    same = side;
   }
-  return 0.5 * (low + high);
+  return std::sqrt(found);
 }
 
 }  // namespace
