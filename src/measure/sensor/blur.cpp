@@ -38,15 +38,22 @@ constexpr double kMaxLengthShare = 1.3;
 constexpr double kMinShare = 0.04;
 constexpr double kMinShareInErrors = 2;
 
-// Energy of the gradients of the picture along a direction divided by that across it.
-double slope_ratio(const cv::Mat& grey, const Pixel& along) {
-  cv::Mat soft, gx, gy;
+// The picture without the detail that noise dominates.
+cv::Mat softened(const cv::Mat& grey) {
+  cv::Mat soft;
   cv::GaussianBlur(grey, soft, {}, 1.0);
+  return soft;
+}
+
+// Energy of the gradients of a softened picture along a direction divided by that across it.
+double slope_ratio(const cv::Mat& soft, const Pixel& along) {
+  cv::Mat gx, gy;
   cv::Sobel(soft, gx, CV_32F, 1, 0);
   cv::Sobel(soft, gy, CV_32F, 0, 1);
-  const cv::Mat a = gx * along.x() + gy * along.y();
-  const cv::Mat b = gy * along.x() - gx * along.y();
-  return a.dot(a) / std::max(1e-6, b.dot(b));
+  const double xx = gx.dot(gx), xy = gx.dot(gy), yy = gy.dot(gy);
+  const double c = along.x(), s = along.y();
+  return (c * c * xx + 2 * c * s * xy + s * s * yy) /
+         std::max(1e-6, c * c * yy - 2 * c * s * xy + s * s * xx);
 }
 
 // Weights of cubic convolution (Keys 1981, a = -1/2) for four pixels, from the one before the place
@@ -80,9 +87,10 @@ cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   return result;
 }
 
-// The length of the blur that gives the still picture the gradient ratio of the moving one; empty
-// if no length up to `most_px` does. The method is the false position of Dowell and Jarratt (1971,
-// "Illinois") in the square of the length, of which the ratio is nearly a linear function.
+// The length of the blur that gives the softened still picture the gradient ratio of the moving
+// one; empty if no length up to `most_px` does. The method is the false position of Dowell and
+// Jarratt (1971, "Illinois") in the square of the length, of which the ratio is nearly a linear
+// function.
 std::optional<double> length_of(const cv::Mat& still,
                                 const cv::Mat& moving,
                                 const Pixel& along,
@@ -179,7 +187,8 @@ std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares)
     cv::Mat still, moving;
     shot.crops[*partner].convertTo(still, CV_32F);
     shot.crops[k].convertTo(moving, CV_32F);
-    const auto length = length_of(still, moving, along, kMaxLengthShare * fast->norm());
+    const auto length =
+        length_of(softened(still), softened(moving), along, kMaxLengthShare * fast->norm());
     if (!length) continue;
     // The neighbour is slightly blurred as well; variances add.
     const double own = slowest * slowest / fast->squaredNorm();
