@@ -23,10 +23,40 @@ constexpr std::size_t kMinBlocks = 40;
 
 using Feature = Eigen::Vector4d;  // luma, Cb, Cr, texture
 
-struct Sample {
-  Vector3 ray;
-  Feature feature;
+// The features of the blocks of a picture, with the sums over all of them, which every plane has in
+// common.
+struct Samples {
+  // The rays of the blocks: one column for each axis.
+  Eigen::Array<float, Eigen::Dynamic, 3> rays;
+  std::vector<Feature> features;
+  Feature sum = Feature::Zero();
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+
+  void add(const Feature& feature) {
+    features.push_back(feature);
+    sum += feature;
+    squares += feature * feature.transpose();
+  }
 };
+
+// The sum over the samples above a plane, and their number.
+struct Above {
+  Feature sum = Feature::Zero();
+  double count = 0;
+};
+
+Above above(const Samples& samples, const Vector3& up) {
+  const Eigen::Vector3f n = up.cast<float>();
+  const Eigen::ArrayXf heights =
+      samples.rays.col(0) * n.x() + samples.rays.col(1) * n.y() + samples.rays.col(2) * n.z();
+  Above result;
+  for (Eigen::Index i = 0; i < heights.size(); ++i) {
+    if (!(heights[i] > 0)) continue;
+    result.sum += samples.features[static_cast<std::size_t>(i)];
+    result.count += 1;
+  }
+  return result;
+}
 
 Vector3 up_of(double pitch_rad, double roll_rad) {
   const Quaternion body_from_world =
@@ -36,38 +66,26 @@ Vector3 up_of(double pitch_rad, double roll_rad) {
 
 // The squared distance between the mean features of the two sides, in their common covariance; 0
 // where one side has too few blocks.
-double parted(const std::vector<Sample>& samples, const Vector3& up) {
-  Feature sum[2] = {Feature::Zero(), Feature::Zero()};
-  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
-  double count[2] = {0, 0};
-  for (const Sample& s : samples) {
-    const int side = s.ray.dot(up) > 0 ? 1 : 0;
-    sum[side] += s.feature;
-    count[side] += 1;
-    squares += s.feature * s.feature.transpose();
-  }
-  const double n = count[0] + count[1];
-  if (std::min(count[0], count[1]) < kMinSideShare * n) return 0;
-  const Feature low = sum[0] / count[0];
-  const Feature high = sum[1] / count[1];
-  Eigen::Matrix4d within =
-      squares / n - count[0] / n * low * low.transpose() - count[1] / n * high * high.transpose();
+double parted(const Samples& samples, const Vector3& up) {
+  const Above upper = above(samples, up);
+  const double n = double(samples.features.size()), lower_count = n - upper.count;
+  if (std::min(lower_count, upper.count) < kMinSideShare * n) return 0;
+  const Feature low = (samples.sum - upper.sum) / lower_count;
+  const Feature high = upper.sum / upper.count;
+  Eigen::Matrix4d within = samples.squares / n - lower_count / n * low * low.transpose() -
+                           upper.count / n * high * high.transpose();
   within.diagonal().array() += 1.0;  // a variance of one code value keeps it invertible
   const Feature apart = high - low;
   // Fisher's criterion (1936), weighted so that an even split has the weight 1.
-  return apart.dot(within.ldlt().solve(apart)) * 4 * count[0] * count[1] / (n * n);
+  return apart.dot(within.ldlt().solve(apart)) * 4 * lower_count * upper.count / (n * n);
 }
 
 // Whether that side is the sky, which is smoother, and mostly brighter and bluer, than the ground.
-bool is_sky(const std::vector<Sample>& samples, const Vector3& up) {
-  Feature sum[2] = {Feature::Zero(), Feature::Zero()};
-  double count[2] = {0, 0};
-  for (const Sample& s : samples) {
-    const int side = s.ray.dot(up) > 0 ? 1 : 0;
-    sum[side] += s.feature;
-    count[side] += 1;
-  }
-  const Feature d = sum[1] / std::max(1.0, count[1]) - sum[0] / std::max(1.0, count[0]);
+bool is_sky(const Samples& samples, const Vector3& up) {
+  const Above upper = above(samples, up);
+  const double lower_count = double(samples.features.size()) - upper.count;
+  const Feature d = upper.sum / std::max(1.0, upper.count) -
+                    (samples.sum - upper.sum) / std::max(1.0, lower_count);
   return d[0] + 0.5 * d[1] - 3 * d[3] > 0;
 }
 
@@ -100,7 +118,7 @@ struct Parting {
 
 // The plane that parts the picture best: a grid over all attitudes, and a refinement of its best
 // point down to 0.02 degrees.
-Parting best_parting(const std::vector<Sample>& samples) {
+Parting best_parting(const Samples& samples) {
   Parting best;
   const auto look = [&](double pitch, double roll) {
     const double value = parted(samples, up_of(pitch, roll));
@@ -145,9 +163,13 @@ HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_airc
 }
 
 std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& picture) const {
-  std::vector<Sample> samples;
-  for (const Block& b : blocks_) samples.push_back({b.ray, feature_of(picture, b.x, b.y, step_)});
-  if (samples.size() < kMinBlocks) return std::nullopt;
+  Samples samples;
+  samples.rays.resize(static_cast<Eigen::Index>(blocks_.size()), 3);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    samples.rays.row(static_cast<Eigen::Index>(i)) = blocks_[i].ray.cast<float>().transpose();
+    samples.add(feature_of(picture, blocks_[i].x, blocks_[i].y, step_));
+  }
+  if (samples.features.size() < kMinBlocks) return std::nullopt;
   const Parting best = best_parting(samples);
   if (std::sqrt(best.value) < kMinSeparationSigmas) return std::nullopt;
   Vector3 up = up_of(best.pitch, best.roll);

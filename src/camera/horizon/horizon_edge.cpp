@@ -3,173 +3,111 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
+
+#include "camera/horizon/unrolled.h"
 
 namespace airtruth::motion {
 namespace {
 
-// The number of azimuths at which the horizon is looked for.
-constexpr int kColumns = 180;
 // The least number of azimuths at which the line lies in the picture. Chosen by judgement.
 constexpr int kMinColumns = 30;
 // A step of luma beyond this many code values adds little, so that weak steps all along a line
 // outweigh a strong step in one place.
 constexpr float kLargestStep = 6;
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-struct Sweep {
-  double low_deg, high_deg;  // the range of elevations above the guess
-  double step_deg;
-  double across_deg;     // the height of the band on either side of the line that is averaged
-  double most_tilt_deg;  // the largest tilt of a plane against the guess
-};
 // The first guess lies below the horizon, because haze hides up to a dozen degrees of ground. The
 // search therefore reaches higher than it reaches down.
 constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
 constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
 // One line only, for its sharpness.
 constexpr Sweep kLine{0, 0, 0.04, 0.2, 0};
-// The band of sky whose slope is subtracted from a step, in degrees above the averaged band. The
-// gap between the two leaves out the softness of the edge itself.
-constexpr double kSkyFromDeg = 0.3, kSkyToDeg = 1.1;
 // The least step of luma across the line, beyond the slope of the sky, in code values.
 constexpr float kMinStepCodes = 1;
-
-// Bilinear interpolation; NaN outside the picture and on the own aircraft.
-float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
-  const double x = p.x() - 0.5;
-  const double y = p.y() - 0.5;
-  const int ix = static_cast<int>(std::floor(x));
-  const int iy = static_cast<int>(std::floor(y));
-  if (ix < 0 || iy < 0 || ix + 1 >= picture.width || iy + 1 >= picture.height) return kNothing;
-  if (own_aircraft != nullptr && !own_aircraft->is_free(ix, iy)) return kNothing;
-  const auto fx = static_cast<float>(x - ix);
-  const auto fy = static_cast<float>(y - iy);
-  const std::uint8_t* upper = picture.planes[0].row(iy) + ix;
-  const std::uint8_t* lower = picture.planes[0].row(iy + 1) + ix;
-  const float a = static_cast<float>(upper[0]) * (1 - fx) + static_cast<float>(upper[1]) * fx;
-  const float b = static_cast<float>(lower[0]) * (1 - fx) + static_cast<float>(lower[1]) * fx;
-  return a * (1 - fy) + b * fy;
-}
-
-// The step of luma from below to above, by azimuth and elevation, and the step that the slope of
-// the sky above makes over the same angle. The latter is 0 where that sky is outside the picture.
-struct Unrolled {
-  std::vector<double> azimuth_rad;
-  std::vector<float> step, sky;  // [column][row]
-  int rows = 0;
-  std::size_t at(std::size_t column, int row) const {
-    return column * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
-  }
-};
-
-// The mean of `across` rows above a row less the mean of as many rows below it.
-float step_at(const std::vector<float>& luma, int row, int across) {
-  float sum = 0;
-  for (int k = 1; k <= across; ++k)
-    sum += luma[static_cast<std::size_t>(row + k)] - luma[static_cast<std::size_t>(row - k)];
-  return sum / static_cast<float>(across);
-}
-
-struct Rows {
-  int across, sky_from, sky_to;
-};
-
-float sky_at(const std::vector<float>& luma, int row, const Rows& rows) {
-  float sum = 0;
-  int seen = 0;
-  for (int r = row + rows.sky_from; r <= row + rows.sky_to; ++r) {
-    const float step = step_at(luma, r, rows.across);
-    if (std::isnan(step)) continue;
-    sum += step;
-    ++seen;
-  }
-  return seen > 0 ? sum / static_cast<float>(seen) : 0;
-}
-
-Rows rows_of(const Sweep& sweep) {
-  const auto rows = [&](double deg) { return static_cast<int>(std::lround(deg / sweep.step_deg)); };
-  return {std::max(1, rows(sweep.across_deg)),
-          rows(sweep.across_deg + kSkyFromDeg),
-          rows(sweep.across_deg + kSkyToDeg)};
-}
-
-// The axes of level are x ahead along the optical axis, y right and z down.
-Unrolled unroll(const image::Picture& picture,
-                const lens::Lens& lens,
-                const image::Mask* own_aircraft,
-                const Quaternion& cam_from_level,
-                const Sweep& sweep) {
-  Unrolled result;
-  const Rows rows = rows_of(sweep);
-  result.rows =
-      static_cast<int>(std::lround((sweep.high_deg - sweep.low_deg) / sweep.step_deg)) + 1;
-  const double half_rad = std::min(
-      kPi, radians(std::max(lens.horizontal_fov_deg(), lens.vertical_fov_deg())) / 2 * 1.1);
-  std::vector<float> luma(static_cast<std::size_t>(result.rows + 2 * rows.across + rows.sky_to));
-  for (int i = 0; i < kColumns; ++i) {
-    const double azimuth = half_rad * (2.0 * (i + 0.5) / kColumns - 1);
-    bool any = false;
-    for (std::size_t r = 0; r < luma.size(); ++r) {
-      const double e =
-          radians(sweep.low_deg + (static_cast<int>(r) - rows.across) * sweep.step_deg);
-      const Vector3 direction(
-          std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), -std::sin(e));
-      const auto pixel = lens.pixel_from_cam(cam_from_level * direction);
-      luma[r] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
-      any = any || !std::isnan(luma[r]);
-    }
-    if (!any) continue;
-    result.azimuth_rad.push_back(azimuth);
-    for (int r = rows.across; r < rows.across + result.rows; ++r) {
-      result.step.push_back(step_at(luma, r, rows.across));
-      result.sky.push_back(sky_at(luma, r, rows));
-    }
-  }
-  return result;
-}
 
 struct Line {
   double pitch_deg = 0, roll_deg = 0;  // elevation = pitch cos(azimuth) + roll sin(azimuth)
   float sum = 0;
 };
 
+// The edges along a line, or a single one: their sum, and the number of those that are seen.
+struct EdgeSum {
+  float sum = 0, seen = 0;
+};
+
 // A step without the share that the slope of the sky explains. The result never has the opposite
 // sign, because a strong edge would otherwise produce a second one below itself. The excess over
-// kLargestStep has a small weight, which puts the line into the middle of a strong edge.
-float edge_of(float step, float sky) {
+// kLargestStep has a small weight, which puts the line into the middle of a strong edge. A step
+// that is not seen (NaN) is no edge.
+EdgeSum edge_of(float step, float sky) {
   constexpr float kShareOfMore = 0.02f;
-  if (std::isnan(step)) return kNothing;
+  if (std::isnan(step)) return {};
   const float size = std::max(0.0f, std::abs(step) - std::abs(sky));
   const float more = std::max(0.0f, size - kLargestStep);
-  return std::copysign(size - more + kShareOfMore * more, step);
+  return {std::copysign(size - more + kShareOfMore * more, step), 1};
 }
+
+// The edges by azimuth and elevation, with an empty row below and above for lines that leave the
+// range of elevations.
+class Edges {
+ public:
+  Edges(const Unrolled& picture, const Sweep& sweep) : rows_(picture.rows + 2) {
+    for (std::size_t i = 0; i < picture.azimuth_rad.size(); ++i) {
+      const double azimuth = picture.azimuth_rad[i];
+      columns_.push_back({std::cos(azimuth) / sweep.step_deg, std::sin(azimuth) / sweep.step_deg});
+      edges_.emplace_back();
+      for (int row = 0; row < picture.rows; ++row) {
+        const std::size_t at = picture.at(i, row);
+        edges_.push_back(edge_of(picture.step[at], picture.sky[at]));
+      }
+      edges_.emplace_back();
+    }
+    // Rounds to the nearest row; the first row is the empty one.
+    first_row_ = 1.5 - sweep.low_deg / sweep.step_deg;
+  }
+
+  // Adds the edges along each line of this pitch to the sums of its roll.
+  void add_along(double pitch_deg,
+                 const std::vector<double>& rolls_deg,
+                 std::vector<EdgeSum>& sums) const {
+    const double last_row = rows_ - 1;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const EdgeSum* edges = edges_.data() + i * static_cast<std::size_t>(rows_);
+      const double row_without_roll = pitch_deg * columns_[i].cosine + first_row_;
+      for (std::size_t j = 0; j < rolls_deg.size(); ++j) {
+        const double row = row_without_roll + rolls_deg[j] * columns_[i].sine;
+        const EdgeSum& here = edges[static_cast<int>(std::min(std::max(row, 0.0), last_row))];
+        sums[j].sum += here.sum, sums[j].seen += here.seen;
+      }
+    }
+  }
+
+ private:
+  // Rows per degree of pitch and of roll.
+  struct Column {
+    double cosine, sine;
+  };
+  int rows_;
+  double first_row_ = 0;
+  std::vector<Column> columns_;
+  std::vector<EdgeSum> edges_;  // [column][row]
+};
 
 Line best_line(const Unrolled& picture, const Sweep& sweep) {
   Line best;
-  std::vector<float> edges;
-  for (std::size_t i = 0; i < picture.step.size(); ++i)
-    edges.push_back(edge_of(picture.step[i], picture.sky[i]));
-  const std::size_t columns = picture.azimuth_rad.size();
-  for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
-    for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
-      float sum = 0;
-      int seen = 0;
-      for (std::size_t i = 0; i < columns; ++i) {
-        const double e =
-            pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
-        const int row = static_cast<int>(std::lround((e - sweep.low_deg) / sweep.step_deg));
-        if (row < 0 || row >= picture.rows) continue;
-        const float edge = edges[picture.at(i, row)];
-        if (std::isnan(edge)) continue;
-        sum += edge;
-        ++seen;
-      }
-      if (seen < kMinColumns || std::abs(sum) <= std::abs(best.sum)) continue;
-      best = {pitch, roll, sum};
-    }
+  const Edges edges(picture, sweep);
+  std::vector<double> rolls_deg;
+  for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg)
+    rolls_deg.push_back(roll);
+  std::vector<EdgeSum> sums;
+  for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg) {
+    sums.assign(rolls_deg.size(), {});
+    edges.add_along(pitch, rolls_deg, sums);
+    for (std::size_t j = 0; j < rolls_deg.size(); ++j)
+      if (sums[j].seen >= kMinColumns && std::abs(sums[j].sum) > std::abs(best.sum))
+        best = {pitch, rolls_deg[j], sums[j].sum};
+  }
   return best;
 }
 

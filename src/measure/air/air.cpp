@@ -59,20 +59,17 @@ Air AirMeter::air(const std::stop_token& stop) const {
             NotMeasured{ground_.altitude_m ? why : why + "; and " + ground_.why_unknown},
             std::nullopt};
   }
-  if (!ground_.altitude_m)
-    return {*airlight, NotMeasured{ground_.why_unknown}, visibility_km(sky, kAssumedHeightM)};
-  if (const auto again = seen_again(stop))
-    return {again->airlight, again->extinction_per_km, std::nullopt};
-  const double height_m = *ground_.altitude_m;
-  const auto fading = fading_of_ground(
-      ground_patches(views_, lens_, own_aircraft_, height_m, tone_), sky, height_m);
-  if (!fading) return {*airlight, NotMeasured{fading.why()}, visibility_km(sky, height_m)};
+  const double height_m = ground_.altitude_m.value_or(kAssumedHeightM);
+  if (ground_.altitude_m)
+    if (const auto again = seen_again(stop))
+      return {again->airlight, again->extinction_per_km, std::nullopt};
+  const std::vector<SeenLight> ground =
+      ground_patches(views_, lens_, own_aircraft_, height_m, tone_);
+  const auto visibility_km = [&] { return visibility_by_horizon_km(ground, sky, height_m); };
+  if (!ground_.altitude_m) return {*airlight, NotMeasured{ground_.why_unknown}, visibility_km()};
+  const auto fading = fading_of_ground(ground, sky, height_m);
+  if (!fading) return {*airlight, NotMeasured{fading.why()}, visibility_km()};
   return {*airlight_of(sky, fading->horizon_rad), fading->extinction_per_km, std::nullopt};
-}
-
-std::optional<double> AirMeter::visibility_km(const SkyCurves& sky, double height_m) const {
-  return visibility_by_horizon_km(
-      ground_patches(views_, lens_, own_aircraft_, height_m, tone_), sky, height_m);
 }
 
 std::optional<SeenAgain> AirMeter::seen_again(const std::stop_token& stop) const {

@@ -67,7 +67,6 @@ class AirMeter {
   Measured<Sun> sun() const;
 
  private:
-  std::optional<double> visibility_km(const SkyCurves& sky, double height_m) const;
   std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
   // The samples above the horizon, rotated by `level_from_world`.
   std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;

@@ -54,6 +54,7 @@ void append_patches(std::vector<SeenLight>& all,
   const double across_m = farthest_m * pixel_rad;
   const double along_m = across_m / std::sin(radians(kPatchDepressionDeg));
   std::map<std::pair<int, int>, Patch> patches;
+  auto last = patches.end();
   for (const SeenLight& g : ground) {
     const double range_m = altitude_m / std::sin(-g.elevation_rad);
     if (range_m > farthest_m) {
@@ -63,7 +64,10 @@ void append_patches(std::vector<SeenLight>& all,
     const int ring = static_cast<int>(range_m / along_m);
     const double middle_m = (ring + 0.5) * along_m;
     const int place = static_cast<int>(std::floor(g.azimuth_rad * middle_m / across_m));
-    patches[{ring, place}].add(g);
+    const std::pair<int, int> at{ring, place};
+    // Neighbouring pixels of near ground mostly show the same patch.
+    if (last == patches.end() || last->first != at) last = patches.try_emplace(at).first;
+    last->second.add(g);
   }
   for (const auto& [place, patch] : patches) all.push_back(patch.mean);
 }

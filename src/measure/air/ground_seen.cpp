@@ -33,18 +33,23 @@ constexpr std::size_t kBands = kBordersDeg.size() - 1;
 constexpr double kMinPixelsInBand = 1000;
 
 struct Sum {
-  double count = 0, range = 0, depression_rad = 0;
+  double count = 0, range = 0;
   Eigen::Vector2d way = Eigen::Vector2d::Zero();
   std::array<double, 3> light{};
 
   void add(const Eigen::Vector2d& to_pixel, double range_of_it, const image::Rgb& linear) {
-    count += 1, range += range_of_it, depression_rad += std::asin(1 / range_of_it);
+    count += 1, range += range_of_it;
     way += to_pixel;
     for (std::size_t c = 0; c < 3; ++c) light[c] += double(linear[c]);
   }
   std::array<double, 3> mean_light() const {
     return {light[0] / count, light[1] / count, light[2] / count};
   }
+};
+
+// The pixels of a band, and the sum of their depressions.
+struct BandSum : Sum {
+  double depression_rad = 0;
 };
 
 int sector_of(const Eigen::Vector2d& way) {
@@ -72,28 +77,29 @@ class Gatherer {
     const image::ColourCode code(view.picture->colour);
     const Quaternion level_from_cam = level_from_world * view.cam_from_world.conjugate();
     std::map<Place, Sum> sums;
+    auto last = sums.end();
     for (const PixelRay& ray : rays_) {
       const auto way = place_on_ground(level_from_cam * ray.in_cam);
       if (!way) continue;
-      const double range = std::hypot(way->norm(), 1.0);
+      const double range = std::sqrt(way->squaredNorm() + 1);
       const auto band = band_of(range);
       const bool in_square = range >= kMinRange && range <= farthest;
       if (!band && !in_square) continue;
       const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone_);
-      if (band)
-        bands_[static_cast<std::size_t>(sector_of(*way)) * kBands + *band].add(*way, range, linear);
+      if (band) {
+        BandSum& sum = bands_[static_cast<std::size_t>(sector_of(*way)) * kBands + *band];
+        sum.add(*way, range, linear);
+        sum.depression_rad += std::asin(1 / range);
+      }
+      if (!in_square) continue;
       const Eigen::Vector2d place = at + *way;
-      if (in_square)
-        sums[{static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))}]
-            .add(*way, range, linear);
+      const Place square{static_cast<int>(std::floor(place.x())),
+                         static_cast<int>(std::floor(place.y()))};
+      // Neighbouring pixels mostly show the same square.
+      if (last == sums.end() || last->first != square) last = sums.try_emplace(square).first;
+      last->second.add(*way, range, linear);
     }
-    for (const auto& [place, sum] : sums) {
-      const double range = sum.range / sum.count;
-      const double whole = 1 / (range * range * range * step_rad_ * step_rad_);
-      if (sum.count < std::max(kMinPixels, kMinShareSeen * whole)) continue;
-      const int square = numbers_.emplace(place, static_cast<int>(numbers_.size())).first->second;
-      seen_.squares.push_back({square, sector_of(sum.way), range, sum.mean_light()});
-    }
+    add_squares(sums);
   }
 
   GroundSeen seen() {
@@ -101,7 +107,7 @@ class Gatherer {
                      seen_.squares.end(),
                      [](const SquareSeen& a, const SquareSeen& b) { return a.square < b.square; });
     for (std::size_t i = 0; i < bands_.size(); ++i)
-      if (const Sum& band = bands_[i]; band.count >= kMinPixelsInBand)
+      if (const BandSum& band = bands_[i]; band.count >= kMinPixelsInBand)
         seen_.far.push_back({static_cast<int>(i / kBands),
                              1 / std::sin(band.depression_rad / band.count),
                              band.mean_light()});
@@ -110,6 +116,17 @@ class Gatherer {
 
  private:
   using Place = std::pair<int, int>;
+
+  // Adds the squares of one view of which enough is seen.
+  void add_squares(const std::map<Place, Sum>& sums) {
+    for (const auto& [place, sum] : sums) {
+      const double range = sum.range / sum.count;
+      const double whole = 1 / (range * range * range * step_rad_ * step_rad_);
+      if (sum.count < std::max(kMinPixels, kMinShareSeen * whole)) continue;
+      const int square = numbers_.emplace(place, static_cast<int>(numbers_.size())).first->second;
+      seen_.squares.push_back({square, sector_of(sum.way), range, sum.mean_light()});
+    }
+  }
 
   std::optional<std::size_t> band_of(double range) const {
     for (std::size_t i = kBands; i > 0 && range >= borders_[i]; --i)
@@ -124,7 +141,7 @@ class Gatherer {
   // Ranges of the borders, heights; 0 for a border within a pixel of the horizon.
   std::array<double, kBands + 1> borders_{};
   // The bands of one sector after those of the other.
-  std::vector<Sum> bands_;
+  std::vector<BandSum> bands_;
   GroundSeen seen_;
 };
 

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
-#include "camera/motion/corners.h"
 #include "foundation/base/error.h"
+#include "measure/air/ground_map.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -17,146 +18,29 @@ namespace {
 // surroundings_slow_test.cpp, whose figures are in docs/realism.md.
 
 // Lengths in heights: multiples of the camera's height above the ground.
-// Range of the ground that is used, measured from the camera.
-constexpr double kMinRange = 0.8, kMaxRange = 14;
-// Size of a cell of the rectified view.
-constexpr double kCell = 0.1;
+// Size of a cell of the rectified views, and of one in the first search for the horizon, which
+// takes a quarter of the cells.
+constexpr double kCell = 0.1, kCoarseCell = 0.2;
 // Largest distance between one view and the next.
 constexpr double kMaxBetweenViews = 3;
-// Size of the window in which the contrast is equalised.
-constexpr double kContrastWindow = 1.1;
 // Distance between the views whose agreement determines the horizon.
 constexpr double kFarViewDistance = 2.5;
-// Least correlation of such views, 0 to 1, with which the path counts as followed.
-constexpr double kMinAgreement = 0.25;
+// Search radius about the expected displacement of views that are farther apart.
+constexpr double kAround = 0.4;
+static_assert(2 * kFarViewDistance > kMaxBetweenViews);
+// Largest displacement at which two views are compared; the rest is for rounding and for the
+// neighbours of the maximum.
+constexpr double kMaxDisplacement = 2 * kFarViewDistance + kAround + 2 * kCoarseCell;
+// Least correlation of such views, 0 to 1, with which the path counts as followed. Below
+// kMinCoarseAgreement in the coarse search the fine one is not made: over coarse and fine cells the
+// correlations differed by at most 0.07 on two virtual and three real flights.
+constexpr double kMinAgreement = 0.25, kMinCoarseAgreement = 0.12;
 // Spacing of the tilts that are tried, degrees, and of the first, coarse search in such steps.
 constexpr double kTiltStepDeg = 0.25;
 constexpr int kCoarse = 4, kMaxTiltSteps = static_cast<int>(kMaxTiltDeg / kTiltStepDeg);
 static_assert(kMaxTiltSteps % kCoarse == 0);
 // Least number of views for a path.
 constexpr std::size_t kMinViews = 4;
-// Side of the rectified view, and largest displacement from one view to the next, cells.
-constexpr int kSide = 2 * static_cast<int>(kMaxRange / kCell) + 1;
-constexpr int kReach = static_cast<int>(kMaxBetweenViews / kCell);
-// Search radius, in cells, about the expected displacement of views that are farther apart.
-constexpr int kAround = 4;
-// Size of the padded view: the cyclic correlation must not wrap around.
-constexpr int kPadded = kSide + static_cast<int>(2 * kFarViewDistance / kCell) + kAround + 1;
-static_assert(2 * kFarViewDistance > kMaxBetweenViews);
-
-// Spectra of a view that is rectified to the ground plane (rows north, columns east): of its
-// contrast, which is 0 where nothing is seen, and of the mask of what is seen.
-struct Straightened {
-  cv::Mat spectrum, seen_spectrum;
-};
-
-// The light with its local mean subtracted and its local contrast equalised. Cells that are not
-// seen have the value 0.
-cv::Mat evened(const cv::Mat& light, const cv::Mat& seen) {
-  const int window = static_cast<int>(kContrastWindow / kCell) | 1;
-  const cv::Size size(window, window);
-  cv::Mat count, sum, squares;
-  cv::boxFilter(seen, count, CV_32F, size, {-1, -1}, true, cv::BORDER_CONSTANT);
-  cv::boxFilter(light, sum, CV_32F, size, {-1, -1}, true, cv::BORDER_CONSTANT);
-  cv::boxFilter(light.mul(light), squares, CV_32F, size, {-1, -1}, true, cv::BORDER_CONSTANT);
-  cv::Mat result(light.size(), CV_32F, cv::Scalar(0));
-  for (int y = 0; y < light.rows; ++y)
-    for (int x = 0; x < light.cols; ++x) {
-      if (seen.at<float>(y, x) == 0) continue;
-      const float n = count.at<float>(y, x);
-      const float mean = sum.at<float>(y, x) / n;
-      const float variance = squares.at<float>(y, x) / n - mean * mean;
-      // Squared code values.
-      constexpr float kMinVariance = 0.25F;
-      result.at<float>(y, x) = std::clamp(
-          (light.at<float>(y, x) - mean) / std::sqrt(variance + kMinVariance), -3.0F, 3.0F);
-    }
-  return result;
-}
-
-cv::Mat spectrum_of(const cv::Mat& image) {
-  const int side = cv::getOptimalDFTSize(kPadded);
-  cv::Mat padded(side, side, CV_32F, cv::Scalar(0)), spectrum;
-  image.copyTo(padded(cv::Rect(0, 0, image.cols, image.rows)));
-  cv::dft(padded, spectrum);
-  return spectrum;
-}
-
-Straightened straightened(const GroundView& view,
-                          const lens::Lens& lens,
-                          const image::Mask* own_aircraft,
-                          const Quaternion& level_from_world) {
-  const cv::Mat grey = motion::luma_of(*view.picture);
-  const Quaternion cam_from_level = view.cam_from_world * level_from_world.conjugate();
-  cv::Mat light(kSide, kSide, CV_32F, cv::Scalar(0)), seen(kSide, kSide, CV_32F, cv::Scalar(0));
-  for (int row = 0; row < kSide; ++row)
-    for (int column = 0; column < kSide; ++column) {
-      const Eigen::Vector2d place(row * kCell - kMaxRange, column * kCell - kMaxRange);
-      const double far = place.norm();
-      if (far < kMinRange || far > kMaxRange) continue;
-      const auto pixel = lens.pixel_from_cam(cam_from_level * Vector3(place.x(), place.y(), 1));
-      if (!pixel) continue;
-      const double x = pixel->x() - 0.5, y = pixel->y() - 0.5;
-      const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
-      if (ix < 0 || iy < 0 || ix + 1 >= grey.cols || iy + 1 >= grey.rows) continue;
-      if (own_aircraft != nullptr && !own_aircraft->is_free(ix, iy)) continue;
-      const double fx = x - ix, fy = y - iy;
-      const auto at = [&](int i, int j) { return double(grey.at<unsigned char>(iy + j, ix + i)); };
-      light.at<float>(row, column) =
-          static_cast<float>((1 - fy) * ((1 - fx) * at(0, 0) + fx * at(1, 0)) +
-                             fy * ((1 - fx) * at(0, 1) + fx * at(1, 1)));
-      seen.at<float>(row, column) = 1;
-    }
-  return {spectrum_of(evened(light, seen)), spectrum_of(seen)};
-}
-
-cv::Mat correlated(const cv::Mat& from, const cv::Mat& to) {
-  cv::Mat product, result;
-  cv::mulSpectrums(from, to, product, 0, true);
-  cv::dft(product, result, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
-  return result;
-}
-
-// The position, from -1/2 to 1/2, of the maximum of a parabola through three neighbouring values.
-double peak(double before, double middle, double after) {
-  const double bend = 2 * middle - before - after;
-  return bend > 0 ? std::clamp(0.5 * (after - before) / bend, -0.5, 0.5) : 0;
-}
-
-struct Laid {
-  // Motion of the camera, heights.
-  Eigen::Vector2d moved;
-  double agreement = 0;
-};
-
-// Registers the ground of `from` in `to`. The search covers the given number of cells about
-// `expected` (heights).
-std::optional<Laid> laid_over(const Straightened& from,
-                              const Straightened& to,
-                              const Eigen::Vector2d& expected,
-                              int reach) {
-  const cv::Mat products = correlated(from.spectrum, to.spectrum);
-  const cv::Mat counts = correlated(from.seen_spectrum, to.seen_spectrum);
-  const auto wrapped = [&](int i) { return (i % products.rows + products.rows) % products.rows; };
-  const float enough = 0.02F * kSide * kSide;
-  const auto at = [&](int row, int column) {
-    const float n = counts.at<float>(wrapped(row), wrapped(column));
-    return n < enough ? -1.0 : double(products.at<float>(wrapped(row), wrapped(column)) / n);
-  };
-  // Ground that the camera approaches is farther away in the earlier view.
-  const int row0 = static_cast<int>(std::lround(expected.x() / kCell));
-  const int column0 = static_cast<int>(std::lround(expected.y() / kCell));
-  int row = 0, column = 0;
-  double best = -1;
-  for (int i = row0 - reach; i <= row0 + reach; ++i)
-    for (int j = column0 - reach; j <= column0 + reach; ++j)
-      if (const double a = at(i, j); a > best) best = a, row = i, column = j;
-  if (best <= 0) return std::nullopt;
-  return Laid{
-      kCell * Eigen::Vector2d(row + peak(at(row - 1, column), best, at(row + 1, column)),
-                              column + peak(at(row, column - 1), best, at(row, column + 1))),
-      best};
-}
 
 // The level axis to the right of the mean direction of view.
 Vector3 right_of(const std::vector<GroundView>& views) {
@@ -166,27 +50,13 @@ Vector3 right_of(const std::vector<GroundView>& views) {
   return right.norm() > 0 ? right.normalized() : Vector3(0, 1, 0);
 }
 
-// The rectified views under an assumed horizon.
-std::vector<Straightened> straightened_views(const std::vector<GroundView>& views,
-                                             const lens::Lens& lens,
-                                             const image::Mask* own_aircraft,
-                                             const Quaternion& level_from_world) {
-  std::vector<Straightened> flat(views.size());
-  cv::parallel_for_({0, static_cast<int>(views.size())}, [&](const cv::Range& range) {
-    for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
-         ++k)
-      flat[k] = straightened(views[k], lens, own_aircraft, level_from_world);
-  });
-  return flat;
-}
-
 // The registration of each view with the one before it.
-std::vector<std::optional<Laid>> registrations(const std::vector<Straightened>& flat) {
-  std::vector<std::optional<Laid>> next(flat.size());
-  cv::parallel_for_({1, static_cast<int>(flat.size())}, [&](const cv::Range& range) {
+std::vector<std::optional<Laid>> registrations(const GroundMaps& maps) {
+  std::vector<std::optional<Laid>> next(maps.size());
+  cv::parallel_for_({1, static_cast<int>(maps.size())}, [&](const cv::Range& range) {
     for (auto k = static_cast<std::size_t>(range.start); k < static_cast<std::size_t>(range.end);
          ++k)
-      next[k] = laid_over(flat[k - 1], flat[k], Eigen::Vector2d::Zero(), kReach);
+      next[k] = maps.laid_over(k - 1, k, Eigen::Vector2d::Zero(), kMaxBetweenViews);
   });
   return next;
 }
@@ -210,7 +80,7 @@ GroundTrack longest_run(const std::vector<std::optional<Laid>>& next, const Grou
 }
 
 // The mean agreement of views of the track that are kFarViewDistance apart; 0 without any.
-double far_agreement(const GroundTrack& track, const std::vector<Straightened>& flat) {
+double far_agreement(const GroundTrack& track, const GroundMaps& maps) {
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0, j = 0; i < track.places.size(); ++i) {
@@ -219,25 +89,48 @@ double far_agreement(const GroundTrack& track, const std::vector<Straightened>& 
     if (j == track.places.size()) break;
     const Eigen::Vector2d moved = track.places[j] - track.places[i];
     if (moved.norm() > 2 * kFarViewDistance) continue;
-    const auto laid = laid_over(flat[track.first + i], flat[track.first + j], moved, kAround);
+    const auto laid = maps.laid_over(track.first + i, track.first + j, moved, kAround);
     sum += laid ? laid->agreement : 0;
     ++count;
   }
   return count > 0 ? sum / count : 0;
 }
 
-GroundTrack track_at(const std::vector<GroundView>& views,
-                     const lens::Lens& lens,
-                     const image::Mask* own_aircraft,
-                     double horizon_rad) {
+// What the views are, and how they are rectified.
+struct Scenery {
+  const std::vector<GroundView>& views;
+  const lens::Lens& lens;
+  const image::Mask* own_aircraft;
+};
+
+// The track under an assumed horizon, by rectified views with cells of the given size.
+GroundTrack track_at(const Scenery& scenery, double horizon_rad, double cell) {
   // The assumed horizon is higher, so the direction that was level lies below it.
-  const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(views)));
-  const std::vector<Straightened> flat =
-      straightened_views(views, lens, own_aircraft, level_from_world);
-  GroundTrack best = longest_run(registrations(flat),
+  const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(scenery.views)));
+  const GroundMaps maps(scenery.views,
+                        scenery.lens,
+                        scenery.own_aircraft,
+                        level_from_world,
+                        {cell, kMaxDisplacement});
+  GroundTrack best = longest_run(registrations(maps),
                                  {0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0});
-  best.agreement = far_agreement(best, flat);
+  best.agreement = far_agreement(best, maps);
   return best;
+}
+
+// The tilt, in steps, from which the fine search begins: the best of a coarse one. Empty where that
+// is at either end of the range, or where no tilt lets the views agree. `at` gives the track at a
+// number of steps by cells of a size.
+std::optional<int> coarse_tilt(const std::function<GroundTrack(double, double)>& at) {
+  std::vector<double> agreements;
+  for (int steps = -kMaxTiltSteps; steps <= kMaxTiltSteps; steps += kCoarse)
+    agreements.push_back(at(steps, kCoarseCell).agreement);
+  const auto best = std::max_element(agreements.begin(), agreements.end());
+  if (best == agreements.begin() || best + 1 == agreements.end() || *best < kMinCoarseAgreement)
+    return std::nullopt;
+  const double place =
+      double(best - agreements.begin()) + peak_offset(*(best - 1), *best, *(best + 1));
+  return static_cast<int>(std::lround(kCoarse * place)) - kMaxTiltSteps;
 }
 
 }  // namespace
@@ -254,28 +147,28 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
                                         const image::Mask* own_aircraft,
                                         const std::stop_token& stop) {
   if (views.size() < kMinViews) return std::nullopt;
-  const auto at = [&](double steps) {
+  const Scenery scenery{views, lens, own_aircraft};
+  const auto at = [&](double steps, double cell) {
     if (stop.stop_requested()) throw Interrupted();
-    return track_at(views, lens, own_aircraft, radians(kTiltStepDeg) * steps);
+    return track_at(scenery, radians(kTiltStepDeg) * steps, cell);
   };
+  const auto start = coarse_tilt(at);
+  if (!start) return std::nullopt;
   // The agreement by the number of tilt steps.
   std::map<int, double> known;
   const auto agreement = [&](int steps) {
     const auto [found, is_new] = known.try_emplace(steps, 0.0);
-    if (is_new) found->second = at(steps).agreement;
+    if (is_new) found->second = at(steps, kCell).agreement;
     return found->second;
   };
-  int best = -kMaxTiltSteps;
-  for (int steps = -kMaxTiltSteps; steps <= kMaxTiltSteps; steps += kCoarse)
-    if (agreement(steps) > agreement(best)) best = steps;
-  if (std::abs(best) == kMaxTiltSteps) return std::nullopt;
-  for (int step = kCoarse / 2; step > 0; step /= 2) {
-    const int middle = best;
-    for (const int steps : {middle - step, middle + step})
-      if (agreement(steps) > agreement(best)) best = steps;
+  int best = *start;
+  for (int climbed = 0; climbed < kCoarse; ++climbed) {
+    const int next = agreement(best + 1) > agreement(best - 1) ? best + 1 : best - 1;
+    if (agreement(next) <= agreement(best)) break;
+    best = next;
   }
   const double before = agreement(best - 1), after = agreement(best + 1);
-  GroundTrack track = at(best + peak(before, agreement(best), after));
+  GroundTrack track = at(best + peak_offset(before, agreement(best), after), kCell);
   if (track.agreement < kMinAgreement) return std::nullopt;
   return track;
 }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include "measure/air/fading_system.h"
 
 namespace airtruth::calibration {
 namespace {
@@ -23,15 +24,14 @@ constexpr std::size_t kMinSquares = 300;
 // their count.
 constexpr double kSquareError = 0.05, kMinSquareError = 0.004;
 constexpr double kIndependentViews = 4, kIndependentShare = 0.3;
-// Error of the light of far ground: as a share of the light of the mean ground, and its lower bound
-// in linear light. kMeanPrior is the relative error of that mean.
-constexpr double kFarError = 0.25, kMinFarError = 0.006, kMeanPrior = 0.05;
+// Relative error of the light of the mean ground.
+constexpr double kMeanPrior = 0.05;
 // Standard deviation of the prior that the airlight equals the light of the sky at the horizon: for
 // sectors in which the sky was seen, and for the others.
 constexpr double kSkyPrior = 0.03, kUnseenSkyPrior = 0.15;
-// Range in heights at which the loss of contrast among squares is stated, and the prior error of
-// that loss. Large pixels and errors of the path mix the light of neighbouring squares.
-constexpr double kMixedRange = 15, kMixedPrior = 0.03;
+// Prior error of the loss of contrast among squares (fading_system.h). Large pixels and errors of
+// the path mix the light of neighbouring squares.
+constexpr double kMixedPrior = 0.03;
 // The extinction follows the wavelength to the power of -slope (Angstrom 1929): mean and standard
 // deviation of the prior of the slope, its largest value and the spacing of those that are tried.
 // Air between haze, where the slope is near 0, and small particles, where it is above 1.
@@ -46,6 +46,11 @@ constexpr double kMaxRelativeError = 0.3;
 // Number and range of the extinctions that are tried, per km, in equal ratios.
 constexpr int kTried = 240;
 constexpr double kMinExtinctionPerKm = 0.01, kMaxExtinctionPerKm = 2;
+// Spacing of the first search for the least cost among them. The cost has one minimum, which is
+// many times as wide.
+constexpr int kCoarseTried = 16;
+// Excess over the least cost beyond which a hypothesis has no weight: exp(-100 / 2) is 2e-22.
+constexpr double kMaxExcessCost = 100;
 double tried(double i) {
   return kMinExtinctionPerKm *
          std::pow(kMaxExtinctionPerKm / kMinExtinctionPerKm, i / (kTried - 1));
@@ -54,52 +59,6 @@ double place_of(double per_km) {
   return std::log(per_km / kMinExtinctionPerKm) /
          std::log(kMaxExtinctionPerKm / kMinExtinctionPerKm) * (kTried - 1);
 }
-
-// The unknowns of one channel: the airlight of each sector, the mean light of the ground, and the
-// relative change of contrast among squares at the range kMixedRange, which grows with the range
-// squared.
-constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
-using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-
-// One channel of a square in a view, or of a band of far ground.
-struct Row {
-  int square = 0, sector = 0;
-  double range = 0, light = 0;
-  // `contrast` is used for squares alone: their own light minus the mean.
-  double weight = 1, contrast = 0;
-};
-
-// Weighted least squares for one extinction. The squares' own light is eliminated, since each
-// occurs only in the rows of its own square.
-struct System {
-  struct Square {
-    double tt = 0, ty = 0;
-    Unknowns ta = Unknowns::Zero();
-  };
-  std::vector<Square> squares;
-  Normal aa = Normal::Zero();
-  Unknowns ay = Unknowns::Zero();
-  double yy = 0;
-
-  // Adds the prior that `unknown` is `value`, with the relative error `trust`.
-  void expect(int unknown, double value, double trust);
-  // Adds a square in a view, and a band of far ground; `t` is the share of its light that arrives.
-  void add_square(const Row& row, double t);
-  void add_far(const Row& row, double t, double mean_light);
-  // Eliminates the squares' own light. It is called once, after all squares were added.
-  void eliminate_own_light();
-
-  Unknowns solution() const { return aa.ldlt().solve(ay); }
-  double cost() const { return yy - ay.dot(solution()); }
-  Unknowns sigma() const { return aa.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt(); }
-  std::vector<double> own_light() const {
-    const Unknowns x = solution();
-    std::vector<double> own;
-    for (const Square& q : squares) own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(x)) / q.tt : 0);
-    return own;
-  }
-};
 
 struct Channel {
   std::vector<Row> squares, far;
@@ -111,41 +70,12 @@ struct Channel {
 
   System system(double per_height) const;
   void weigh(double per_height);
-  // Computes the cost of every extinction, with the weights that belong to the best one.
+  // The number of the extinction with the least cost, under the weights of the rows.
+  int least_cost(double altitude_m) const;
+  // Computes the cost of every extinction, with the weights that belong to the best one. A cost
+  // that exceeds the least one by more than kMaxExcessCost is a lower bound.
   void try_all(double altitude_m);
 };
-
-void System::expect(int unknown, double value, double trust) {
-  const double weight = 1 / (trust * value * trust * value);
-  aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
-}
-
-void System::add_square(const Row& r, double t) {
-  Square& q = squares[static_cast<std::size_t>(r.square)];
-  const double air = 1 - t;
-  const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
-  q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
-  q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
-  aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
-  aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
-  ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
-  yy += r.weight * r.light * r.light;
-}
-
-void System::eliminate_own_light() {
-  for (const Square& q : squares) {
-    if (q.tt == 0) continue;
-    aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
-  }
-}
-
-void System::add_far(const Row& r, double t, double mean_light) {
-  const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
-  const double w = 1 / (error * error);
-  Unknowns row = Unknowns::Zero();
-  row[r.sector] = 1 - t, row[kMean] = t;
-  aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
-}
 
 System Channel::system(double per_height) const {
   System result;
@@ -178,14 +108,43 @@ void Channel::weigh(double per_height) {
   for (Row& r : squares) r.contrast -= mean_light;
 }
 
+int Channel::least_cost(double altitude_m) const {
+  std::map<int, double> known;
+  const auto cost_at = [&](int i) {
+    const auto [found, is_new] = known.try_emplace(i, 0.0);
+    if (is_new) found->second = system(tried(i) * altitude_m * 1e-3).cost();
+    return found->second;
+  };
+  int best = 0;
+  for (int i = 0; i < kTried; i += kCoarseTried)
+    if (cost_at(i) < cost_at(best)) best = i;
+  for (int step = kCoarseTried / 2; step > 0; step /= 2) {
+    const int middle = best;
+    for (const int i : {std::max(0, middle - step), std::min(kTried - 1, middle + step)})
+      if (cost_at(i) < cost_at(best)) best = i;
+  }
+  return best;
+}
+
 void Channel::try_all(double altitude_m) {
-  cost.resize(kTried);
-  double best = 0.1;
-  for (int round = 0; round < 3; ++round) {
-    weigh(best * altitude_m * 1e-3);
-    for (int i = 0; i < kTried; ++i)
-      cost[static_cast<std::size_t>(i)] = system(tried(i) * altitude_m * 1e-3).cost();
-    best = tried(double(std::min_element(cost.begin(), cost.end()) - cost.begin()));
+  const auto per_height = [&](int i) { return tried(i) * altitude_m * 1e-3; };
+  double start_per_km = 0.1;
+  for (int round = 0; round < 2; ++round) {
+    weigh(start_per_km * altitude_m * 1e-3);
+    start_per_km = tried(least_cost(altitude_m));
+  }
+  weigh(start_per_km * altitude_m * 1e-3);
+  const int best = least_cost(altitude_m);
+  cost.assign(kTried, 0);
+  cost[static_cast<std::size_t>(best)] = system(per_height(best)).cost();
+  // Away from the best one, up to the excess beyond which a cost has no weight.
+  for (const int way : {-1, 1}) {
+    double last = cost[static_cast<std::size_t>(best)];
+    const double most = last + kMaxExcessCost;
+    for (int i = best + way; i >= 0 && i < kTried; i += way) {
+      if (last < most) last = system(per_height(i)).cost();
+      cost[static_cast<std::size_t>(i)] = last;
+    }
   }
 }
 

@@ -39,6 +39,16 @@ constexpr std::int64_t kMinFrames = 8;
 // Field of view that is assumed for finding the horizon when no lens is given.
 constexpr double kAssumedFovDeg = 60;
 
+// A single decoder thread: with several, the decoder exports the quantisers of a frame while
+// another thread still fills them in, and the codec's step changes from run to run.
+video::ReaderOptions reader_options(const Options& options) {
+  return {.first_frame = options.first_frame,
+          .frame_count = options.frame_count,
+          .threads = 1,
+          .with_quantiser = true,
+          .with_cuts = true};
+}
+
 bool is_measured(const motion::FrameMotion& motion) {
   return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
 }
@@ -47,7 +57,7 @@ class Session {
  public:
   Session(const fs::path& video, const Options& options)
       : options_(options),
-        reader_(video, {options.first_frame, options.frame_count, 0, true, true}, options.warn),
+        reader_(video, reader_options(options), options.warn),
         noise_(options.own_aircraft, options.tone),
         edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),

@@ -29,14 +29,15 @@ constexpr double kMinChange = 0.001;
 // Largest number of rounds: it ends a fit that oscillates.
 constexpr int kMaxRounds = 12;
 
-// The Jacobian. Its columns are plateau, height, place, spread and, if it is unknown, the amount.
+// The Jacobian under a mask of the radius of `mask`. Its columns are plateau, height, place, spread
+// and, if it is unknown, the amount.
 Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
                           const EdgeFit& fit,
-                          double radius_px,
+                          const UnsharpMask& mask,
                           Eigen::Index unknowns,
                           const image::ToneCurve& tone) {
   const auto model = [&](double spread_px, double amount) {
-    return StepModel(spread_px, {amount, radius_px}, edge.low, edge.high, tone);
+    return StepModel(spread_px, mask.with_amount(amount), edge.low, edge.high, tone);
   };
   const StepModel here = model(fit.spread_px, fit.amount);
   const StepModel wider = model(fit.spread_px * std::exp(kDerivativeStep), fit.amount);
@@ -53,17 +54,25 @@ Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
   return slopes;
 }
 
+// Whether a fit is a point from which another one may begin: one that has not run to a bound.
+bool is_within_bounds(const EdgeFit& fit) {
+  return fit.spread_px > 2 * kMinSpreadPx && fit.spread_px < kMaxSpreadPx / 2 &&
+         fit.amount > kMinAmount / 2 && fit.amount < kMaxAmount / 2;
+}
+
 EdgeFit fitted(const GatheredEdge& edge,
-               double radius_px,
+               const UnsharpMask& mask,
                std::optional<double> amount,
-               const image::ToneCurve& tone) {
+               const image::ToneCurve& tone,
+               const EdgeFit& start) {
   const Eigen::Index unknowns = amount ? 4 : 5;
   const Eigen::VectorXd heights = edge.roots.cwiseProduct(edge.heights);
   EdgeFit fit;
-  fit.amount = amount.value_or(0);
+  fit.spread_px = start.spread_px;
+  fit.amount = amount.value_or(start.amount);
   for (int round = 0; round < kMaxRounds; ++round) {
     const Eigen::MatrixXd slopes =
-        edge.roots.asDiagonal() * slopes_of(edge, fit, radius_px, unknowns, tone);
+        edge.roots.asDiagonal() * slopes_of(edge, fit, mask, unknowns, tone);
     Eigen::MatrixXd square = slopes.transpose() * slopes;
     square.diagonal().array() += 1e-9 * square.trace();
     const Eigen::MatrixXd inverse = square.inverse();
@@ -117,10 +126,13 @@ GatheredEdge::GatheredEdge(const StepEdge& step) : low(step.low), high(step.high
 std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
                                double radius_px,
                                std::optional<double> amount,
-                               const image::ToneCurve& tone) {
+                               const image::ToneCurve& tone,
+                               const std::vector<EdgeFit>& start) {
   std::vector<EdgeFit> fits(edges.size());
+  const UnsharpMask mask(0, radius_px);
   tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t e) {
-    fits[e] = fitted(edges[e], radius_px, amount, tone);
+    const bool is_known = !start.empty() && is_within_bounds(start[e]);
+    fits[e] = fitted(edges[e], mask, amount, tone, is_known ? start[e] : EdgeFit{});
   });
   return fits;
 }

@@ -39,10 +39,12 @@ struct EdgeFit {
 // Fits each edge under an unsharp mask of the given radius (standard deviation, px). The unknowns
 // of an edge are its place, its two plateaus, its spread and, if `amount` is empty, the amount of
 // the mask. The method is Gauss-Newton, with place and plateaus eliminated by variable projection
-// (Golub and Pereyra 1973). The result has one fit per edge, in order.
+// (Golub and Pereyra 1973). The result has one fit per edge, in order. `start`: fits of the same
+// edges under another mask, from which the iterations begin; empty if there are none.
 std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
                                double radius_px,
                                std::optional<double> amount,
-                               const image::ToneCurve& tone);
+                               const image::ToneCurve& tone,
+                               const std::vector<EdgeFit>& start = {});
 
 }  // namespace airtruth::calibration

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #include "foundation/geometry/transform.h"
 
 namespace airtruth::calibration {
@@ -30,6 +32,12 @@ UnsharpMask::UnsharpMask(double amount, double radius_px) : amount_(amount) {
   for (double& weight : kernel_) weight /= total;
 }
 
+UnsharpMask UnsharpMask::with_amount(double amount) const {
+  UnsharpMask other = *this;
+  other.amount_ = amount;
+  return other;
+}
+
 StepModel::StepModel(double spread_px,
                      const UnsharpMask& mask,
                      double low,
@@ -52,15 +60,19 @@ StepModel::StepModel(double spread_px,
 }
 
 void StepModel::sharpen(const UnsharpMask& mask) {
-  const std::size_t reach = mask.kernel_.size() / 2;
-  std::vector<double> beyond(reach, heights_.front());
-  beyond.insert(beyond.end(), heights_.begin(), heights_.end());
-  beyond.insert(beyond.end(), reach, heights_.back());
-  for (std::size_t i = 0; i < kCount; ++i) {
-    double soft = 0;
-    for (std::size_t j = 0; j < mask.kernel_.size(); ++j) soft += mask.kernel_[j] * beyond[i + j];
-    heights_[i] += mask.amount_ * (heights_[i] - soft);
-  }
+  const auto count = static_cast<Eigen::Index>(kCount);
+  const auto reach = static_cast<Eigen::Index>(mask.kernel_.size() / 2);
+  Eigen::ArrayXd beyond(count + 2 * reach);
+  beyond.head(reach) = heights_.front();
+  beyond.tail(reach) = heights_.back();
+  Eigen::Map<Eigen::ArrayXd> heights(heights_.data(), count);
+  beyond.segment(reach, count) = heights;
+  // The kernel is symmetric.
+  Eigen::ArrayXd soft = mask.kernel_[static_cast<std::size_t>(reach)] * heights;
+  for (Eigen::Index j = 0; j < reach; ++j)
+    soft += mask.kernel_[static_cast<std::size_t>(j)] *
+            (beyond.segment(j, count) + beyond.segment(2 * reach - j, count));
+  heights += mask.amount_ * (heights - soft);
 }
 
 double StepModel::slope(std::size_t i) const {

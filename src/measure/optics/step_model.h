@@ -16,6 +16,8 @@ namespace airtruth::calibration {
 class UnsharpMask {
  public:
   UnsharpMask(double amount, double radius_px);
+  // The mask of the same radius with another amount.
+  UnsharpMask with_amount(double amount) const;
 
  private:
   friend class StepModel;

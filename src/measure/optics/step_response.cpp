@@ -123,24 +123,24 @@ Estimate camera_spread(const std::vector<EdgeFit>& fits) {
 }
 
 // Reduces the weight of soft edges. The effect of the camera shows on sharp edges; softer ones do
-// not have a Gaussian profile and imply a negative amount of sharpening.
-void weigh(std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
-  const std::vector<EdgeFit> fits = fit_edges(edges, kMedianRadiusPx, 0, tone);
+// not have a Gaussian profile and imply a negative amount of sharpening. Returns the fits of the
+// edges without a mask.
+std::vector<EdgeFit> weigh(std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
+  std::vector<EdgeFit> fits = fit_edges(edges, kMedianRadiusPx, 0, tone);
   const double camera_px = camera_spread(fits).value;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const double softer =
         std::max(0.0, std::log(fits[e].spread_px / camera_px)) / kHalfWeightExcess;
     edges[e].weight = 1 / (1 + softer * softer);
   }
+  return fits;
 }
 
 // The amount of an unsharp mask of the given radius: the median over the edges, since lines in the
-// world imitate a mask on some edges and soft edges imitate the opposite.
-Estimate common_amount(const std::vector<GatheredEdge>& edges,
-                       double radius_px,
-                       const image::ToneCurve& tone) {
+// world imitate a mask on some edges and soft edges imitate the opposite. `fits` are the fits of
+// the edges under that radius.
+Estimate common_amount(const std::vector<GatheredEdge>& edges, const std::vector<EdgeFit>& fits) {
   std::vector<Weighted> amounts;
-  const std::vector<EdgeFit> fits = fit_edges(edges, radius_px, std::nullopt, tone);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const double error = std::hypot(fits[e].amount_error, kAmountScatter);
     amounts.push_back({fits[e].amount, edges[e].weight / (error * error)});
@@ -159,14 +159,13 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges,
   return {middle, scatter / std::sqrt(many)};
 }
 
-// The logarithm of the likelihood of a mask on all edges times the prior of its radius.
+// The logarithm of the likelihood of a mask on all edges times the prior of its radius. `fits` are
+// the fits of the edges under that mask.
 double log_likelihood(const std::vector<GatheredEdge>& edges,
-                      double radius_px,
-                      double amount,
-                      const image::ToneCurve& tone) {
+                      const std::vector<EdgeFit>& fits,
+                      double radius_px) {
   const double off = std::log(radius_px / kMedianRadiusPx) / kRadiusLogSigma;
   double sum = -0.5 * off * off;
-  const std::vector<EdgeFit> fits = fit_edges(edges, radius_px, amount, tone);
   for (std::size_t e = 0; e < edges.size(); ++e)
     sum -= kIndependentResiduals * edges[e].weight * std::log(std::max(fits[e].rms, kMinRms));
   return sum;
@@ -179,13 +178,15 @@ struct Mask {
 Mask likely_mask(const std::vector<GatheredEdge>& edges, const image::ToneCurve& tone) {
   std::vector<Likely> log_radii, amounts;
   for (const double radius_px : kTriedRadiiPx) {
-    const double amount = common_amount(edges, radius_px, tone).value;
-    const double likelihood = log_likelihood(edges, radius_px, amount, tone);
+    const std::vector<EdgeFit> fits = fit_edges(edges, radius_px, std::nullopt, tone);
+    const double amount = common_amount(edges, fits).value;
+    const double likelihood =
+        log_likelihood(edges, fit_edges(edges, radius_px, amount, tone, fits), radius_px);
     log_radii.push_back({std::log(radius_px), likelihood});
     amounts.push_back({amount, likelihood});
   }
   Mask mask{{}, from_logarithm(mean_of(log_radii))};
-  mask.amount = common_amount(edges, mask.radius_px.value, tone);
+  mask.amount = common_amount(edges, fit_edges(edges, mask.radius_px.value, std::nullopt, tone));
   // A camera's mask does not soften. A weak mask is hardly distinguishable from no mask with a
   // slightly smaller spread.
   if (mask.amount.value <= kMinAmountInErrors * mask.amount.sigma)
@@ -212,10 +213,10 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   check(!edges.empty(), "a step response needs an edge");
   std::vector<GatheredEdge> all;
   for (const StepEdge* edge : edges) all.emplace_back(*edge);
-  weigh(all, tone);
+  const std::vector<EdgeFit> unmasked = weigh(all, tone);
   const Mask mask = likely_mask(all, tone);
   const auto under = [&](double amount) {
-    return fit_edges(all, mask.radius_px.value, amount, tone);
+    return fit_edges(all, mask.radius_px.value, amount, tone, unmasked);
   };
   const std::vector<EdgeFit> fits = under(mask.amount.value);
   StepResponse response{camera_spread(fits), mask.amount, mask.radius_px, {}};

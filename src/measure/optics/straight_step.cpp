@@ -23,7 +23,7 @@ constexpr double kLevelFromPx = 3.5;
 constexpr double kMinHeightCodes = 24;
 // Least gradient of the 3 x 3 Sobel filter, which is 4 per code value and pixel for a step that
 // rises by half of kMinHeightCodes in a pixel.
-constexpr double kMinGradient = 4 * kMinHeightCodes / 2;
+constexpr int kMinGradient = static_cast<int>(4 * kMinHeightCodes / 2);
 // Largest rms deviation of the places along an edge from a straight line, px.
 constexpr double kMaxBendPx = 0.2;
 // Largest standard deviation of a level, as a share of the height of the step.
@@ -229,23 +229,27 @@ std::optional<StraightStep> step_across(const cv::Mat& grey, const EdgeLine& lin
 }  // namespace
 
 std::vector<SteepPlace> steep_places(const cv::Mat& grey) {
-  cv::Mat gx, gy, size;
-  cv::Sobel(grey, gx, CV_32F, 1, 0);
-  cv::Sobel(grey, gy, CV_32F, 0, 1);
-  cv::magnitude(gx, gy, size);
-  std::vector<std::pair<float, cv::Point>> strong;
-  for (int y = 16; y < grey.rows - 16; y += 2)
+  cv::Mat gx, gy;
+  cv::Sobel(grey, gx, CV_16S, 1, 0);
+  cv::Sobel(grey, gy, CV_16S, 0, 1);
+  // Squares of gradients, with their places.
+  std::vector<std::pair<int, cv::Point>> strong;
+  for (int y = 16; y < grey.rows - 16; y += 2) {
+    const auto* across = gx.ptr<short>(y);
+    const auto* down = gy.ptr<short>(y);
     for (int x = 16; x < grey.cols - 16; x += 2)
-      if (const float g = size.at<float>(y, x); double(g) > kMinGradient)
+      if (const int g = across[x] * across[x] + down[x] * down[x]; g > kMinGradient * kMinGradient)
         strong.push_back({g, {x, y}});
+  }
   std::sort(strong.begin(), strong.end(), [](const auto& a, const auto& b) {
     return a.first != b.first
                ? a.first > b.first
                : std::pair(a.second.y, a.second.x) < std::pair(b.second.y, b.second.x);
   });
   std::vector<SteepPlace> places;
+  places.reserve(strong.size());
   for (const auto& [strength, at] : strong)
-    places.push_back({at, {double(gx.at<float>(at)), double(gy.at<float>(at))}});
+    places.push_back({at, {double(gx.at<short>(at)), double(gy.at<short>(at))}});
   return places;
 }
 

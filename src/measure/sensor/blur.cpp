@@ -38,15 +38,22 @@ constexpr double kMaxLengthShare = 1.3;
 constexpr double kMinShare = 0.04;
 constexpr double kMinShareInErrors = 2;
 
-// Energy of the gradients of the picture along a direction divided by that across it.
-double slope_ratio(const cv::Mat& grey, const Pixel& along) {
-  cv::Mat soft, gx, gy;
+// The picture without the detail that noise dominates.
+cv::Mat softened(const cv::Mat& grey) {
+  cv::Mat soft;
   cv::GaussianBlur(grey, soft, {}, 1.0);
+  return soft;
+}
+
+// Energy of the gradients of a softened picture along a direction divided by that across it.
+double slope_ratio(const cv::Mat& soft, const Pixel& along) {
+  cv::Mat gx, gy;
   cv::Sobel(soft, gx, CV_32F, 1, 0);
   cv::Sobel(soft, gy, CV_32F, 0, 1);
-  const cv::Mat a = gx * along.x() + gy * along.y();
-  const cv::Mat b = gy * along.x() - gx * along.y();
-  return a.dot(a) / std::max(1e-6, b.dot(b));
+  const double xx = gx.dot(gx), xy = gx.dot(gy), yy = gy.dot(gy);
+  const double c = along.x(), s = along.y();
+  return (c * c * xx + 2 * c * s * xy + s * s * yy) /
+         std::max(1e-6, c * c * yy - 2 * c * s * xy + s * s * xx);
 }
 
 // Weights of cubic convolution (Keys 1981, a = -1/2) for four pixels, from the one before the place
@@ -80,21 +87,43 @@ cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
   return result;
 }
 
-// The length of the blur that gives the still picture the gradient ratio of the moving one; empty
-// if no length up to `most_px` does.
+// The length of the blur that gives the softened still picture the gradient ratio of the moving
+// one; empty if no length up to `most_px` does. The method is the false position of Dowell and
+// Jarratt (1971, "Illinois") in the square of the length, of which the ratio is nearly a linear
+// function.
 std::optional<double> length_of(const cv::Mat& still,
                                 const cv::Mat& moving,
                                 const Pixel& along,
                                 double most_px) {
+  // Largest error of the length as a share of `most_px`, and the number of rounds, which ends an
+  // iteration that does not converge.
+  constexpr double kMaxError = 1.0 / 512;
+  constexpr int kMaxRounds = 9;
   const double wanted = slope_ratio(moving, along);
-  if (slope_ratio(still, along) <= wanted) return 0.0;
-  if (slope_ratio(blurred(still, along, most_px), along) > wanted) return std::nullopt;
-  double low = 0, high = most_px;
-  for (int i = 0; i < 9; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slope_ratio(blurred(still, along, middle), along) > wanted ? low : high) = middle;
+  const auto excess = [&](double squared_px) {
+    return slope_ratio(blurred(still, along, std::sqrt(squared_px)), along) - wanted;
+  };
+  double low = 0, above = excess(0);
+  if (above <= 0) return 0.0;
+  double high = most_px * most_px, below = excess(high);
+  if (below > 0) return std::nullopt;
+  double found = high;
+  for (int round = 0, same = 0; round < kMaxRounds && below < 0; ++round) {
+    const double before = found;
+    found = low + (high - low) * above / (above - below);
+    if (std::abs(std::sqrt(found) - std::sqrt(before)) < kMaxError * most_px) break;
+    const double here = excess(found);
+    const int side = here > 0 ? 1 : -1;
+    if (side > 0) {
+      low = found, above = here;
+      if (same == side) below /= 2;
+    } else {
+      high = found, below = here;
+      if (same == side) above /= 2;
+    }
+    same = side;
   }
-  return 0.5 * (low + high);
+  return std::sqrt(found);
 }
 
 }  // namespace
@@ -158,7 +187,8 @@ std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares)
     cv::Mat still, moving;
     shot.crops[*partner].convertTo(still, CV_32F);
     shot.crops[k].convertTo(moving, CV_32F);
-    const auto length = length_of(still, moving, along, kMaxLengthShare * fast->norm());
+    const auto length =
+        length_of(softened(still), softened(moving), along, kMaxLengthShare * fast->norm());
     if (!length) continue;
     // The neighbour is slightly blurred as well; variances add.
     const double own = slowest * slowest / fast->squaredNorm();
