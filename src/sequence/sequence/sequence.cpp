@@ -32,9 +32,10 @@ struct Clocks {
 
 // The sixth stage, after those of FrameMaker. write: picture, truth and masks. Frames come in
 // order.
-void write_frame(const Work& work, Outputs& outputs, Tally& tally) {
-  outputs.write(work.frame, work.truth, work.masks);
-  add_frame(tally, work.frame, work.moved.motion.state, work.truth);
+void write_frame(const WorkPtr& work, Outputs& outputs, Tally& tally) {
+  const std::shared_ptr<const video::Frame> frame(work, &work->frame);
+  outputs.write(frame, work->truth, work->masks);
+  add_frame(tally, *frame, work->moved.motion.state, work->truth);
 }
 
 // The stages as the pipeline calls them: each is timed, and none works on after a stop.
@@ -72,7 +73,7 @@ class Stages {
   void write(const WorkPtr& work) const {
     if (is_stopped()) return;  // a frame that was not painted is not written
     const Timed timed(clocks_.write);
-    write_frame(*work, outputs_, tally_);
+    write_frame(work, outputs_, tally_);
     if (options_.progress) options_.progress({tally_.frames, maker_.info().frame_count_estimate});
   }
 
