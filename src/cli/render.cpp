@@ -44,17 +44,32 @@ sequence::Options options_from(const RenderArguments& arguments, Context& contex
   return options;
 }
 
-std::string stages(const sequence::Summary& summary) {
-  const sequence::StageSeconds& s = summary.stages;
-  const double per_frame = 1000.0 / static_cast<double>(std::max<std::int64_t>(1, summary.frames));
+// Each stage's CPU and wall time a frame, and the CPU time of the run's parts.
+std::string timings(const sequence::Summary& summary) {
+  const sequence::StageTimes& s = summary.stages;
+  const double ms_per_frame =
+      1000.0 / static_cast<double>(std::max<std::int64_t>(1, summary.frames));
+  const auto stages = [&](double sequence::StageTime::*time) {
+    return fmt::format(
+        "read {:.2f} ms, move {:.2f} ms, render {:.2f} ms, composite {:.2f} ms, write {:.2f} ms",
+        s.read.*time * ms_per_frame,
+        s.move.*time * ms_per_frame,
+        s.render.*time * ms_per_frame,
+        s.composite.*time * ms_per_frame,
+        s.write.*time * ms_per_frame);
+  };
+  const double frames_s = s.read.cpu_s + s.move.cpu_s + s.render.cpu_s + s.composite.cpu_s +
+                          s.write.cpu_s + s.other_threads_cpu_s;
   return fmt::format(
-      "time a frame: read {:.2f} ms, move {:.2f} ms, render {:.2f} ms, composite {:.2f} ms, write "
-      "{:.2f} ms",
-      s.read * per_frame,
-      s.move * per_frame,
-      s.render * per_frame,
-      s.composite * per_frame,
-      s.write * per_frame);
+      "CPU time a frame: {}, codec and other threads {:.2f} ms\n"
+      "wall time a frame: {}\n"
+      "CPU time of the run: start {:.2f} s, frames {:.2f} s, end {:.2f} s",
+      stages(&sequence::StageTime::cpu_s),
+      s.other_threads_cpu_s * ms_per_frame,
+      stages(&sequence::StageTime::wall_s),
+      s.start_cpu_s,
+      frames_s,
+      s.end_cpu_s);
 }
 
 void render(const RenderArguments& arguments, Context& context) {
@@ -68,7 +83,7 @@ void render(const RenderArguments& arguments, Context& context) {
                   summary.frames_visible,
                   summary.seconds,
                   static_cast<double>(summary.frames) / std::max(1e-9, summary.seconds)));
-  if (arguments.timings) context.console().result(stages(summary));
+  if (arguments.timings) context.console().result(timings(summary));
 }
 
 }  // namespace
@@ -89,7 +104,8 @@ void add_render(CLI::App& app, Context& context) {
       ->check(CLI::Range(1, 1024));
   command->add_option(
       "--gpu", arguments->gpu, "chroma-key's OpenGL device: a number, or none for llvmpipe");
-  command->add_flag("--timings", arguments->timings, "Also print where the time went, by stage");
+  command->add_flag(
+      "--timings", arguments->timings, "Also print the CPU and wall time of each stage");
   command->add_flag("--no-cache", arguments->no_cache, "Measure the camera's motion anew");
   command->callback([arguments, &context] { render(*arguments, context); });
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <vector>
 
 namespace airtruth::image {
 namespace {
@@ -20,22 +22,61 @@ constexpr double kMinRatioToNeighbours = 3;
 // The first pixel of a cell where `count` cells share `size` pixels.
 int cell_begin(int cell, int count, int size) { return (cell * size + count - 1) / count; }
 
+// So many rows of 8-bit samples fit into 16-bit sums: 257 * 255 = 65535.
+constexpr int kMaxRowsInSums = 257;
+
+// Adds a row of samples to the sums of their columns. The inner loop has a constant length, so that
+// compilers use vector instructions; they also need to know that the two do not overlap.
+void add_row(const std::uint8_t* __restrict row, int width, std::uint16_t* __restrict column_sums) {
+  constexpr int kBlock = 32;
+  int x = 0;
+  for (; x + kBlock <= width; x += kBlock)
+    for (int i = 0; i < kBlock; ++i)
+      column_sums[x + i] = static_cast<std::uint16_t>(column_sums[x + i] + row[x + i]);
+  for (; x < width; ++x) column_sums[x] = static_cast<std::uint16_t>(column_sums[x] + row[x]);
+}
+
+// The sums and numbers of luma samples by cell, row by row.
+struct Cells {
+  std::vector<double> sums = std::vector<double>(kCellColumns * kCellRows, 0);
+  std::vector<double> counts = std::vector<double>(kCellColumns * kCellRows, 0);
+
+  // Adds `rows` rows of one row of cells, summed by column, and clears the sums of the columns.
+  void add(int cell_row, int rows, std::vector<std::uint16_t>& column_sums) {
+    const int width = static_cast<int>(column_sums.size());
+    for (int column = 0; column < kCellColumns; ++column) {
+      const int begin = cell_begin(column, kCellColumns, width);
+      const int end = cell_begin(column + 1, kCellColumns, width);
+      const auto cell = static_cast<std::size_t>(cell_row * kCellColumns + column);
+      sums[cell] += std::accumulate(column_sums.begin() + begin, column_sums.begin() + end, 0);
+      counts[cell] += rows * (end - begin);
+    }
+    std::fill(column_sums.begin(), column_sums.end(), std::uint16_t{0});
+  }
+};
+
+std::vector<double> means_by_cell(const Plane& luma) {
+  Cells cells;
+  std::vector<std::uint16_t> column_sums(static_cast<std::size_t>(luma.width), 0);
+  int rows = 0;
+  for (int y = 0; y < luma.height; ++y) {
+    add_row(luma.row(y), luma.width, column_sums.data());
+    ++rows;
+    const int cell_row = y * kCellRows / luma.height;
+    const bool is_last = (y + 1) * kCellRows / luma.height != cell_row;
+    if (!is_last && rows < kMaxRowsInSums) continue;
+    cells.add(cell_row, rows, column_sums);
+    rows = 0;
+  }
+  for (std::size_t i = 0; i < cells.sums.size(); ++i)
+    cells.sums[i] /= std::max(1.0, cells.counts[i]);
+  return cells.sums;
+}
+
 }  // namespace
 
 std::optional<double> Differences::add(const Picture& picture) {
-  std::vector<double> cells(kCellColumns * kCellRows, 0), counts(kCellColumns * kCellRows, 0);
-  for (int y = 0; y < picture.height; ++y) {
-    const std::uint8_t* row = picture.luma().row(y);
-    const int line = y * kCellRows / picture.height * kCellColumns;
-    for (int column = 0; column < kCellColumns; ++column) {
-      const int begin = cell_begin(column, kCellColumns, picture.width);
-      const int end = cell_begin(column + 1, kCellColumns, picture.width);
-      const auto cell = static_cast<std::size_t>(line + column);
-      cells[cell] += std::accumulate(row + begin, row + end, 0);
-      counts[cell] += end - begin;
-    }
-  }
-  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] /= std::max(1.0, counts[i]);
+  std::vector<double> cells = means_by_cell(picture.luma());
   std::optional<double> difference;
   if (!before_.empty()) {
     difference = 0;

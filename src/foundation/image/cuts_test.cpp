@@ -62,5 +62,18 @@ TEST(Cuts, EveryPixelIsInOneCell) {
   }
 }
 
+// A cell of such a picture has more rows than 16-bit sums of white hold.
+TEST(Cuts, ATallPictureHasTheSameMeans) {
+  constexpr int kHeight = 24 * 300 + 7;
+  const auto picture = [](std::uint8_t level) {
+    Picture p = make_picture(40, kHeight, {});
+    for (int y = 0; y < kHeight; ++y) std::fill_n(p.planes[0].row(y), 40, level);
+    return p;
+  };
+  Differences differences;
+  differences.add(picture(255));
+  EXPECT_NEAR(*differences.add(picture(5)), 250, 1e-9);
+}
+
 }  // namespace
 }  // namespace airtruth::image

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +102,45 @@ TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
   const Rgb8 exact =
       rgb8_from_picture(picture_from_rgb8(rgb, {Chroma::k444, Matrix::kRgb, Range::kFull}));
   for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
+}
+
+// The two answers are of different code: tables by code value, and the equations for one sample.
+TEST(Rgb8, IsTheRoundedColourOfEachSample) {
+  for (const Matrix matrix : {Matrix::kRgb, Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020}) {
+    for (const Range range : {Range::kLimited, Range::kFull}) {
+      const Colour colour{Chroma::k444, matrix, range};
+      const ColourCode code(colour);
+      Picture picture = make_picture(255, 27, colour);  // no multiple of the block of 16
+      for (int cr = 0; cr < 256; cr += 15) {
+        for (int x = 0; x < 255; ++x) {
+          for (int y = 0; y < 27; ++y) {
+            picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(x);
+            picture.planes[1].row(y)[x] = static_cast<std::uint8_t>(9 * y);
+            picture.planes[2].row(y)[x] = static_cast<std::uint8_t>(cr);
+          }
+        }
+        const Rgb8 packed = rgb8_from_picture(picture);
+        for (int x = 0; x < 255; ++x) {
+          for (int y = 0; y < 27; ++y) {
+            const Rgb rgb = code.rgb_from_ycc({float(x), float(9 * y), float(cr)});
+            for (std::size_t c = 0; c < 3; ++c)
+              ASSERT_EQ(packed.at(x, y)[c], int(std::clamp(255 * rgb[c], 0.0f, 255.0f) + 0.5f))
+                  << x << ' ' << 9 * y << ' ' << cr;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Rgb8, APartBeyondThePictureIsBlack) {
+  Picture picture = make_picture(20, 6, {Chroma::k420, Matrix::kBt601, Range::kFull});
+  for (Plane& plane : picture.planes)
+    for (int y = 0; y < plane.height; ++y) std::fill_n(plane.row(y), plane.width, 128);
+  const Rgb8 part = rgb8_from_picture(picture, -3, -2, 30, 10);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 30; ++x)
+      EXPECT_EQ(part.at(x, y)[1], x >= 3 && x < 23 && y >= 2 && y < 8 ? 128 : 0) << x << ' ' << y;
 }
 
 Picture with_numbered_samples(int width, int height, Chroma chroma) {

@@ -11,6 +11,7 @@
 #include "foundation/base/suggest.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
+#include "picture/video/encoder_frame.h"
 #include "picture/video/libav.h"
 #include "picture/video/still.h"
 #include "picture/video/stored_colour.h"
@@ -56,7 +57,8 @@ struct Writer::State {
   void open();
   void open_codec();
   void set_codec_options(AVDictionary** settings) const;
-  FramePtr filled_frame(const Picture& picture);
+  bool takes_as_it_is(const Picture& picture) const;
+  void write_frame(const Frame& frame, const std::shared_ptr<const Frame>& lent);
   void encode(const AVFrame* frame);
   void write_image(const Picture& picture) const;
 };
@@ -199,37 +201,38 @@ Writer::~Writer() {
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
-// A frame for the encoder, in the stored colour model.
-FramePtr Writer::State::filled_frame(const Picture& picture) {
-  FramePtr out(av_frame_alloc());
-  out->format = codec->pix_fmt;
-  out->width = info.width;
-  out->height = info.height;
-  out->color_range = codec->color_range;
-  out->colorspace = codec->colorspace;
-  check_av(av_frame_get_buffer(out.get(), 0), "out of memory");
-  fill_frame_as(*out, picture, stored, options.format);
-  return out;
+// libx264 and FFV1 only read what they take. MJPEG's encoder may use a frame as its own reference.
+bool Writer::State::takes_as_it_is(const Picture& picture) const {
+  return (options.format == Format::kMp4 || options.format == Format::kMkv) &&
+         picture.colour == stored && stored.matrix != image::Matrix::kRgb;
 }
 
-void Writer::write(const Frame& frame) {
-  State& s = *state_;
-  check(frame.picture.width == s.info.width && frame.picture.height == s.info.height,
+// `lent`: the same frame, where its memory may be read after the call; else null.
+void Writer::State::write_frame(const Frame& frame, const std::shared_ptr<const Frame>& lent) {
+  check(frame.picture.width == info.width && frame.picture.height == info.height,
         "frames keep their size");
-  if (s.options.format == Format::kPng) {
-    s.write_image(frame.picture);
-    ++s.count;
+  if (options.format == Format::kPng) {
+    write_image(frame.picture);
+    ++count;
     return;
   }
-  const FramePtr out = s.filled_frame(frame.picture);
-  if (s.count == 0) s.first_pts = frame.pts;
-  std::int64_t pts = s.options.format == Format::kAvi ? s.count : frame.pts - s.first_pts;
-  if (pts <= s.last_pts) pts = s.last_pts + 1;
-  s.last_pts = pts;
+  const FramePtr out = lent != nullptr && takes_as_it_is(frame.picture)
+                           ? lent_frame(*codec, lent)
+                           : copied_frame(*codec, frame.picture, stored, options.format);
+  if (count == 0) first_pts = frame.pts;
+  std::int64_t pts = options.format == Format::kAvi ? count : frame.pts - first_pts;
+  if (pts <= last_pts) pts = last_pts + 1;
+  last_pts = pts;
   out->pts = pts;
-  out->quality = s.codec->global_quality;
-  s.encode(out.get());
-  ++s.count;
+  out->quality = codec->global_quality;
+  encode(out.get());
+  ++count;
+}
+
+void Writer::write(const Frame& frame) { state_->write_frame(frame, nullptr); }
+
+void Writer::write(const std::shared_ptr<const Frame>& frame) {
+  state_->write_frame(*frame, frame);
 }
 
 void Writer::finish() {
@@ -241,6 +244,9 @@ void Writer::finish() {
     if (s.output->pb->error < 0) s.fail("cannot write: " + reason(s.output->pb->error));
     if (const int closed = avio_closep(&s.output->pb); closed < 0)
       s.fail("cannot write: " + reason(closed));
+    // The encoder's memory, some 100 MB at 1280x960, is free for what follows.
+    s.codec.reset();
+    s.output.reset();
   }
   s.unfinished->finish([&s] {
     std::error_code failed;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "foundation/base/error.h"
-#include "foundation/base/stopwatch.h"
 #include "picture/backdrop/backdrop.h"
 #include "picture/composite/chroma_key.h"
 #include "picture/composite/codec_blocks.h"
@@ -168,9 +167,7 @@ std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
 
 Painted Painter::draw(const Moment& moment, const Ambient& ambient) const {
   Painted painted;
-  const Stopwatch rendering;
   painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
-  painted.render_s = rendering.seconds();
   return painted;
 }
 

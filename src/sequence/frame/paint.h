@@ -22,8 +22,6 @@ struct Painted {
   image::Layer layer;
   // By intruder; empty where none is in view.
   std::vector<composite::Visible> visible;
-  // Seconds of ray tracing within the time of painting.
-  double render_s = 0;
 };
 
 class Painter {

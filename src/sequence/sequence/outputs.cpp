@@ -74,7 +74,7 @@ Outputs::Outputs(const fs::path& folder,
                 {(folder / "truth.jsonl").string()});
 }
 
-void Outputs::write(const video::Frame& frame,
+void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
                     const annotation::Frame& truth,
                     const std::vector<MaskFile>& masks) {
   writer_.write(frame);
@@ -94,7 +94,7 @@ void Outputs::write(const video::Frame& frame,
                               ? std::nullopt
                               : std::optional(evision_frame(truth, intruder)));
   }
-  sheet_.add(frame.picture, truth);
+  sheet_.add(frame->picture, truth);
 }
 
 void Outputs::finish(const scene::Scene& scene,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ class Outputs {
           const video::StreamInfo& info,
           int threads);
 
-  void write(const video::Frame& frame,
+  // The encoder may read the frame's own memory: the picture must not change after the call.
+  void write(const std::shared_ptr<const video::Frame>& frame,
              const annotation::Frame& truth,
              const std::vector<MaskFile>& masks);
   // Closes all files and writes the annotation, the preview and, last, sequence.json. `scene` is

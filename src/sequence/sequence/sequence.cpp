@@ -3,7 +3,6 @@
 #include "sequence/sequence/sequence.h"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -27,14 +26,17 @@ namespace airtruth::sequence {
 namespace {
 
 struct Clocks {
-  std::atomic<double> read = 0, move = 0, render = 0, composite = 0, write = 0;
+  SharedTime read, move, render, composite, write;
+  // CPU time of the process when the run began, when its frames began, and when they ended.
+  double begin_s = process_cpu_seconds(), frames_s = 0, end_s = 0;
 };
 
 // The sixth stage, after those of FrameMaker. write: picture, truth and masks. Frames come in
 // order.
-void write_frame(const Work& work, Outputs& outputs, Tally& tally) {
-  outputs.write(work.frame, work.truth, work.masks);
-  add_frame(tally, work.frame, work.moved.motion.state, work.truth);
+void write_frame(const WorkPtr& work, Outputs& outputs, Tally& tally) {
+  const std::shared_ptr<const video::Frame> frame(work, &work->frame);
+  outputs.write(frame, work->truth, work->masks);
+  add_frame(tally, *frame, work->moved.motion.state, work->truth);
 }
 
 // The stages as the pipeline calls them: each is timed, and none works on after a stop.
@@ -58,8 +60,8 @@ class Stages {
   }
   WorkPtr draw(WorkPtr work) const {
     if (is_stopped()) return work;
+    const Timed timed(clocks_.render);
     maker_.draw(*work);
-    clocks_.render += work->painted.render_s;
     return work;
   }
   WorkPtr compose(WorkPtr work) const {
@@ -72,7 +74,7 @@ class Stages {
   void write(const WorkPtr& work) const {
     if (is_stopped()) return;  // a frame that was not painted is not written
     const Timed timed(clocks_.write);
-    write_frame(*work, outputs_, tally_);
+    write_frame(work, outputs_, tally_);
     if (options_.progress) options_.progress({tally_.frames, maker_.info().frame_count_estimate});
   }
 
@@ -117,13 +119,27 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
 
 // ---------------------------------------------------------------- after the last frame
 
+StageTimes times_of(const Clocks& clocks) {
+  const auto time_of = [](const SharedTime& time) { return StageTime{time.wall_s, time.cpu_s}; };
+  StageTimes times{time_of(clocks.read),
+                   time_of(clocks.move),
+                   time_of(clocks.render),
+                   time_of(clocks.composite),
+                   time_of(clocks.write)};
+  const double of_stages_s = times.read.cpu_s + times.move.cpu_s + times.render.cpu_s +
+                             times.composite.cpu_s + times.write.cpu_s;
+  times.other_threads_cpu_s = std::max(0.0, clocks.end_s - clocks.frames_s - of_stages_s);
+  times.start_cpu_s = clocks.frames_s - clocks.begin_s;
+  return times;
+}
+
 Summary summary_of(const Tally& tally, const Clocks& clocks, bool motion_from_cache) {
   Summary summary;
   summary.frames = tally.frames;
   summary.frames_visible = tally.frames_visible;
   summary.frames_bridged = tally.frames_bridged;
   summary.frames_damaged = tally.frames_damaged;
-  summary.stages = {clocks.read, clocks.move, clocks.render, clocks.composite, clocks.write};
+  summary.stages = times_of(clocks);
   summary.motion_from_cache = motion_from_cache;
   return summary;
 }
@@ -138,6 +154,7 @@ std::optional<tbb::global_control> thread_limit(int threads) {
 }  // namespace
 
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
+  Clocks clocks;
   const auto limit = thread_limit(options.threads);
   const fs::path folder = out / scene.name;
   StagedFolder staged(folder, options.overwrite);
@@ -149,8 +166,9 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   maker.measure();
 
   const Stopwatch running;
-  Clocks clocks;
+  clocks.frames_s = process_cpu_seconds();
   const Tally tally = make_frames(maker, *outputs, options, clocks);
+  clocks.end_s = process_cpu_seconds();
 
   maker.store_motion();
   warn_of_run(tally, maker.scene(), maker.world(), maker.reader(), options.warn);
@@ -158,6 +176,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   outputs->finish(maker.scene(), input_files(scene, maker.world(), maker.video_sha256()), summary);
   outputs.reset();
   staged.commit();
+  summary.stages.end_cpu_s = process_cpu_seconds() - clocks.end_s;
   summary.seconds = running.seconds();
   summary.folder = folder;
   return summary;

@@ -43,16 +43,26 @@ struct Options {
   std::stop_token stop;
 };
 
-// Time of a run by stage: the seconds inside each stage, summed over its frames. The stages
-// overlap, so their sum exceeds the wall time. The time of the codecs' own threads is excluded; the
-// wait for them is included.
-struct StageSeconds {
-  double read = 0;  // decode
+// Time of a stage in seconds, summed over its frames. The stages overlap, so the sum of their wall
+// times exceeds that of the run. CPU time is that of the stage's own thread: the threads of the
+// codecs, and those that take a part of an intruder's rays, are in StageTimes::other_threads_cpu_s.
+struct StageTime {
+  double wall_s = 0;
+  double cpu_s = 0;
+};
+
+struct StageTimes {
+  StageTime read;  // decode
   // The camera's motion, the light around the intruder, and the geometry of the frame.
-  double move = 0;
-  double render = 0;     // ray tracing of the intruders
-  double composite = 0;  // compositing into the picture, and the truth
-  double write = 0;      // encode, truth.jsonl, preview
+  StageTime move;
+  StageTime render;     // ray tracing of the intruders
+  StageTime composite;  // compositing into the picture, and the truth
+  StageTime write;      // encode, truth.jsonl, preview
+  // CPU time of the process while the frames passed, less that of the stages.
+  double other_threads_cpu_s = 0;
+  // CPU time of the process before the first frame and after the last one.
+  double start_cpu_s = 0;
+  double end_cpu_s = 0;
 };
 
 struct Summary {
@@ -63,7 +73,7 @@ struct Summary {
   std::int64_t frames_damaged = 0;
   // Wall time of the frames in seconds, without opening the inputs and loading the aircraft.
   double seconds = 0;
-  StageSeconds stages;
+  StageTimes stages;
   bool motion_from_cache = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "foundation/base/median.h"
@@ -35,10 +36,11 @@ struct Block {
   Rgb linear{};
   float brightness = 0;
   float weight = 1;
-  bool is_below = false;  // below the horizon, as the camera's pose has it
-  // The luminance of each kind of sky at this block: Skies::clear_seen(), overcast_seen().
-  float clear_seen = 1;
-  float overcast_seen = 1;
+  // In world axes; empty outside the lens's view.
+  std::optional<Vector3> direction;
+
+  // Below the horizon, as the camera's pose has it.
+  bool is_below() const { return direction && direction->z() > 0; }
 };
 
 float brightness(const Rgb& linear) {
@@ -62,7 +64,6 @@ std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
                              const projection::Sight& sight,
-                             const Skies& skies,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
   const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
@@ -81,23 +82,35 @@ std::vector<Block> blocks_of(const image::Picture& picture,
       block.linear = image::linear_at(picture, code, x, y, tone);
       block.brightness = brightness(block.linear);
       block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
-      if (const auto direction = direction_of(sight, nominal_from_frame, x, y)) {
-        block.is_below = direction->z() > 0;
-        block.clear_seen = static_cast<float>(skies.clear_seen(*direction));
-        block.overcast_seen = static_cast<float>(skies.overcast_seen(*direction));
-      } else {
-        block.weight = 0;  // outside the lens's view
-      }
+      block.direction = direction_of(sight, nominal_from_frame, x, y);
+      if (!block.direction) block.weight = 0;
       blocks.push_back(block);
     }
   }
   return blocks;
 }
 
-void sort_by_brightness(std::vector<Block>& blocks) {
-  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
-    return a.brightness < b.brightness;
-  });
+// Blocks of one brightness keep their order.
+std::vector<Block> by_brightness(const std::vector<Block>& blocks) {
+  std::vector<std::pair<float, std::size_t>> order;
+  order.reserve(blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) order.emplace_back(blocks[i].brightness, i);
+  std::sort(order.begin(), order.end());
+  std::vector<Block> sorted;
+  sorted.reserve(blocks.size());
+  for (const auto& [ignored, i] : order) sorted.push_back(blocks[i]);
+  return sorted;
+}
+
+// The luminance at a block of each kind of sky, for the share of that sky in it. A sky without a
+// share needs none, and a block outside the lens's view, whose weight is 0, has none.
+float clear_seen(const Block& block, const Skies& skies, float share) {
+  if (!(share > 0) || !block.direction) return 1;
+  return static_cast<float>(skies.clear_seen(*block.direction));
+}
+float overcast_seen(const Block& block, const Skies& skies, float share) {
+  if (!(share > 0) || !block.direction) return 1;
+  return static_cast<float>(skies.overcast_seen(*block.direction));
 }
 
 // The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
@@ -188,7 +201,7 @@ struct Seen {
   float all = 0;  // weight of all blocks
 };
 
-Seen seen_in(const std::vector<Block>& blocks) {
+Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
   // Brightness of ground relative to the sky; every cloud's base is brighter.
   constexpr float kGroundOverSky = 0.6f;
   constexpr std::size_t kFewest = 8;
@@ -197,15 +210,16 @@ Seen seen_in(const std::vector<Block>& blocks) {
   std::vector<float> clear;
   for (const Block& block : blocks) {
     seen.all += block.weight;
-    if (block.is_below && block.brightness < kGroundOverSky * sky) {
+    if (block.is_below() && block.brightness < kGroundOverSky * sky) {
       seen.ground.add(block.linear, block.weight);
       continue;
     }
     if (block.brightness < 0.25f * sky) continue;  // an aircraft, a tree, a rim: no sky
     const auto blue = blueness(block.linear);
     if (!blue) continue;
-    seen.blue.add(block.linear, block.weight * *blue, block.clear_seen);
-    seen.cloud.add(block.linear, block.weight * (1 - *blue), block.overcast_seen);
+    const float cloud = 1 - *blue;
+    seen.blue.add(block.linear, block.weight * *blue, clear_seen(block, skies, *blue));
+    seen.cloud.add(block.linear, block.weight * cloud, overcast_seen(block, skies, cloud));
     clear.push_back(*blue);
   }
   if (clear.size() < kFewest) return seen;
@@ -223,8 +237,8 @@ Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
   return ground;
 }
 
-Ambient measure(const std::vector<Block>& blocks, double elevation_deg) {
-  const Seen seen = seen_in(blocks);
+Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double elevation_deg) {
+  const Seen seen = seen_in(blocks, skies);
   Ambient ambient;
   const float sky_weight = seen.blue.weight + seen.cloud.weight;
   const float blue_share = sky_weight > 0 ? seen.blue.weight / sky_weight : 0.0f;
@@ -277,13 +291,12 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   const bool all_stated =
       light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
   if (all_stated) return with_scene({});
-  std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, skies_, near);
+  const std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, near);
   std::vector<Rgb> colours;
   for (const Block& block : blocks) colours.push_back(block.linear);
   if (begins_shot) smooth_.reset();
   follow_exposure(colours);
-  sort_by_brightness(blocks);
-  const Ambient now = measure(blocks, light_.sun_elevation_deg);
+  const Ambient now = measure(by_brightness(blocks), skies_, light_.sun_elevation_deg);
   if (!smooth_) smooth_ = now;
   blend(smooth_->sun, now.sun);
   blend(smooth_->blue, now.blue);

@@ -50,6 +50,26 @@ double level_of(const std::function<double(const Vector3&)>& luminance) {
 constexpr double kLowestSeenDeg = 3;
 constexpr double kNearestSunSeenDeg = 20;
 
+// Luminance of the clear sky (Perez et al. 1993, equation 1), by the cosine of the angle from the
+// zenith and by the angle from the sun in radians. The parameters are those of Preetham et al.
+// 1999, table 2, at turbidity 2.5.
+double perez(double cosine, double gamma) {
+  constexpr double a = -1.0163, b = -0.4610, c = 5.2684, d = -2.2756, e = 0.2028;
+  const double cosine_gamma = std::cos(gamma);
+  return (1 + a * std::exp(b / cosine)) *
+         (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
+}
+
+double clear_at(double elevation_deg, double from_sun_deg) {
+  // The horizon itself has no cosine to divide by.
+  constexpr double kMinCosine = 0.01;
+  return perez(std::max(kMinCosine, std::sin(radians(elevation_deg))), radians(from_sun_deg));
+}
+
+double clear_at_zenith(double sun_elevation_deg) {
+  return perez(1, radians(90 - std::max(sun_elevation_deg, kLowestSunDeg)));
+}
+
 }  // namespace
 
 double sun_illuminance_klx(double elevation_deg) {
@@ -63,18 +83,7 @@ double clear_sky_illuminance_klx(double elevation_deg) {
 double overcast_illuminance_klx(double elevation_deg) { return 0.3 + 21 * sine(elevation_deg); }
 
 double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
-  // Preetham et al. 1999, table 2, at turbidity 2.5.
-  constexpr double a = -1.0163, b = -0.4610, c = 5.2684, d = -2.2756, e = 0.2028;
-  const auto f = [&](double cosine, double gamma) {
-    const double cosine_gamma = std::cos(gamma);
-    return (1 + a * std::exp(b / cosine)) *
-           (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
-  };
-  // The horizon itself has no cosine to divide by.
-  constexpr double kMinCosine = 0.01;
-  const double cosine = std::max(kMinCosine, std::sin(radians(elevation_deg)));
-  const double sun_from_zenith = radians(90 - std::max(sun_elevation_deg, kLowestSunDeg));
-  return f(cosine, radians(from_sun_deg)) / f(1, sun_from_zenith);
+  return clear_at(elevation_deg, from_sun_deg) / clear_at_zenith(sun_elevation_deg);
 }
 
 double overcast_over_zenith(double elevation_deg) {
@@ -92,6 +101,7 @@ Skies skies(const Vector3& to_sun_in_world) {
   };
   Skies result;
   result.to_sun = to_sun_in_world;
+  result.clear_zenith = clear_at_zenith(sun_deg);
   result.clear_level = level_of(clear);
   result.overcast_level = level_of(overcast);
   result.clear = grey([&](const Vector3& d) { return clear(d) / result.clear_level; });
@@ -102,10 +112,8 @@ Skies skies(const Vector3& to_sun_in_world) {
 
 double Skies::clear_seen(const Vector3& direction_in_world) const {
   const double from_sun_deg = std::max(kNearestSunSeenDeg, angle_deg(direction_in_world, to_sun));
-  return clear_sky_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world)),
-                               from_sun_deg,
-                               elevation_deg(to_sun)) /
-         clear_level;
+  return clear_at(std::max(kLowestSeenDeg, elevation_deg(direction_in_world)), from_sun_deg) /
+         clear_zenith / clear_level;
 }
 
 double Skies::overcast_seen(const Vector3& direction_in_world) const {

@@ -25,6 +25,7 @@ struct Skies {
   render::Environment overcast;
   render::Environment ground;  // radiance 1 from all below the horizon
   Vector3 to_sun{0, 0, -1};    // unit, in world axes
+  double clear_zenith = 1;     // the clear sky's luminance at the zenith, in the model's unit
   // Irradiance over pi on a level surface of a sky whose luminance at the zenith is 1.
   double clear_level = 1;
   double overcast_level = 1;

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
+#include "foundation/base/error.h"
 #include "foundation/image/colour.h"
+#include "show/drawing/boxed.h"
 #include "show/drawing/pictures.h"
 #include "show/drawing/placing.h"
 
@@ -163,6 +169,31 @@ TEST(Closeup, CaptionsDoNotRunTogetherHoweverNarrowThePanels) {
     }
   }
 }
+
+// OpenCV's imgcodecs writes the JPEG and decodes it once more, as an independent answer.
+TEST(Boxed, HasThePixelsThatOpenCvDecodes) {
+  cv::Mat picture(48, 64, CV_8UC3);
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      picture.at<cv::Vec3b>(y, x) = cv::Vec3b(static_cast<std::uint8_t>(4 * x),
+                                              static_cast<std::uint8_t>(5 * y),
+                                              static_cast<std::uint8_t>(2 * (x + y)));
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(cv::imencode(".jpg", picture, bytes));
+  const image::Rgb8 decoded = boxed(std::string(bytes.begin(), bytes.end()), 1, {});
+  cv::Mat expected;
+  cv::cvtColor(cv::imdecode(bytes, cv::IMREAD_COLOR), expected, cv::COLOR_BGR2RGB);
+  ASSERT_EQ(decoded.width, 64);
+  ASSERT_EQ(decoded.height, 48);
+  for (int y = 0; y < decoded.height; ++y)
+    for (int x = 0; x < decoded.width; ++x) {
+      const auto& pixel = expected.at<cv::Vec3b>(y, x);
+      ASSERT_EQ(colour_at(decoded, x, y), (std::array<int, 3>{pixel[0], pixel[1], pixel[2]}))
+          << "at " << x << ", " << y;
+    }
+}
+
+TEST(Boxed, RefusesWhatIsNoPicture) { EXPECT_THROW(boxed("no JPEG", 1, {}), Error); }
 
 }  // namespace
 }  // namespace airtruth::drawing
