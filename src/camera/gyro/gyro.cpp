@@ -3,52 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string_view>
 
+#include "camera/gyro/gpmf.h"
 #include "camera/motion/rotation_fit.h"
 
 namespace airtruth::motion {
 namespace {
 
-struct Element {
-  std::string_view key;
-  char type = 0;
-  std::size_t size = 0;  // of one structure, in bytes
-  std::size_t count = 0;
-  std::span<const std::uint8_t> data;
-};
-
-// Visits the elements of one level. Stops at the first element that does not fit into `bytes`.
-template <typename Visit>
-void each_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
-  constexpr std::size_t kHead = 8;
-  while (bytes.size() >= kHead) {
-    Element e;
-    e.key = {reinterpret_cast<const char*>(bytes.data()), 4};
-    e.type = static_cast<char>(bytes[4]);
-    e.size = bytes[5];
-    e.count = static_cast<std::size_t>(bytes[6]) << 8 | bytes[7];
-    const std::size_t length = e.size * e.count;
-    const std::size_t padded = (length + 3) / 4 * 4;
-    if (bytes.size() - kHead < length) return;
-    e.data = bytes.subspan(kHead, length);
-    visit(e);
-    if (bytes.size() - kHead < padded) return;
-    bytes = bytes.subspan(kHead + padded);
-  }
-}
-
-// The number at byte offset `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
-double number_at(const Element& e, std::size_t at) {
-  std::uint32_t value = 0;
+// The number of index `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
+double number_at(const GpmfElement& e, std::size_t at) {
   const std::size_t width = e.type == 's' ? 2 : 4;
-  for (std::size_t i = 0; i < width; ++i) value = value << 8 | e.data[at * width + i];
+  const std::uint32_t value = big_endian(e.data, at * width, width);
   if (e.type == 's') return static_cast<std::int16_t>(value);
   return static_cast<std::int32_t>(value);
 }
 
-bool holds_numbers(const Element& e, std::size_t each) {
+bool holds_numbers(const GpmfElement& e, std::size_t each) {
   const std::size_t width = e.type == 's' ? 2 : e.type == 'l' ? 4 : 0;
   return width > 0 && e.size == each * width && e.count > 0;
 }
@@ -56,7 +26,7 @@ bool holds_numbers(const Element& e, std::size_t each) {
 std::vector<Vector3> rates_of(std::span<const std::uint8_t> stream) {
   double scale = 0;
   std::vector<Vector3> rates;
-  each_element(stream, [&](const Element& e) {
+  each_gpmf_element(stream, [&](const GpmfElement& e) {
     if (e.key == "SCAL" && holds_numbers(e, 1)) scale = number_at(e, 0);
     if (e.key != "GYRO" || !holds_numbers(e, 3)) return;
     for (std::size_t i = 0; i < e.count; ++i)
@@ -141,13 +111,9 @@ std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
                                        double begin_s,
                                        double end_s) {
   std::vector<Vector3> rates;
-  each_element(packet, [&](const Element& device) {
-    if (device.key != "DEVC") return;
-    each_element(device.data, [&](const Element& stream) {
-      if (stream.key != "STRM") return;
-      const std::vector<Vector3> found = rates_of(stream.data);
-      rates.insert(rates.end(), found.begin(), found.end());
-    });
+  each_gpmf_stream(packet, [&](std::span<const std::uint8_t> stream) {
+    const std::vector<Vector3> found = rates_of(stream);
+    rates.insert(rates.end(), found.begin(), found.end());
   });
   std::vector<GyroSample> samples;
   for (std::size_t i = 0; i < rates.size(); ++i)
