@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "camera/gyro/gpmf.h"
 #include "camera/motion/rotation_fit.h"
@@ -105,6 +106,55 @@ std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
   return fit;
 }
 
+// The standard error of the offset. The model's rate changes by its derivative times the error of
+// the offset, so that sigma^2 = residual^2 / sum of derivative^2 over steps and axes. The residuals
+// of neighbouring steps are not independent, since a measured rotation enters two steps: they count
+// as half as many.
+double sigma_of_offset(const std::vector<GyroSample>& gyro,
+                       const std::vector<Step>& steps,
+                       const GyroFit& fit) {
+  double change = 0;
+  for (const Step& s : steps) {
+    const double half_s = 0.5 * (s.end_s - s.begin_s);
+    const auto before =
+        mean_rate(gyro, s.begin_s + fit.offset_s - half_s, s.end_s + fit.offset_s - half_s);
+    const auto after =
+        mean_rate(gyro, s.begin_s + fit.offset_s + half_s, s.end_s + fit.offset_s + half_s);
+    if (before && after) change += ((*after - *before) / (2 * half_s)).squaredNorm();
+  }
+  if (!(change > 0)) return std::numeric_limits<double>::infinity();
+  return fit.rms_radps * std::sqrt(2 / change);
+}
+
+// The best fit at offsets from a coarse grid, and around it from a fine one. Offsets for which
+// `is_wanted` is false are passed over.
+template <typename IsWanted>
+std::optional<GyroFit> best_fit(const std::vector<GyroSample>& gyro,
+                                const std::vector<Step>& steps,
+                                const OffsetRange& range,
+                                const IsWanted& is_wanted) {
+  constexpr double kCoarseS = 0.01, kFineS = 0.001;
+  std::optional<GyroFit> best;
+  const auto look = [&](const std::vector<Step>& at, double offset_s) {
+    if (!is_wanted(offset_s)) return;
+    const auto fit = fit_at(gyro, at, offset_s);
+    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
+  };
+  // Over a whole log the coarse grid has some hundred thousand offsets: it takes 300 of the steps.
+  constexpr std::size_t kMaxCoarseSteps = 300;
+  const std::size_t stride = 1 + steps.size() / kMaxCoarseSteps;
+  std::vector<Step> some;
+  for (std::size_t i = 0; i < steps.size(); i += stride) some.push_back(steps[i]);
+  const auto count = static_cast<int>(std::floor((range.to_s - range.from_s) / kCoarseS + 0.5));
+  for (int i = 0; i <= count; ++i) look(some, range.from_s + kCoarseS * i);
+  if (!best) return std::nullopt;
+  const double middle_s = best->offset_s;
+  best.reset();
+  for (int i = -10; i <= 10; ++i) look(steps, middle_s + kFineS * i);
+  if (best) best->offset_sigma_s = sigma_of_offset(gyro, steps, *best);
+  return best;
+}
+
 }  // namespace
 
 std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
@@ -123,19 +173,21 @@ std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
 }
 
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
-                                const std::vector<FrameMotion>& motion) {
-  const std::vector<Step> steps = steps_of(motion);
-  std::optional<GyroFit> best;
-  const auto look = [&](double offset_s) {
-    const auto fit = fit_at(gyro, steps, offset_s);
-    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
-  };
-  for (double offset_s = -0.5; offset_s <= 0.5; offset_s += 0.01) look(offset_s);
-  if (!best) return std::nullopt;
-  const double middle = best->offset_s;
-  for (double d = -0.01; d <= 0.01; d += 0.001) look(middle + d);
-  constexpr double kAgree = 0.5;
-  return best->correlation >= kAgree ? best : std::nullopt;
+                                const std::vector<FrameMotion>& motion,
+                                const OffsetRange& range) {
+  constexpr double kMinCorrelation = 0.5;  // chosen by judgement: half of the turning is explained
+  const auto best = best_fit(gyro, steps_of(motion), range, [](double) { return true; });
+  return best && best->correlation >= kMinCorrelation ? best : std::nullopt;
+}
+
+std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
+                                 const std::vector<FrameMotion>& motion,
+                                 const OffsetRange& range,
+                                 const GyroFit& best,
+                                 double apart_s) {
+  return best_fit(gyro, steps_of(motion), range, [&](double offset_s) {
+    return std::abs(offset_s - best.offset_s) >= apart_s;
+  });
 }
 
 std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,

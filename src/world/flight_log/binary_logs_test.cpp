@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Logs of binary formats, written here byte by byte as their specifications state.
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -21,9 +21,10 @@ std::string bytes_of(T value) {
 }
 
 // The text, filled with zeros to a length.
-std::string padded(std::string text, std::size_t length) {
-  text.resize(length, '\0');
-  return text;
+std::string padded(std::string_view text, std::size_t length) {
+  std::string result(length, '\0');
+  std::copy(text.begin(), text.end(), result.begin());
+  return result;
 }
 
 std::string joined(std::initializer_list<std::string_view> parts) {

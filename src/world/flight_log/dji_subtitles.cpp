@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subtitles that DJI's aircraft write beside a video: SubRip blocks whose text states where the
-// aircraft was. Three generations of that text are read:
+// aircraft was. Three generations of that text are read. The first has keys:
+//   [latitude: 47.1] [longitude: 8.5] [rel_alt: 30.3 abs_alt: 500.1] [gb_yaw: 10 gb_pitch: -5 ...]
+// The second:
+//   F/2.8, SS 200, ISO 100, EV 0, GPS (8.5, 47.1, 16), D 26.5m, H 6.00m, H.S 2.1m/s, V.S 0.0m/s
+// The third:
+//   HOME(8.5,47.1) 2017.08.05 14:11:51 GPS(8.5,47.1,16) BAROMETER:91.2
 //
-//   [latitude: 47.1] [longitude: 8.5] [rel_alt: 30.3 abs_alt: 500.1] [gb_yaw: 10 gb_pitch: -5
-//   gb_roll: 0] F/2.8, SS 200, ISO 100, EV 0, GPS (8.5, 47.1, 16), D 26.5m, H 6.00m, H.S 2.1m/s,
-//   V.S 0.0m/s HOME(8.5,47.1) 2017.08.05 14:11:51 GPS(8.5,47.1,16) BAROMETER:91.2
-//
-// GPS states longitude first; its third number is the count of satellites.
+// The third number of GPS is the count of satellites, and longitude comes first; where it is a
+// height, as in GPS(47.1,8.5,12.0M), latitude comes first. G.PRY (-27.3, 0.0, -76.0) states the
+// gimbal's pitch, roll and yaw. Some firmware states no height: the path is then level.
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <optional>
@@ -69,22 +74,42 @@ std::optional<double> time_of(std::string_view text) {
   return 3600.0 * parts[0] + 60.0 * parts[1] + parts[2] + 0.001 * parts[3];
 }
 
-// Position of the older texts: GPS (longitude, latitude, satellites).
+// The numbers in the brackets that follow; empty where there are not three.
+std::optional<std::array<double, 3>> three_numbers(std::string_view text) {
+  std::array<double, 3> numbers{};
+  for (double& number : numbers) {
+    const auto value = number_at_start(text);
+    if (!value) return std::nullopt;
+    number = *value;
+    text.remove_prefix(std::min(text.find(',') + 1, text.size()));
+  }
+  return numbers;
+}
+
+// Position of the older texts: GPS (longitude, latitude, satellites), or (latitude, longitude,
+// height).
 std::optional<Fix> fix_of_gps(std::string_view text) {
   const auto rest = behind(text, "GPS");
-  if (!rest) return std::nullopt;
-  const auto longitude = number_at_start(*rest);
-  const std::size_t comma = rest->find(',');
-  if (!longitude || comma == std::string_view::npos) return std::nullopt;
-  const auto latitude = number_at_start(rest->substr(comma + 1));
-  if (!latitude) return std::nullopt;
+  const auto numbers = rest ? three_numbers(*rest) : std::nullopt;
+  if (!numbers) return std::nullopt;
+  const bool states_height = rest->substr(0, rest->find(')')).ends_with('M');
   Fix fix;
-  fix.longitude_deg = *longitude;
-  fix.latitude_deg = *latitude;
-  fix.height_m = first_of(text, {"H", "BAROMETER"});
-  if (!fix.height_m) return std::nullopt;
-  fix.altitude_m = *fix.height_m;
+  fix.latitude_deg = (*numbers)[states_height ? 0 : 1];
+  fix.longitude_deg = (*numbers)[states_height ? 1 : 0];
+  fix.height_m = first_of(text, {"H", "BAROMETER", "Hb"});
+  fix.altitude_m = fix.height_m.value_or(0);
   return fix;
+}
+
+// The attitude of the gimbal in either text.
+std::optional<YawPitchRoll> gimbal_of(std::string_view text) {
+  const auto yaw = value_of(text, "gb_yaw"), pitch = value_of(text, "gb_pitch");
+  const auto roll = value_of(text, "gb_roll");
+  if (yaw && pitch && roll) return YawPitchRoll{*yaw, *pitch, *roll};
+  const auto rest = behind(text, "G.PRY");
+  const auto angles = rest ? three_numbers(*rest) : std::nullopt;
+  if (!angles) return std::nullopt;
+  return YawPitchRoll{(*angles)[2], (*angles)[0], (*angles)[1]};
 }
 
 std::optional<Fix> fix_of_keys(std::string_view text) {
@@ -96,9 +121,7 @@ std::optional<Fix> fix_of_keys(std::string_view text) {
   fix.latitude_deg = *latitude;
   fix.longitude_deg = *longitude;
   fix.height_m = value_of(text, "rel_alt");
-  const auto altitude = first_of(text, {"abs_alt", "altitude"});
-  if (!altitude && !fix.height_m) return std::nullopt;
-  fix.altitude_m = altitude ? *altitude : *fix.height_m;
+  fix.altitude_m = first_of(text, {"abs_alt", "altitude"}).value_or(fix.height_m.value_or(0));
   return fix;
 }
 
@@ -143,9 +166,7 @@ class SubtitleReader {
     if (!fix || (fix->latitude_deg == 0 && fix->longitude_deg == 0)) return void(++log_.left_out);
     fix->time_s = *time_s;
     add_fix(log_, *fix, {file_, line});
-    const auto yaw = value_of(block, "gb_yaw"), pitch = value_of(block, "gb_pitch");
-    const auto roll = value_of(block, "gb_roll");
-    if (yaw && pitch && roll) add_attitude(log_, {*time_s, {*yaw, *pitch, *roll}}, {file_, line});
+    if (const auto gimbal = gimbal_of(block)) add_attitude(log_, {*time_s, *gimbal}, {file_, line});
   }
 
   std::string_view text_;

@@ -67,6 +67,31 @@ TEST(DjiSubtitles, OlderTextsStateLongitudeFirst) {
   EXPECT_DOUBLE_EQ(phantom.fixes[1].altitude_m, 91.4);
 }
 
+TEST(DjiSubtitles, AHeightInBracketsComesWithLatitudeFirstAndTheGimbalAsPitchRollYaw) {
+  const FlightLog matrice = parse_flight_log(
+      "1\n00:00:00,000 --> 00:00:01,000\n2022.06.21 16:06:17\nGPS(36.6,-6.1,0.0M) "
+      "BAROMETER:0.3M\n\n"
+      "2\n00:00:01,000 --> 00:00:02,000\n2022.06.21 16:06:18\nGPS(36.7,-6.2,0.0M) BAROMETER:1.3M\n",
+      "a.srt");
+  EXPECT_DOUBLE_EQ(matrice.fixes[1].latitude_deg, 36.7);
+  EXPECT_DOUBLE_EQ(matrice.fixes[1].height_m.value(), 1.3);
+  const FlightLog rtk = parse_flight_log(
+      "1\n00:15:04,904 --> 00:15:05,905\nF/5.6, EV +0.7, GPS (-59.409424, -34.650200, 16), HOME "
+      "(-59.407880, "
+      "-34.650736, 7.60m), D 153.32m, H 17.39m, H.S 1.84m/s, F.PRY (-8.9\xc2\xb0, 2.9\xc2\xb0, "
+      "-75.0\xc2\xb0), "
+      "G.PRY (-27.3\xc2\xb0, 0.5\xc2\xb0, -76.0\xc2\xb0)\n\n2\n00:15:05,905 --> 00:15:06,906\nGPS "
+      "(-59.409447, "
+      "-34.650195, 16), H 17.33m\n",
+      "a.srt");
+  ASSERT_EQ(rtk.attitudes.size(), 1u);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.yaw_deg, -76);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.pitch_deg, -27.3);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.roll_deg, 0.5);
+  EXPECT_DOUBLE_EQ(rtk.fixes[0].latitude_deg, -34.6502);
+  EXPECT_DOUBLE_EQ(rtk.fixes[0].height_m.value(), 17.39);
+}
+
 TEST(DjiSubtitles, FramesWithoutSatellitesAreLeftOutAndBadTimesNamed) {
   EXPECT_EQ(error_of("1\n00:00:00,000 --> 00:00:00,033\n[latitude: 0.0] [longitude: 0.0] [rel_alt: "
                      "1 abs_alt: 1]\n",

@@ -41,26 +41,22 @@ double nearest_turn(double angle_deg, double before_deg) {
   return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
 }
 
-void require_covered(const FlightLog& log, const Placement& placement) {
-  const double first_s = log.fixes.front().time_s - placement.offset_s;
-  const double last_s = log.fixes.back().time_s - placement.offset_s;
-  if (first_s <= kMaxExtensionS && last_s >= placement.duration_s - kMaxExtensionS) return;
+void require_covered(const FlightLog& log, double offset_s) {
+  const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
+  if (offset_s >= first_s - kMaxExtensionS && offset_s <= last_s + kMaxExtensionS) return;
   throw Error(fmt::format(
-      "the log's positions cover {:.2f} to {:.2f} s of the clip (log time = clip time + {:.3f} s), "
-      "and the clip lasts from 0 to {:.2f} s; expected a log of the whole clip",
+      "the log's positions go from {:.2f} to {:.2f} s, and the clip begins at {:.3f} s of the log; "
+      "expected a log of the same flight, or another log_offset_s",
       first_s,
       last_s,
-      placement.offset_s,
-      placement.duration_s));
+      offset_s));
 }
 
-// The positions that the clip needs, in the plane that touches the ellipsoid at the clip's first
-// position: those within the clip and a few seconds around it. Positions within half a second count
-// as one, at the mean of their times: DJI's subtitles repeat a position of 0.1 m of resolution in
-// every frame, and a spline through each would shake. An acceleration of 5 m/s2 moves the mean by
-// 0.05 m.
+// The positions in the plane that touches the ellipsoid at the clip's first position. Positions
+// within half a second count as one, at the mean of their times: DJI's subtitles repeat a position
+// of 0.1 m of resolution in every frame, and a spline through each would shake. An acceleration of
+// 5 m/s2 moves the mean by 0.05 m.
 trajectory::Samples local_positions(const FlightLog& log, const Placement& placement) {
-  constexpr double kMarginS = 10;  // a natural spline's end no longer bends the path there
   constexpr double kBinS = 0.5;
   const Fix& first =
       log.fixes[std::min(after(log.fixes, placement.offset_s), log.fixes.size() - 1)];
@@ -70,7 +66,6 @@ trajectory::Samples local_positions(const FlightLog& log, const Placement& place
   double bin = 0, members = 0;
   for (const Fix& fix : log.fixes) {
     const double time_s = fix.time_s - placement.offset_s;
-    if (time_s < -kMarginS || time_s > placement.duration_s + kMarginS) continue;
     double east = 0, north = 0, up = 0;
     local.Forward(fix.latitude_deg, fix.longitude_deg, fix.altitude_m, east, north, up);
     const Vector3 position(north, east, -up);
@@ -87,35 +82,34 @@ trajectory::Samples local_positions(const FlightLog& log, const Placement& place
   return samples;
 }
 
-// Positions at constant velocity before the first fix and after the last one.
-void extend(trajectory::Samples& samples, double duration_s) {
-  const std::size_t n = samples.times_s.size();
-  const auto outside = [&](std::size_t at, std::size_t beside, double time_s) -> Vector3 {
-    const double share =
-        (time_s - samples.times_s[at]) / (samples.times_s[beside] - samples.times_s[at]);
-    return samples.positions_ned_m[at] +
-           share * (samples.positions_ned_m[beside] - samples.positions_ned_m[at]);
+// Adds positions at constant velocity before the first one and after the last one.
+void extend(trajectory::Samples& samples) {
+  auto& times = samples.times_s;
+  auto& positions = samples.positions_ned_m;
+  const std::size_t n = times.size();
+  const auto velocity = [&](std::size_t a, std::size_t b) -> Vector3 {
+    return (positions[b] - positions[a]) / (times[b] - times[a]);
   };
-  if (samples.times_s.back() < duration_s) {
-    samples.positions_ned_m.push_back(outside(n - 1, n - 2, duration_s));
-    samples.times_s.push_back(duration_s);
-  }
-  if (samples.times_s.front() > 0) {
-    samples.positions_ned_m.insert(samples.positions_ned_m.begin(), outside(0, 1, 0));
-    samples.times_s.insert(samples.times_s.begin(), 0);
-  }
+  const Vector3 before = positions[0] - kMaxExtensionS * velocity(0, 1);
+  const Vector3 behind = positions[n - 1] + kMaxExtensionS * velocity(n - 2, n - 1);
+  times.push_back(times.back() + kMaxExtensionS);
+  positions.push_back(behind);
+  times.insert(times.begin(), times.front() - kMaxExtensionS);
+  positions.insert(positions.begin(), before);
 }
 
 }  // namespace
 
-trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
-  require_covered(log, placement);
+trajectory::Path local_path(const FlightLog& log,
+                            const Placement& placement,
+                            const trajectory::AttitudeOverride& stated) {
+  require_covered(log, placement.offset_s);
   trajectory::Samples samples = local_positions(log, placement);
   if (samples.times_s.size() < 2)
     throw Error(
-        "the log's positions near the clip span less than half a second; expected one a second or "
+        "the log's positions span less than half a second; expected one a second or "
         "more");
-  extend(samples, placement.duration_s);
+  extend(samples);
   if (!log.attitudes.empty()) {
     samples.has_angle = {true, true, true};
     for (const double time_s : samples.times_s) {
@@ -126,7 +120,7 @@ trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
   const Vector3 first = trajectory::path_through_samples(samples).at(0)->position_in_world;
   for (Vector3& position : samples.positions_ned_m)
     position += placement.first_position_ned_m - first;
-  return trajectory::path_through_samples(samples);
+  return trajectory::path_through_samples(samples, stated);
 }
 
 std::optional<double> height_at(const FlightLog& log, double time_s) {
