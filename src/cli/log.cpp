@@ -47,6 +47,8 @@ std::string range_of(const FlightLog& log, double flight_log::Fix::*member) {
 // Distance flown and the highest speed over the path that a scene would take from the log.
 std::string flown(const FlightLog& log) {
   const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
+  constexpr double kMinSpanS = 1;  // a path needs positions in two half seconds
+  if (last_s - first_s < kMinSpanS) return "flown: the positions span less than a second";
   const auto path = flight_log::local_path(log, {first_s, Vector3::Zero()});
   constexpr double kStepS = 0.5;
   double distance_m = 0, top_mps = 0;

@@ -10,7 +10,7 @@
 namespace airtruth::flight_log {
 namespace {
 
-constexpr double kMaxTimeS = 1e9;      // 30 years, far beyond any log
+constexpr double kMaxTimeS = 1e11;     // seconds since 1970 fit, also of a clock that is off
 constexpr double kMaxHeightM = 1e5;    // the border of space
 constexpr double kMaxAngleDeg = 1e4;   // some loggers count turns
 constexpr double kMaxRateRadps = 1e3;  // gyroscopes of aircraft end at 4,000 degrees a second
@@ -20,7 +20,7 @@ void require(bool good, const char* what, double value, const char* expected, co
 }
 
 void require_time(double time_s, const Where& where) {
-  require(std::abs(time_s) <= kMaxTimeS, "time", time_s, "seconds up to 1e9", where);
+  require(std::abs(time_s) <= kMaxTimeS, "time", time_s, "seconds up to 1e11", where);
 }
 
 // True where the record follows the one before in time; counts it otherwise.
