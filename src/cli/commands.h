@@ -25,6 +25,7 @@ void add_render(CLI::App& app, Context& context);
 void add_motion(CLI::App& app, Context& context);
 void add_calibrate(CLI::App& app, Context& context);
 void add_lens(CLI::App& app, Context& context);
+void add_log(CLI::App& app, Context& context);
 void add_mask(CLI::App& app, Context& context);
 void add_aircraft(CLI::App& app, Context& context);
 void add_overlay(CLI::App& app, Context& context);

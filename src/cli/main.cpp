@@ -108,6 +108,7 @@ void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_calibrate(app, context);
   cli::add_mask(app, context);
   cli::add_lens(app, context);
+  cli::add_log(app, context);
   cli::add_aircraft(app, context);
   cli::add_synth(app, context);
   cli::add_dataset(app, context);

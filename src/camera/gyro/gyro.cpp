@@ -3,52 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string_view>
+#include <limits>
 
+#include "camera/gyro/gpmf.h"
 #include "camera/motion/rotation_fit.h"
 
 namespace airtruth::motion {
 namespace {
 
-struct Element {
-  std::string_view key;
-  char type = 0;
-  std::size_t size = 0;  // of one structure, in bytes
-  std::size_t count = 0;
-  std::span<const std::uint8_t> data;
-};
-
-// Visits the elements of one level. Stops at the first element that does not fit into `bytes`.
-template <typename Visit>
-void each_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
-  constexpr std::size_t kHead = 8;
-  while (bytes.size() >= kHead) {
-    Element e;
-    e.key = {reinterpret_cast<const char*>(bytes.data()), 4};
-    e.type = static_cast<char>(bytes[4]);
-    e.size = bytes[5];
-    e.count = static_cast<std::size_t>(bytes[6]) << 8 | bytes[7];
-    const std::size_t length = e.size * e.count;
-    const std::size_t padded = (length + 3) / 4 * 4;
-    if (bytes.size() - kHead < length) return;
-    e.data = bytes.subspan(kHead, length);
-    visit(e);
-    if (bytes.size() - kHead < padded) return;
-    bytes = bytes.subspan(kHead + padded);
-  }
-}
-
-// The number at byte offset `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
-double number_at(const Element& e, std::size_t at) {
-  std::uint32_t value = 0;
+// The number of index `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
+double number_at(const GpmfElement& e, std::size_t at) {
   const std::size_t width = e.type == 's' ? 2 : 4;
-  for (std::size_t i = 0; i < width; ++i) value = value << 8 | e.data[at * width + i];
+  const std::uint32_t value = big_endian(e.data, at * width, width);
   if (e.type == 's') return static_cast<std::int16_t>(value);
   return static_cast<std::int32_t>(value);
 }
 
-bool holds_numbers(const Element& e, std::size_t each) {
+bool holds_numbers(const GpmfElement& e, std::size_t each) {
   const std::size_t width = e.type == 's' ? 2 : e.type == 'l' ? 4 : 0;
   return width > 0 && e.size == each * width && e.count > 0;
 }
@@ -56,7 +27,7 @@ bool holds_numbers(const Element& e, std::size_t each) {
 std::vector<Vector3> rates_of(std::span<const std::uint8_t> stream) {
   double scale = 0;
   std::vector<Vector3> rates;
-  each_element(stream, [&](const Element& e) {
+  each_gpmf_element(stream, [&](const GpmfElement& e) {
     if (e.key == "SCAL" && holds_numbers(e, 1)) scale = number_at(e, 0);
     if (e.key != "GYRO" || !holds_numbers(e, 3)) return;
     for (std::size_t i = 0; i < e.count; ++i)
@@ -135,19 +106,64 @@ std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
   return fit;
 }
 
+// The standard error of the offset. The model's rate changes by its derivative times the error of
+// the offset, so that sigma^2 = residual^2 / sum of derivative^2 over steps and axes. The residuals
+// of neighbouring steps are not independent, since a measured rotation enters two steps: they count
+// as half as many.
+double sigma_of_offset(const std::vector<GyroSample>& gyro,
+                       const std::vector<Step>& steps,
+                       const GyroFit& fit) {
+  double change = 0;
+  for (const Step& s : steps) {
+    const double half_s = 0.5 * (s.end_s - s.begin_s);
+    const auto before =
+        mean_rate(gyro, s.begin_s + fit.offset_s - half_s, s.end_s + fit.offset_s - half_s);
+    const auto after =
+        mean_rate(gyro, s.begin_s + fit.offset_s + half_s, s.end_s + fit.offset_s + half_s);
+    if (before && after) change += ((*after - *before) / (2 * half_s)).squaredNorm();
+  }
+  if (!(change > 0)) return std::numeric_limits<double>::infinity();
+  return fit.rms_radps * std::sqrt(2 / change);
+}
+
+// The best fit at offsets from a coarse grid, and around it from a fine one. Offsets for which
+// `is_wanted` is false are passed over.
+template <typename IsWanted>
+std::optional<GyroFit> best_fit(const std::vector<GyroSample>& gyro,
+                                const std::vector<Step>& steps,
+                                const OffsetRange& range,
+                                const IsWanted& is_wanted) {
+  constexpr double kCoarseS = 0.01, kFineS = 0.001;
+  std::optional<GyroFit> best;
+  const auto look = [&](const std::vector<Step>& at, double offset_s) {
+    if (!is_wanted(offset_s)) return;
+    const auto fit = fit_at(gyro, at, offset_s);
+    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
+  };
+  // Over a whole log the coarse grid has some hundred thousand offsets: it takes 300 of the steps.
+  constexpr std::size_t kMaxCoarseSteps = 300;
+  const std::size_t stride = 1 + steps.size() / kMaxCoarseSteps;
+  std::vector<Step> some;
+  for (std::size_t i = 0; i < steps.size(); i += stride) some.push_back(steps[i]);
+  const auto count = static_cast<int>(std::floor((range.to_s - range.from_s) / kCoarseS + 0.5));
+  for (int i = 0; i <= count; ++i) look(some, range.from_s + kCoarseS * i);
+  if (!best) return std::nullopt;
+  const double middle_s = best->offset_s;
+  best.reset();
+  for (int i = -10; i <= 10; ++i) look(steps, middle_s + kFineS * i);
+  if (best) best->offset_sigma_s = sigma_of_offset(gyro, steps, *best);
+  return best;
+}
+
 }  // namespace
 
 std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
                                        double begin_s,
                                        double end_s) {
   std::vector<Vector3> rates;
-  each_element(packet, [&](const Element& device) {
-    if (device.key != "DEVC") return;
-    each_element(device.data, [&](const Element& stream) {
-      if (stream.key != "STRM") return;
-      const std::vector<Vector3> found = rates_of(stream.data);
-      rates.insert(rates.end(), found.begin(), found.end());
-    });
+  each_gpmf_stream(packet, [&](std::span<const std::uint8_t> stream) {
+    const std::vector<Vector3> found = rates_of(stream);
+    rates.insert(rates.end(), found.begin(), found.end());
   });
   std::vector<GyroSample> samples;
   for (std::size_t i = 0; i < rates.size(); ++i)
@@ -157,19 +173,21 @@ std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
 }
 
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
-                                const std::vector<FrameMotion>& motion) {
-  const std::vector<Step> steps = steps_of(motion);
-  std::optional<GyroFit> best;
-  const auto look = [&](double offset_s) {
-    const auto fit = fit_at(gyro, steps, offset_s);
-    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
-  };
-  for (double offset_s = -0.5; offset_s <= 0.5; offset_s += 0.01) look(offset_s);
-  if (!best) return std::nullopt;
-  const double middle = best->offset_s;
-  for (double d = -0.01; d <= 0.01; d += 0.001) look(middle + d);
-  constexpr double kAgree = 0.5;
-  return best->correlation >= kAgree ? best : std::nullopt;
+                                const std::vector<FrameMotion>& motion,
+                                const OffsetRange& range) {
+  constexpr double kMinCorrelation = 0.5;  // chosen by judgement: half of the turning is explained
+  const auto best = best_fit(gyro, steps_of(motion), range, [](double) { return true; });
+  return best && best->correlation >= kMinCorrelation ? best : std::nullopt;
+}
+
+std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
+                                 const std::vector<FrameMotion>& motion,
+                                 const OffsetRange& range,
+                                 const GyroFit& best,
+                                 double apart_s) {
+  return best_fit(gyro, steps_of(motion), range, [&](double offset_s) {
+    return std::abs(offset_s - best.offset_s) >= apart_s;
+  });
 }
 
 std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,

@@ -26,17 +26,34 @@ std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
 
 struct GyroFit {
   Quaternion cam_from_gyro = Quaternion::Identity();
-  double offset_s = 0;                   // gyro time = video time + offset
+  double offset_s = 0;  // gyro time = video time + offset
+  // Standard error of the offset: the rates' residual over their change with time.
+  double offset_sigma_s = 0;
   Vector3 bias_radps = Vector3::Zero();  // in cam
   double correlation = 0;                // of measured rates and the gyro's, 0..1
   double rms_radps = 0;
+};
+
+// The offsets among which one is looked for, in seconds.
+struct OffsetRange {
+  double from_s = -0.5;
+  double to_s = 0.5;
 };
 
 // The axes, offset and bias with which the gyroscope fits the measured rotations best (least
 // squares; axes by Kabsch 1976). The result is empty where fewer than 40 measured steps contain a
 // rotation, or where the correlation is below 0.5.
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
-                                const std::vector<FrameMotion>& motion);
+                                const std::vector<FrameMotion>& motion,
+                                const OffsetRange& range = {});
+
+// The best fit whose offset is at least `apart_s` from that of `best`: where it correlates nearly
+// as well, the offset is ambiguous. Empty where nothing fits.
+std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
+                                 const std::vector<FrameMotion>& motion,
+                                 const OffsetRange& range,
+                                 const GyroFit& best,
+                                 double apart_s);
 
 // The motion with the rotation of unmeasured frames replaced by the gyroscope's. The frames after
 // such a bridge continue from its end. Replaced frames keep the state kBridged.

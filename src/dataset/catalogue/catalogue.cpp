@@ -57,8 +57,8 @@ Background background_from(const TableReader& table) {
   background.mask = table.path("mask");
   background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
   background.lens = scene::lens_in(table);
-  background.camera = scene::camera_in(table);
   background.motion = scene::motion_in(table);
+  background.camera = scene::camera_in(table, background.motion, background.first_frame);
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);

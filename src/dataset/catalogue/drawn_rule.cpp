@@ -135,10 +135,10 @@ void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& dra
   drawn.start = table.choice<ClipStart>("start").value_or(drawn.start);
   if (drawn.start != ClipStart::kRandom) return;
   for (const std::size_t i : drawn.backgrounds)
-    if (catalogue.backgrounds[i].camera.path_file)
+    if (catalogue.backgrounds[i].camera.path_file || catalogue.backgrounds[i].camera.log)
       table.fail("start",
                  "start is random, but the camera of background '" + catalogue.backgrounds[i].name +
-                     "' has a path_file, which belongs to its first frame; expected start = "
+                     "' has a path_file or log, which belongs to its first frame; expected start = "
                      "\"first\"");
 }
 

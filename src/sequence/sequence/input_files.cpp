@@ -31,6 +31,7 @@ std::vector<Checksum> input_files(const scene::Scene& scene,
   if (scene.realism.file) add(*scene.realism.file);
   if (scene.lens.file) add(*scene.lens.file);
   if (scene.camera.path_file) add(*scene.camera.path_file);
+  if (scene.camera.log) add(*scene.camera.log);
   for (const scene::Intruder& intruder : scene.intruders)
     if (intruder.path_file) add(*intruder.path_file);
   for (const fs::path& model : model_files(world)) add(model);

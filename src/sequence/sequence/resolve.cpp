@@ -58,7 +58,7 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   calibration::Options how;
   how.lens = lens_of(scene.lens, size);
   how.own_aircraft = mask;
-  if (!scene.camera.path_file && scene.camera.position_ned_m.z() < 0)
+  if (!scene.camera.path_file && !scene.camera.log && scene.camera.position_ned_m.z() < 0)
     how.altitude_m = -scene.camera.position_ned_m.z();
   how.tone = tone_of(scene.camera_model);
   how.stop = options.stop;

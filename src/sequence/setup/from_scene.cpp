@@ -5,6 +5,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "picture/render/renderer.h"
+#include "sequence/setup/own_log.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -49,6 +50,7 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
 
 trajectory::Path camera_path(const scene::Camera& camera) {
   if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  if (camera.log) return path_from_log(camera);
   return trajectory::uniform(
       camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
 }

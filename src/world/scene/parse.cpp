@@ -54,8 +54,8 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.background =
       background_from(root.table("background", {"video", "mask", "first_frame", "frame_count"}));
   scene.lens = lens_in(root);
-  scene.camera = camera_in(root);
   scene.motion = motion_in(root);
+  scene.camera = camera_in(root, scene.motion, scene.background.first_frame);
   scene.light = light_in(root);
   scene.camera_model = camera_model_in(root);
   scene.realism = realism_in(root);

@@ -60,12 +60,24 @@ struct Lens {
   Where where;
 };
 
-// [camera]: the nominal, unshaken pose of the camera, as uniform motion or as a path file.
+// [camera]: the nominal, unshaken pose of the camera, as uniform motion, as a path file or from a
+// flight log.
 struct Camera {
   Vector3 position_ned_m{0, 0, -150};
   Vector3 velocity_ned_mps{0, 0, 0};
   YawPitchRoll attitude_yaw_pitch_roll_deg;
   std::optional<fs::path> path_file;
+  // A log of the flight (world/flight_log/flight_log.h).
+  std::optional<fs::path> log;
+  // Time of the log = time of the clip + log_offset_s. Empty: the log is on the video's clock.
+  std::optional<double> log_offset_s;
+  // With a log: whether the scene states the position and the attitude at the first frame; the
+  // log's are used where it does not.
+  bool position_is_stated = false;
+  bool attitude_is_stated = false;
+  // With a log: true where the attitude follows the log throughout, which is so for motion
+  // `smoothed`. Otherwise it is that of the first frame, from where the measured motion turns it.
+  bool follows_log_attitude = false;
   Where where;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -81,6 +82,20 @@ Path shifted(const Path& path, double start_s);
 Path uniform(const Vector3& position_ned_m,
              const Vector3& velocity_ned_mps,
              const YawPitchRoll& attitude);
+
+// Positions at strictly increasing times, and the angles that are stated for them.
+struct Samples {
+  std::vector<double> times_s;
+  std::vector<Vector3> positions_ned_m;
+  // Yaw, pitch and roll of each sample; used where has_angle is true, and empty where none is.
+  std::vector<Vector3> angles_deg;
+  std::array<bool, 3> has_angle{};
+};
+
+// The C2 spline through samples. An angle that the samples state follows a spline through its
+// unwrapped values; any other angle follows from the path as above. `attitude` replaces either.
+// The samples must hold at least two times.
+Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude = {});
 
 // Reads a sampled path: CSV with a header and the columns
 // time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. The position follows the

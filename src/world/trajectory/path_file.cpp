@@ -3,7 +3,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <string>
 
@@ -11,8 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/suggest.h"
-#include "world/trajectory/path_impl.h"
-#include "world/trajectory/spline.h"
+#include "world/trajectory/path.h"
 
 namespace airtruth::trajectory {
 namespace {
@@ -61,18 +59,6 @@ double number_of(const std::string& cell, const std::string& column, const Where
   return value;
 }
 
-struct Samples {
-  std::vector<double> times;
-  std::vector<Vector3> positions;
-  std::vector<Vector3> angles;  // yaw, pitch, roll in degrees, unwrapped
-  // The angles that the file states.
-  std::array<bool, 3> given{};
-};
-
-double unwrapped(double angle_deg, double before_deg) {
-  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
-}
-
 // The columns of a file: where each known column stands, and how many there are.
 struct Header {
   Places place;
@@ -95,20 +81,18 @@ void add_row(const std::vector<std::string>& cells,
     return number_of(cells[place], kColumns[column], where);
   };
   const double time = value(0);
-  if (!samples.times.empty() && time - samples.times.back() < kShortestStep_s)
+  if (!samples.times_s.empty() && time - samples.times_s.back() < kShortestStep_s)
     throw Error("time_s is " + cells[header.place[0]] +
                     ", not after the row before; expected times that increase",
                 where);
-  Vector3 angle(value(4), value(5), value(6));
-  if (!samples.angles.empty())
-    for (int i : {0, 2}) angle[i] = unwrapped(angle[i], samples.angles.back()[i]);
-  samples.times.push_back(time);
+  const Vector3 angle(value(4), value(5), value(6));
+  samples.times_s.push_back(time);
   // The values are read in this order, so that an error names the first bad column.
   const double north = value(1);
   const double east = value(2);
   const double down = value(3);
-  samples.positions.emplace_back(north, east, down);
-  samples.angles.push_back(angle);
+  samples.positions_ned_m.emplace_back(north, east, down);
+  samples.angles_deg.push_back(angle);
 }
 
 Samples read_samples(std::string_view text, const std::string& file) {
@@ -120,54 +104,25 @@ Samples read_samples(std::string_view text, const std::string& file) {
   const Header header{columns_of(line, file), cells_of(line).size()};
   Samples samples;
   for (std::size_t i = 0; i < 3; ++i)
-    samples.given[i] = header.place[kRequired + i] != std::string::npos;
+    samples.has_angle[i] = header.place[kRequired + i] != std::string::npos;
   int number = 1;
   while (std::getline(lines, line)) {
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     add_row(cells_of(line), header, {file, number}, samples);
   }
-  if (samples.times.size() < 2)
-    throw Error("holds " + std::to_string(samples.times.size()) + " rows; expected at least two",
+  if (samples.times_s.size() < 2)
+    throw Error("holds " + std::to_string(samples.times_s.size()) + " rows; expected at least two",
                 {file, number});
   return samples;
 }
-
-// Position and its derivatives follow the samples. Angles follow the file where it states them and
-// the path elsewhere.
-class Sampled : public Path::Impl {
- public:
-  Sampled(const Samples& samples, const AttitudeOverride& stated)
-      : along_(path_through(samples.times, samples.positions, stated)),
-        angles_(samples.times, samples.angles),
-        given_(samples.given),
-        stated_(stated) {}
-  double start_s() const override { return angles_.begin(); }
-  double end_s() const override { return angles_.end(); }
-  State at(double t) const override {
-    State state = along_->at(t);
-    YawPitchRoll attitude = yaw_pitch_roll(state.world_from_body);
-    const Vector3 angle = angles_.at(t, 0);
-    if (given_[0] && !stated_.yaw_deg) attitude.yaw_deg = angle[0];
-    if (given_[1] && !stated_.pitch_deg) attitude.pitch_deg = angle[1];
-    if (given_[2] && !stated_.roll_deg) attitude.roll_deg = angle[2];
-    state.world_from_body = world_from_body(attitude);
-    return state;
-  }
-
- private:
-  std::shared_ptr<const Path::Impl> along_;
-  CubicSpline<Vector3> angles_;
-  std::array<bool, 3> given_;
-  AttitudeOverride stated_;
-};
 
 }  // namespace
 
 Path parse_path_csv(std::string_view text,
                     const std::filesystem::path& name,
                     const AttitudeOverride& attitude) {
-  return Path(std::make_shared<Sampled>(read_samples(text, name.string()), attitude));
+  return path_through_samples(read_samples(text, name.string()), attitude);
 }
 
 Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude) {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/geometry/transform.h"
+
+// What flew with a video: the positions, attitudes and turn rates that a flight log holds, in the
+// log's own order and on the log's own clock.
+//
+// | format            | file       | position | attitude | rates | clock                          |
+// |-------------------|------------|----------|----------|-------|--------------------------------|
+// | DJI subtitles     | .srt       | yes      | gimbal   |       | the video's                    |
+// | GoPro GPMF        | .mp4, .360 | yes      |          |       | the video's                    |
+// | PX4 ULog          | .ulg       | yes      | yes      | yes   | since the log's first message  |
+// | ArduPilot DataFlash | .bin     | yes      | yes      | yes   | since the log's first message  |
+// | GPX               | .gpx       | yes      |          |       | since the log's first point    |
+// | airtruth CSV      | .csv       | yes      | optional | optional | as the file states it       |
+//
+// docs/formats/flight-log.md describes what is read from each.
+namespace airtruth::flight_log {
+
+enum class Format { kDjiSubtitles, kGpmf, kUlog, kDataFlash, kGpx, kCsv };
+// "DJI subtitles", "GoPro GPMF", "PX4 ULog", "ArduPilot DataFlash", "GPX", "CSV".
+const char* name(Format format);
+
+// A position on the WGS 84 ellipsoid.
+struct Fix {
+  double time_s = 0;
+  double latitude_deg = 0;   // -90 to 90
+  double longitude_deg = 0;  // -180 to 180
+  // Height above the log's own datum: mean sea level or the ellipsoid. Only differences are used.
+  double altitude_m = 0;
+  // Height above the place of take-off; empty where the log does not state it.
+  std::optional<double> height_m;
+};
+
+// The attitude of the aircraft, or of the camera's gimbal for DJI subtitles.
+struct Attitude {
+  double time_s = 0;
+  YawPitchRoll angles;
+};
+
+// The turn rates about the body's axes: x forward, y right, z down.
+struct Rates {
+  double time_s = 0;
+  Vector3 in_body_radps = Vector3::Zero();
+};
+
+// The times of each list increase strictly and all numbers are finite.
+struct FlightLog {
+  Format format = Format::kCsv;
+  // True where the log counts time from the first frame of the video that it was made with.
+  bool is_on_video_clock = false;
+  std::vector<Fix> fixes;
+  std::vector<Attitude> attitudes;
+  std::vector<Rates> rates;
+  // Records that were left out: positions without a satellite fix, times that do not increase.
+  std::int64_t left_out = 0;
+};
+
+// Reads the log in a file other than a video; its content decides the format. An Error with the
+// file, and the line of a text file, is thrown for an unknown format, a log that is cut off, a
+// number that is not finite or out of range, and a log with fewer than two positions.
+FlightLog read_flight_log(const std::filesystem::path& path);
+
+// The same from the content of the file `name`.
+FlightLog parse_flight_log(std::string_view content, const std::filesystem::path& name);
+
+}  // namespace airtruth::flight_log
