@@ -24,6 +24,7 @@ struct DatasetArguments {
   bool finish = false;
   bool deep = false;
   std::int64_t deep_every = 30;
+  int verify_jobs = 0;
 };
 
 std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string>& backgrounds) {
@@ -187,6 +188,7 @@ void verify(const DatasetArguments& arguments, Context& context) {
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("verifying", done, total, "sequences");
   };
+  options.jobs = arguments.verify_jobs;
   if (arguments.deep) options.deep_every = arguments.deep_every;
   const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);
@@ -203,6 +205,15 @@ void verify(const DatasetArguments& arguments, Context& context) {
   if (!result.faults.empty()) context.exit_code = 1;
 }
 
+void add_folder_size(CLI::App& command, std::int64_t& max_in_a_folder) {
+  command
+      .add_option("--folder-size",
+                  max_in_a_folder,
+                  "A set of more sequences has them in numbered folders with as many each; decided "
+                  "when the set is begun (default: 4,000)")
+      ->check(CLI::Range(1, 1'000'000));
+}
+
 void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command.add_option("CATALOGUE", arguments.catalogue, "Catalogue file (.toml); see catalogues/")
       ->required();
@@ -217,6 +228,7 @@ void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command.add_option("--background",
                      arguments.backgrounds,
                      "NAME=VIDEO: a video in place of a background of the catalogue");
+  add_folder_size(command, arguments.build.max_in_a_folder);
 }
 
 void add_build(CLI::App& group, Context& context) {
@@ -277,6 +289,10 @@ void add_verify(CLI::App& group, Context& context) {
   command
       ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--jobs,-j", arguments->verify_jobs, "Sequences at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
   command->callback([arguments, &context] { verify(*arguments, context); });
 }
 
@@ -296,6 +312,7 @@ void add_submit(CLI::App& group, Context& context) {
                    arguments->slurm.array_size,
                    "Tasks (default: one per sequence, at most 1,000)")
       ->check(CLI::Range(1, 100000));
+  add_folder_size(*command, arguments->slurm.max_in_a_folder);
   command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
   command
       ->add_option("--sbatch",

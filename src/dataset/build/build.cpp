@@ -2,9 +2,13 @@
 #include "dataset/build/build.h"
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "dataset/build/backgrounds.h"
 #include "dataset/build/manifest.h"
@@ -17,9 +21,14 @@
 #include "foundation/base/pattern.h"
 #include "foundation/base/stopwatch.h"
 #include "sequence/sequence/sequence.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::dataset {
 namespace {
+
+// Sequences that are put in the order of their aircraft at a time: enough for dozens of each of a
+// hundred types, in bounded memory.
+constexpr std::int64_t kMaxOrdered = 4096;
 
 // One build: it makes its share of the catalogue on several threads.
 class Work {
@@ -34,13 +43,8 @@ class Work {
     count();
     jobs_ = static_cast<int>(std::clamp<std::int64_t>(missing_, 1, jobs_));
     prepare_backgrounds();
-    if (missing_ > 0)
-      in_parallel(
-          static_cast<std::size_t>(share_size()),
-          jobs_,
-          [this](std::size_t i) { make_if_missing(static_cast<std::int64_t>(i)); },
-          {},
-          options_.stop);
+    for (std::int64_t first = 0; missing_ > 0 && first < share_size(); first += kMaxOrdered)
+      make_all(missing_by_aircraft(first, std::min(share_size(), first + kMaxOrdered)));
     if (options_.stop.stop_requested()) throw Interrupted();
     std::sort(summary_.failures.begin(),
               summary_.failures.end(),
@@ -61,7 +65,7 @@ class Work {
       if (!is_wanted(item)) continue;
       any = true;
       ++total_;
-      if (folder_.holds(item.name)) {
+      if (folder_.holds(item)) {
         ++summary_.kept;
         continue;
       }
@@ -98,6 +102,7 @@ class Work {
     if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
     sequence::Options how;
     how.cache = folder_.cache();
+    how.shared = shared_;
     how.stop = options_.stop;
     how.warn = options_.warn;
     const std::string& name = catalogue_.backgrounds[i].name;
@@ -119,24 +124,50 @@ class Work {
     return (expansion_.size() - options_.share + options_.shares - 1) / options_.shares;
   }
 
-  // Makes the i-th sequence of this share.
-  void make_if_missing(std::int64_t i) {
-    Item item = expansion_.at(options_.share + i * options_.shares);
-    if (is_wanted(item) && !folder_.holds(item.name)) make(item);
+  // The numbers of the missing sequences among the `first`-th to the `last`-th of this share. Those
+  // with the same aircraft follow one another, so that it is loaded once for them.
+  std::vector<std::int64_t> missing_by_aircraft(std::int64_t first, std::int64_t last) const {
+    std::vector<std::pair<std::string, std::int64_t>> ordered;
+    for (std::int64_t i = first; i < last; ++i) {
+      const Item item = expansion_.at(options_.share + i * options_.shares);
+      if (!is_wanted(item) || folder_.holds(item)) continue;
+      const auto& intruders = item.scene.intruders;
+      ordered.emplace_back(intruders.empty() ? "" : intruders.front().aircraft, item.index);
+    }
+    std::sort(ordered.begin(), ordered.end());
+    std::vector<std::int64_t> indices;
+    for (const auto& [aircraft, index] : ordered) indices.push_back(index);
+    return indices;
+  }
+
+  void make_all(const std::vector<std::int64_t>& indices) {
+    in_parallel(
+        indices.size(),
+        jobs_,
+        [&](std::size_t i) {
+          Item item = expansion_.at(indices[i]);
+          make(item);
+        },
+        {},
+        options_.stop);
   }
 
   void make(Item& item) {
     sequence::Options how;
     how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
     how.cache = folder_.cache();
+    how.shared = shared_;
     how.stop = options_.stop;
     how.warn = [&](const std::string& message) {
       const std::lock_guard lock(mutex_);
       warn(options_.warn, item.name + ": " + message);
     };
     try {
-      place(item, catalogue_, files_[item.background]);
-      const sequence::Summary done = sequence::render(item.scene, folder_.sequences(), how);
+      place(item, catalogue_, files_[item.background], shared_.get());
+      // A numbered folder is made here and not by the run, which removes an empty one on failure.
+      const fs::path place = folder_.sequence(item).parent_path();
+      fs::create_directories(place);
+      const sequence::Summary done = sequence::render(item.scene, place, how);
       const std::lock_guard lock(mutex_);
       ++summary_.made;
       summary_.frames += done.frames;
@@ -168,6 +199,7 @@ class Work {
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
+  std::shared_ptr<sequence::SharedInputs> shared_ = std::make_shared<sequence::SharedInputs>();
   std::mutex mutex_;
   BuildSummary summary_;
 };
@@ -188,7 +220,7 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
       throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
   }
   check_sources(catalogue, options.videos);
-  const Folder folder = open_folder(catalogue, out);
+  const Folder folder = open_folder(catalogue, out, options.max_in_a_folder);
   const FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();
   write_failures(folder.failed(options.share, options.shares), summary.failures);

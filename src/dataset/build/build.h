@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dataset/catalogue/expand.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/log.h"
 
 // The folder of a data set (docs/formats/dataset.md):
@@ -17,6 +18,7 @@
 //   catalogue.toml        the catalogue from which the set is made
 //   backgrounds/          virtual flights, each with its mask and true camera
 //   sequences/<name>/     output of `airtruth render`; a sequence is whole or absent
+//   sequences/0001/<name>/  the same in a set of many sequences (dataset/sequences/layout.h)
 //   manifest/00000.jsonl  one line per sequence, 10,000 lines per file
 //   dataset.json          written last, once every sequence exists
 //   failed.jsonl          the sequences that could not be made, with the reason
@@ -35,6 +37,8 @@ struct BuildOptions {
   int jobs = 0;
   // Pattern; only sequences with a matching name are made.
   std::string only = "*";
+  // A set of more sequences that is begun now has them in numbered folders with as many each.
+  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
   // Maps a background's name to the video that replaces the catalogue's.
   std::map<std::string, fs::path> videos;
   // This run makes the sequences whose number is congruent to `share` modulo `shares`.

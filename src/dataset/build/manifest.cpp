@@ -17,11 +17,11 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kLinesInAFile = 10'000;
 
 Json manifest_line(const Folder& folder, const Item& item) {
-  const JsonDocument record(folder.sequence(item.name) / "sequence.json");
+  const JsonDocument record(folder.sequence(item) / "sequence.json");
   const JsonObject summary = record.object("summary");
   return {{"index", item.index},
           {"name", item.name},
-          {"folder", fs::relative(folder.sequence(item.name), folder.root).string()},
+          {"folder", fs::relative(folder.sequence(item), folder.root).string()},
           {"frames", summary.count("frames")},
           {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")},
           {"outputs", record.value("outputs")}};
@@ -46,7 +46,7 @@ void write_failures(const fs::path& file, const std::vector<Failure>& failures) 
 bool write_manifest(const Catalogue& catalogue, const Folder& folder) {
   const Expansion expansion(catalogue);
   for (std::int64_t i = 0; i < expansion.size(); ++i)
-    if (!folder.holds(expansion.at(i).name)) return false;
+    if (!folder.holds(expansion.at(i))) return false;
   fs::create_directories(folder.manifest());
   Json files = Json::array();
   std::int64_t frames = 0;

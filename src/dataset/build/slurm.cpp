@@ -85,7 +85,7 @@ std::string verify_script(const Catalogue& catalogue,
   return head("airtruth-verify",
               sbatch_log((out / "slurm").string(), "verify.log"),
               options_of(catalogue, options)) +
-         fmt::format("exec {} dataset verify {} --finish\n",
+         fmt::format("exec {} dataset verify {} --finish --jobs \"${{SLURM_CPUS_ON_NODE:-1}}\"\n",
                      quoted(options.program.string()),
                      quoted(out.string()));
 }
@@ -125,7 +125,7 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   // All checks come before the folder is made.
   const std::string work = work_script(catalogue, root, options, tasks);
   const std::string verify = verify_script(catalogue, root, options);
-  open_folder(catalogue, root);
+  open_folder(catalogue, root, options.max_in_a_folder);
   fs::create_directories(root / "slurm");
   Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};
   write_file(submitted.work_script, work);

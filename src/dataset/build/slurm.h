@@ -12,6 +12,8 @@ namespace airtruth::dataset {
 struct SlurmOptions {
   // Number of tasks; 0 means one per sequence, at most 1,000.
   int array_size = 0;
+  // As BuildOptions::max_in_a_folder.
+  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
   std::string partition;
   // Options as --sbatch states them ("--time=2:00:00"). They take precedence over the options of
   // the catalogue's [slurm].

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/build/verify.h"
 
+#include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
@@ -19,6 +23,8 @@ namespace airtruth::dataset {
 namespace {
 
 constexpr std::size_t kMaxNamed = 100;
+// Results that wait for their place in the order, so that memory does not grow with the set.
+constexpr std::int64_t kMaxHeldResults = 4096;
 
 Catalogue catalogue_of(const Folder& folder) {
   if (!fs::exists(folder.catalogue()))
@@ -42,19 +48,26 @@ bool is_below(const fs::path& folder, const fs::path& name) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// Verifies the sequences of one data set one by one.
+// Verifies one sequence of a data set.
 class Check {
  public:
-  Check(const Folder& folder, const VerifyOptions& options, VerifyResult& result)
-      : folder_(folder), options_(options), result_(result) {}
+  Check(const Folder& folder, const Item& item, const VerifyOptions& options)
+      : name_(item.name), folder_(folder.sequence(item)), options_(options) {}
 
-  void sequence(const Item& item) {
-    name_ = item.name;
+  VerifyResult run() {
     ++result_.sequences;
-    if (!folder_.holds(item.name)) return fault("is not there");
+    if (fs::exists(folder_ / "sequence.json"))
+      whole();
+    else
+      fault("is not there");
+    return std::move(result_);
+  }
+
+ private:
+  void whole() {
     try {
-      files(JsonDocument(folder_.sequence(item.name) / "sequence.json"));
-      const sequence::Finished finished = sequence::open_finished(folder_.sequence(item.name));
+      files(JsonDocument(folder_ / "sequence.json"));
+      const sequence::Finished finished = sequence::open_finished(folder_);
       truth(finished);
       if (options_.deep_every > 0) deep(finished);
     } catch (const Error& error) {
@@ -62,7 +75,6 @@ class Check {
     }
   }
 
- private:
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
 
   void files(const JsonObject& record) {
@@ -70,22 +82,21 @@ class Check {
     for (const JsonObject& output : record.objects("outputs")) {
       const std::string name = output.text("name");
       known.insert(name);
-      const fs::path file = folder_.sequence(name_) / name;
-      if (!is_below(folder_.sequence(name_), name))
+      const fs::path file = folder_ / name;
+      if (!is_below(folder_, name))
         fault("'" + name.substr(0, 80) + "' is outside of this sequence");
       else if (!fs::exists(file))
         fault(name + " is missing");
       else if (sha256_of_file(file) != output.text("sha256"))
         fault(name + " is not as it was written (its SHA-256 differs)");
     }
-    for (const auto& entry : fs::recursive_directory_iterator(folder_.sequence(name_)))
-      if (entry.is_regular_file() &&
-          !known.contains(fs::relative(entry.path(), folder_.sequence(name_)).string()))
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.is_regular_file() && !known.contains(fs::relative(entry.path(), folder_).string()))
         fault(entry.path().filename().string() + " is not of this sequence");
   }
 
   void truth(const sequence::Finished& finished) {
-    video::Reader reader(finished.video);
+    video::Reader reader(finished.video, {.threads = 1});
     const int width = reader.info().width;
     const int height = reader.info().height;
     std::size_t frames = 0;
@@ -152,11 +163,20 @@ class Check {
       fault(where + (mask ? "its mask is not of its covered box" : "a covered box without a mask"));
   }
 
-  const Folder& folder_;
-  const VerifyOptions& options_;
-  VerifyResult& result_;
   std::string name_;
+  fs::path folder_;
+  const VerifyOptions& options_;
+  VerifyResult result_;
 };
+
+void add(const VerifyResult& one, VerifyResult& all) {
+  all.sequences += one.sequences;
+  all.frames += one.frames;
+  all.recomposed += one.recomposed;
+  all.in_view += one.in_view;
+  all.in_view_without_box += one.in_view_without_box;
+  all.faults.insert(all.faults.end(), one.faults.begin(), one.faults.end());
+}
 
 void check_manifest(const Folder& folder, VerifyResult& result) {
   if (!fs::exists(folder.record())) {
@@ -191,27 +211,52 @@ Status status(const fs::path& root) {
   status.sequences = expansion.size();
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     const Item item = expansion.at(i);
-    if (folder.holds(item.name))
+    const fs::path place = folder.sequence(item);
+    if (folder.holds(item))
       ++status.whole;
     else if (status.missing.size() < kMaxNamed)
       status.missing.push_back(item.name);
-    if (fs::exists(folder.sequences() / ("." + item.name + ".part"))) ++status.half;
+    if (fs::exists(place.parent_path() / ("." + item.name + ".part"))) ++status.half;
   }
   status.at_work = is_at_work(folder);
   status.complete = fs::exists(folder.record());
   return status;
 }
 
+namespace {
+
+// The results of `count` sequences from number `first` on, in their order.
+std::vector<VerifyResult> results_of(const Folder& folder,
+                                     const Expansion& expansion,
+                                     std::int64_t first,
+                                     std::int64_t count,
+                                     const VerifyOptions& options) {
+  std::vector<VerifyResult> results(static_cast<std::size_t>(count));
+  in_parallel(
+      results.size(),
+      options.jobs,
+      [&](std::size_t i) {
+        const Item item = expansion.at(first + static_cast<std::int64_t>(i));
+        results[i] = Check(folder, item, options).run();
+      },
+      [&](std::int64_t done, std::int64_t) {
+        if (options.progress) options.progress(first + done, expansion.size());
+      },
+      options.stop);
+  return results;
+}
+
+}  // namespace
+
 VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   const Folder folder{root};
   const Catalogue catalogue = catalogue_of(folder);
   const Expansion expansion(catalogue);
   VerifyResult result;
-  Check check(folder, options, result);
-  for (std::int64_t i = 0; i < expansion.size(); ++i) {
-    if (options.stop.stop_requested()) throw Interrupted();
-    check.sequence(expansion.at(i));
-    if (options.progress) options.progress(i + 1, expansion.size());
+  for (std::int64_t first = 0; first < expansion.size(); first += kMaxHeldResults) {
+    const std::int64_t count = std::min(kMaxHeldResults, expansion.size() - first);
+    for (const VerifyResult& one : results_of(folder, expansion, first, count, options))
+      add(one, result);
   }
   check_manifest(folder, result);
   return result;

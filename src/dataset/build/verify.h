@@ -26,6 +26,8 @@ struct Status {
 Status status(const fs::path& root);
 
 struct VerifyOptions {
+  // Number of sequences that are verified at the same time; 0 means one per core.
+  int jobs = 0;
   // Renders every n-th frame again and compares it (sequence/replay/recompose.h); 0 means none.
   std::int64_t deep_every = 0;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
@@ -34,7 +36,8 @@ struct VerifyOptions {
 
 // The result of checking every file against its checksum, reading every line of truth (boxes lie
 // within the frame), comparing the number of video frames with the number of truth lines, and
-// comparing the manifest with the sequences. Each fault is one line.
+// comparing the manifest with the sequences. Each fault is one line; faults are in the order of the
+// catalogue, for any number of jobs.
 struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;

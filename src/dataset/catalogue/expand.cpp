@@ -168,7 +168,10 @@ std::int64_t random_first_frame(const Item& item,
 
 }  // namespace
 
-void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
+void place(Item& item,
+           const Catalogue& catalogue,
+           const BackgroundFiles& files,
+           sequence::SharedInputs* shared) {
   const Background& background = catalogue.backgrounds[item.background];
   scene::Background& placed = item.scene.background;
   placed.video = files.video;
@@ -182,7 +185,7 @@ void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files)
   if (files.frames > placed.first_frame)
     clip.frames = std::min(clip.frames, files.frames - placed.first_frame);
   for (std::size_t k = 0; k < item.scene.intruders.size(); ++k)
-    meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height});
+    meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height}, shared);
 }
 
 }  // namespace airtruth::dataset

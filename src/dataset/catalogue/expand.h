@@ -9,6 +9,10 @@
 #include "dataset/catalogue/catalogue.h"
 #include "dataset/catalogue/drawing.h"
 
+namespace airtruth::sequence {
+class SharedInputs;
+}  // namespace airtruth::sequence
+
 namespace airtruth::dataset {
 
 // The files of a background on this machine, and the facts of its video.
@@ -55,7 +59,10 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 // and space: the first frame, the meeting moment, and the range at which an aircraft has the
 // requested size. Throws Error at the rule where no range gives that size (the direction is outside
 // the lens's field), and where a random start is requested in a video that does not state its
-// length.
-void place(Item& item, const Catalogue& catalogue, const BackgroundFiles& files);
+// length. `shared` gives the aircraft where it is not nullptr.
+void place(Item& item,
+           const Catalogue& catalogue,
+           const BackgroundFiles& files,
+           sequence::SharedInputs* shared = nullptr);
 
 }  // namespace airtruth::dataset

@@ -12,12 +12,15 @@
 
 namespace airtruth::dataset {
 
-Folder open_folder(const Catalogue& catalogue, const fs::path& root) {
-  const Folder folder{root};
+Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_t max_in_a_folder) {
+  Folder folder{root};
   std::error_code failed;
   fs::create_directories(folder.sequences(), failed);
   if (failed) throw Error("cannot create: " + failed.message(), {root.string()});
   if (!fs::exists(folder.catalogue())) {
+    // The catalogue is written last: with it, the layout is fixed.
+    folder.layout = layout_for(Expansion(catalogue).size(), max_in_a_folder);
+    write_layout(folder.sequences(), folder.layout);
     write_file(folder.catalogue(), catalogue.text);
   } else if (read_file(folder.catalogue()) != catalogue.text) {
     throw Error("was begun with another catalogue (its catalogue.toml differs from " +

@@ -4,19 +4,29 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/expand.h"
+#include "dataset/sequences/layout.h"
 
 namespace airtruth::dataset {
 
 // The paths within a data set's folder.
 struct Folder {
+  // Reads the layout of a set that was begun. Throws Error as read_layout does.
+  explicit Folder(fs::path at) : root(std::move(at)), layout(read_layout(sequences())) {}
+
   fs::path root;
+  Layout layout;
 
   fs::path catalogue() const { return root / "catalogue.toml"; }
   fs::path backgrounds() const { return root / "backgrounds"; }
   fs::path sequences() const { return root / "sequences"; }
-  fs::path sequence(const std::string& name) const { return sequences() / name; }
+  // The one place that decides where a sequence lies.
+  fs::path sequence(const Item& item) const {
+    return sequences() / layout.folder_of(item.index) / item.name;
+  }
   fs::path cache() const { return root / ".cache"; }
   fs::path manifest() const { return root / "manifest"; }
   fs::path record() const { return root / "dataset.json"; }
@@ -26,12 +36,14 @@ struct Folder {
   }
   // True where the sequence exists. Its folder is renamed into place with its record inside, so the
   // record proves that it is whole.
-  bool holds(const std::string& name) const { return fs::exists(sequence(name) / "sequence.json"); }
+  bool holds(const Item& item) const { return fs::exists(sequence(item) / "sequence.json"); }
 };
 
-// Creates the folder, or opens one that was begun with the same catalogue. Throws Error where it
-// holds the set of another catalogue.
-Folder open_folder(const Catalogue& catalogue, const fs::path& root);
+// Creates the folder, or opens one that was begun with the same catalogue; that one keeps its
+// layout whatever `max_in_a_folder` is. Throws Error where it holds the set of another catalogue.
+Folder open_folder(const Catalogue& catalogue,
+                   const fs::path& root,
+                   std::int64_t max_in_a_folder = kMaxSequencesInAFolder);
 
 // A lock that is held during a build; the kernel releases it when the process ends. Workers that
 // each make their own share hold it together (`shared`); a whole build holds it alone.

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 #include "truth/projection/exact_box.h"
 
@@ -120,14 +122,13 @@ class Sizer {
   double focal_px() const { return lens_.focal_px(); }
 
   // The aircraft's position at that range; empty where no range gives the size.
-  std::optional<Vector3> position(const aircraft::Mesh& mesh,
+  std::optional<Vector3> position(const projection::SilhouettePoints& silhouette,
                                   const Quaternion& world_from_body,
                                   const Vector3& direction,
                                   double size_px,
                                   double first_guess_m) const {
     constexpr double kWithinShare = 1e-5;
     constexpr int kMaxRounds = 60;
-    const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
     double range_m = first_guess_m;
     for (int round = 0; round < kMaxRounds; ++round) {
       const Vector3 at = raised(camera_.position_in_world + range_m * direction);
@@ -160,6 +161,23 @@ class Sizer {
   trajectory::State camera_;
   double meets_s_ = 0;
 };
+
+// The silhouette of an intruder's aircraft, with what it points to.
+struct Outline {
+  std::shared_ptr<const void> owner;
+  projection::SilhouettePoints silhouette;
+};
+
+Outline outline_of(const scene::Intruder& intruder,
+                   const trajectory::Path& path,
+                   sequence::SharedInputs* shared) {
+  if (shared != nullptr) {
+    const auto type = shared->type_of(intruder, path, {}, {});
+    return {type, type->silhouette};
+  }
+  const auto aircraft = sequence::aircraft_of(intruder, path, {});
+  return {aircraft, {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)}};
+}
 
 trajectory::State camera_at(const scene::Camera& camera, double time_s) {
   const auto state = sequence::camera_path(camera).at(time_s);
@@ -205,7 +223,8 @@ void meet(scene::Scene& scene,
           std::size_t k,
           const Encounter& encounter,
           const DrawnClip& clip,
-          const lens::ImageSize& size) {
+          const lens::ImageSize& size,
+          sequence::SharedInputs* shared) {
   // Length for the first estimate of the range.
   constexpr double kUsualLengthM = 15;
   scene::Intruder& intruder = scene.intruders[k];
@@ -221,9 +240,12 @@ void meet(scene::Scene& scene,
   const double guess_m = sizer.focal_px() * kUsualLengthM / *encounter.size_px;
   lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
   const trajectory::Path path = sequence::path_of(intruder);
-  const auto type = sequence::aircraft_of(intruder, path, {});
-  const auto position = sizer.position(
-      type->mesh, path.at(meets_s)->world_from_body, direction, *encounter.size_px, guess_m);
+  const Outline outline = outline_of(intruder, path, shared);
+  const auto position = sizer.position(outline.silhouette,
+                                       path.at(meets_s)->world_from_body,
+                                       direction,
+                                       *encounter.size_px,
+                                       guess_m);
   if (!position)
     throw Error(
         fmt::format("{} has a size of {:.1f} px at no range in the direction azimuth {:.1f}, "

@@ -8,6 +8,10 @@
 #include "world/scene/scene.h"
 
 // Turns the random values of an encounter into a path in the world.
+namespace airtruth::sequence {
+class SharedInputs;
+}  // namespace airtruth::sequence
+
 namespace airtruth::dataset {
 
 // The length of a sequence, as far as it is known.
@@ -41,11 +45,13 @@ void lay_path(scene::Intruder& intruder,
 // lens from the nominal camera with an instantaneous shutter. Where the camera is more than
 // kLowestFlightM (metres) above the ground (down = 0), the aircraft is at least that high at the
 // meeting moment; its elevation is raised if necessary. Throws Error where no range gives the size.
+// `shared` gives the aircraft where it is not nullptr.
 constexpr double kLowestFlightM = 30;
 void meet(scene::Scene& scene,
           std::size_t k,
           const Encounter& encounter,
           const DrawnClip& clip,
-          const lens::ImageSize& size);
+          const lens::ImageSize& size,
+          sequence::SharedInputs* shared = nullptr);
 
 }  // namespace airtruth::dataset

@@ -189,7 +189,9 @@ class Export {
 
   void write_images() {
     for (const std::string& name : set_.names())
-      if (!place_.has_images_of(name)) check_has_video(name, clip_of(name));
+      // A rendered sequence has its video.
+      if (set_.is_imported(name) && !place_.has_images_of(name))
+        check_has_video(name, clip_of(name));
     in_parallel(
         set_.names().size(),
         options_.jobs,

@@ -158,9 +158,15 @@ ImportSummary import_set(const fs::path& source,
       exchange::read_clips(options.format, source, read, options.warn);
   complete(clips, source, options);
   // All input is read before the first file is written.
+  const fs::path sequences = out / "sequences";
+  const Layout layout = layout_for(std::ssize(clips), options.max_in_a_folder);
+  std::error_code reported_below;
+  fs::create_directories(sequences, reported_below);
+  write_layout(sequences, layout);
   ImportSummary summary;
   for (const exchange::Clip& clip : clips) {
-    const Json record = write_clip(clip, options, out / "sequences" / clip.name);
+    const Json record =
+        write_clip(clip, options, sequences / layout.folder_of(summary.clips) / clip.name);
     ++summary.clips;
     summary.frames += std::ssize(clip.frames);
     summary.labels += record.at("labels").get<std::int64_t>();

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "dataset/sequences/layout.h"
 #include "foundation/base/log.h"
 #include "truth/exchange/exchange.h"
 
@@ -18,6 +19,8 @@ struct ImportOptions {
   // Maps a clip's name to its video, for videos that do not lie beside the labels. The name ""
   // stands for the only clip.
   std::map<std::string, fs::path> videos;
+  // More clips lie in numbered folders with as many each (dataset/sequences/layout.h).
+  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
   Warn warn;
 };
 

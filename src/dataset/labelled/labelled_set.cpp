@@ -7,7 +7,6 @@
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
-#include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
@@ -54,20 +53,17 @@ exchange::Clip clip_of(const sequence::Finished& finished, Boxes boxes, bool wit
 
 }  // namespace
 
-LabelledSet::LabelledSet(const fs::path& root) {
-  SequenceFolders folders = sequence_folders(root);
-  root_ = std::move(folders.root);
-  names_ = std::move(folders.names);
+LabelledSet::LabelledSet(const fs::path& root) : folders_(sequence_folders(root)) {
   if (fs::exists(root / "sequence.json")) return;  // a single sequence
   const Folder folder{root};
   if (fs::exists(folder.catalogue())) {
     const Catalogue catalogue = read_catalogue(folder.catalogue());
-    missing_ = Expansion(catalogue).size() - std::ssize(names_);
+    missing_ = Expansion(catalogue).size() - std::ssize(names());
   }
-  if (names_.empty()) throw no_sequence_in(root);
+  if (names().empty()) throw no_sequence_in(root);
 }
 
-fs::path LabelledSet::folder(const std::string& name) const { return root_ / name; }
+fs::path LabelledSet::folder(const std::string& name) const { return folders_.folder(name); }
 
 bool LabelledSet::is_imported(const std::string& name) const {
   return fs::exists(folder(name) / kLabels);
@@ -94,7 +90,7 @@ void LabelledSet::expect_covered_boxes(const std::string& name) const {
 }
 
 Boxes LabelledSet::usual_boxes(const Warn& warn) const {
-  for (const std::string& name : names_) {
+  for (const std::string& name : names()) {
     if (has_covered_boxes(name)) continue;
     airtruth::warn(warn,
                    folder(name).string() +

@@ -8,6 +8,7 @@
 #include <airtruth/labels.h>
 
 #include "dataset/sequences/labels_of_truth.h"
+#include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/log.h"
 
 namespace airtruth::dataset {
@@ -37,7 +38,7 @@ class LabelledSet {
   // Throws Error where the folder holds no sequence.
   explicit LabelledSet(const fs::path& root);
 
-  const std::vector<std::string>& names() const { return names_; }  // sorted
+  const std::vector<std::string>& names() const { return folders_.names; }  // sorted
   ClipFacts facts(const std::string& name) const;
   // Returns one clip; its `media` is the path of its video. Labels exist for the frames in which an
   // object is visible and has the requested box. Each label holds its object's pixels where
@@ -62,8 +63,7 @@ class LabelledSet {
   std::int64_t missing() const { return missing_; }
 
  private:
-  fs::path root_;
-  std::vector<std::string> names_;
+  SequenceFolders folders_;
   std::int64_t missing_ = 0;
 };
 

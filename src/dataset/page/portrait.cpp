@@ -119,7 +119,7 @@ Portrait portrait_of(const LabelledSet& set,
   count(finished, portrait);
   add_series(finished, portrait);
   portrait.ids = sequence::intruder_ids(finished.truth);
-  portrait.film = film_of(finished, stills, stop);
+  if (stills > 0) portrait.film = film_of(finished, stills, stop);
   if (fs::is_regular_file(finished.video)) portrait.video = finished.video;
   return portrait;
 }

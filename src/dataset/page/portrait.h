@@ -77,7 +77,7 @@ struct Portrait {
   std::filesystem::path video;
 };
 
-// `stills` is the highest number of pictures in its film.
+// `stills` is the highest number of pictures in its film; 0: no film, and no frame is decoded.
 Portrait portrait_of(const LabelledSet& set,
                      const std::string& name,
                      std::size_t stills,

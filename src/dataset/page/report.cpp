@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,6 +32,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxStills = 1500;
 constexpr std::size_t kMaxStillsOfOne = 60;
 constexpr std::size_t kMinStillsOfOne = 4;
+// Sequences that the page shows one by one; of a larger set, as many are spread over it. Each takes
+// some 75 kB, and a browser opens a page of 75 MB within seconds.
+constexpr std::size_t kMaxShown = 1000;
 
 template <typename T>
 Json json_of(const std::optional<T>& value) {
@@ -159,19 +164,40 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
           {"files", files}};
 }
 
-std::vector<Portrait> portraits_of(const LabelledSet& labelled, const ReportOptions& options) {
-  std::vector<Portrait> portraits(labelled.names().size());
-  const std::size_t stills = std::clamp(
-      kMaxStills / std::max<std::size_t>(1, portraits.size()), kMinStillsOfOne, kMaxStillsOfOne);
+// The sequences of a set, and the counts over them.
+struct Gallery {
+  std::vector<Portrait> portraits;
+  std::vector<bool> is_shown;
+  Totals totals;
+};
+
+// Of a sequence that is not shown, no frame is decoded and no series is kept.
+Gallery gallery_of(const LabelledSet& labelled, const ReportOptions& options) {
+  const std::size_t count = labelled.names().size();
+  Gallery gallery{std::vector<Portrait>(count), std::vector<bool>(count, false), {}};
+  for (const std::size_t i : thinned(count, kMaxShown)) gallery.is_shown[i] = true;
+  const std::size_t stills =
+      std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
+  std::mutex mutex;
   in_parallel(
-      portraits.size(),
+      count,
       options.jobs,
       [&](std::size_t i) {
-        portraits[i] = portrait_of(labelled, labelled.names()[i], stills, options.stop);
+        const bool is_shown = gallery.is_shown[i];
+        Portrait portrait =
+            portrait_of(labelled, labelled.names()[i], is_shown ? stills : 0, options.stop);
+        const std::lock_guard lock(mutex);
+        gallery.totals.add(portrait);  // sums of whole numbers, the same in any order
+        if (!is_shown) {
+          portrait.intruders = {};
+          portrait.camera = {};
+          portrait.centres = {};
+        }
+        gallery.portraits[i] = std::move(portrait);
       },
       options.progress,
       options.stop);
-  return portraits;
+  return gallery;
 }
 
 // The name on the card, or the name of the folder.
@@ -207,10 +233,10 @@ Json json_of(const Totals& totals) {
 }
 
 // The pictures of all films, under the names by which the page finds them.
-std::vector<html::PageBlob> pictures_of(const std::vector<Portrait>& portraits) {
+std::vector<html::PageBlob> pictures_of(const std::vector<const Portrait*>& portraits) {
   std::vector<html::PageBlob> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
-    const Film& film = portraits[i].film;
+    const Film& film = portraits[i]->film;
     for (std::size_t k = 0; k < film.stills.size(); ++k)
       pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(film.stills[k].jpeg)});
     if (!film.loop_jpeg.empty())
@@ -224,25 +250,27 @@ std::vector<html::PageBlob> pictures_of(const std::vector<Portrait>& portraits) 
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
   check_output_file(out, options.overwrite);
   const LabelledSet labelled(set);
-  const std::vector<Portrait> portraits = portraits_of(labelled, options);
-  Totals totals;
+  const Gallery gallery = gallery_of(labelled, options);
+  std::vector<const Portrait*> shown;
   Json sequences = Json::array();
-  for (const Portrait& portrait : portraits) {
-    totals.add(portrait);
-    sequences.push_back(json_of(portrait, out));
+  for (std::size_t i = 0; i < gallery.portraits.size(); ++i) {
+    if (!gallery.is_shown[i]) continue;
+    shown.push_back(&gallery.portraits[i]);
+    sequences.push_back(json_of(gallery.portraits[i], out));
   }
   Json card = Json::object();
-  for (const auto& [key, text] : card_of(set, portraits)) card[key] = text;
-  Json data = json_of(totals);
+  for (const auto& [key, text] : card_of(set, gallery.portraits)) card[key] = text;
+  Json data = json_of(gallery.totals);
   data["title"] = title_of(card, set);
   data["missing"] = labelled.missing();
   data["card"] = card;
+  data["count"] = gallery.portraits.size();
   data["sequences"] = sequences;
   write_file(out,
              html::page_of("airtruth data set",
                            html::page_body(),
                            data.dump(-1, ' ', false, Json::error_handler_t::replace),
-                           pictures_of(portraits),
+                           pictures_of(shown),
                            html::page_js()));
 }
 

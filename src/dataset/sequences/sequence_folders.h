@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,17 @@ namespace fs = std::filesystem;
 inline constexpr const char* kLabels = "labels.jsonl";
 
 struct SequenceFolders {
-  fs::path root;                   // the sequence NAME is root/NAME
+  fs::path root;
   std::vector<std::string> names;  // sorted; may be empty
+  // Of a divided set (layout.h): the numbered folder of each sequence, below root.
+  std::map<std::string, std::string> numbered_folder_of;
+
+  // The folder of the sequence with this name.
+  fs::path folder(const std::string& name) const;
 };
 
-// Throws Error where the path is no folder.
+// Throws Error where the path is no folder, and where two numbered folders hold sequences of one
+// name.
 SequenceFolders sequence_folders(const fs::path& folder);
 
 // The Error for a folder without sequences.

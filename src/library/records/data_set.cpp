@@ -91,7 +91,7 @@ const std::vector<std::string>& DataSet::names() const { return state_->folders.
 Sequence DataSet::sequence(const std::string& name, dataset::Boxes boxes) const {
   if (!std::binary_search(names().begin(), names().end(), name))
     throw Error("holds no sequence '" + name + "'", {state_->folders.root.string()});
-  const fs::path folder = state_->folders.root / name;
+  const fs::path folder = state_->folders.folder(name);
   return fs::exists(folder / dataset::kLabels) ? imported(folder) : rendered(folder, boxes);
 }
 

@@ -46,7 +46,7 @@ Setting::Setting(const StatedScene& stated,
     : scene(stated.scene),
       size(image_size),
       mask(read_mask(scene, size)),
-      world(load_world(scene, size, options.warn, options.stop)),
+      world(load_world(scene, size, options.warn, options.stop, options.shared.get())),
       painter(make_painter(
           scene, world, own_aircraft(), {options.gpu, options.software_gl, options.stop})) {
   scene.motion.model = motion_model(scene);
@@ -72,7 +72,7 @@ void FrameMaker::measure() {
   check_codec(setting_.scene, reader_.info().colour);
   setting_.world.shutter = shutter_of(setting_.scene.camera_model);
 
-  video_sha256_ = sha256_of_video(setting_.scene.background.video);
+  video_sha256_ = sha256_of_video(setting_.scene.background.video, options_.shared.get());
   motion_.emplace(setting_.scene,
                   setting_.world.lens,
                   !setting_.world.shutter.is_instant(),

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "foundation/base/files.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -21,11 +21,12 @@ std::vector<fs::path> model_files(const World& world) {
 
 std::vector<Checksum> input_files(const scene::Scene& scene,
                                   const World& world,
-                                  const std::string& video_sha256) {
+                                  const std::string& video_sha256,
+                                  SharedInputs* shared) {
   std::vector<Checksum> result;
   if (!video_sha256.empty()) result.push_back({scene.background.video.string(), video_sha256});
   const auto add = [&](const fs::path& file) {
-    result.push_back({file.string(), sha256_of_file(file)});
+    result.push_back({file.string(), shared_sha256(file, shared)});
   };
   if (scene.background.mask) add(*scene.background.mask);
   if (scene.realism.file) add(*scene.realism.file);

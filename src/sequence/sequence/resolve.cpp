@@ -67,7 +67,7 @@ calibration::Calibration measured_on(const scene::Scene& scene,
     if (options.progress) options.progress({done, total, "measuring the camera"});
   };
   calibration::CacheKey key;
-  key.video_sha256 = sha256_of_video(scene.background.video);
+  key.video_sha256 = sha256_of_video(scene.background.video, options.shared.get());
   if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
   key.lens = words_of(*how.lens);
   key.altitude_m = how.altitude_m;

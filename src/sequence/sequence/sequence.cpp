@@ -173,7 +173,9 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   maker.store_motion();
   warn_of_run(tally, maker.scene(), maker.world(), maker.reader(), options.warn);
   Summary summary = summary_of(tally, clocks, maker.motion_is_from_cache());
-  outputs->finish(maker.scene(), input_files(scene, maker.world(), maker.video_sha256()), summary);
+  outputs->finish(maker.scene(),
+                  input_files(scene, maker.world(), maker.video_sha256(), options.shared.get()),
+                  summary);
   outputs.reset();
   staged.commit();
   summary.stages.end_cpu_s = process_cpu_seconds() - clocks.end_s;
@@ -190,7 +192,7 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
   MotionSource source(scene,
                       lens,
                       false,
-                      sha256_of_video(scene.background.video),
+                      sha256_of_video(scene.background.video, options.shared.get()),
                       mask ? &*mask : nullptr,
                       motion_cache(options));
   if (source.from_cache()) return;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -18,6 +19,8 @@
 // processed 322 / 46 = 7.0 frames per second. If 3 of the frames have an unmeasured camera motion,
 // frames_bridged is 3, and frames is still 322.
 namespace airtruth::sequence {
+
+class SharedInputs;
 
 namespace fs = std::filesystem;
 
@@ -35,6 +38,9 @@ struct Options {
   // Folder of the cache for motion and calibrations; empty: the user's own
   // (foundation/base/files.h).
   fs::path cache;
+  // Inputs that runs of one process have in common (sequence/setup/shared_inputs.h); nullptr: this
+  // run reads its own.
+  std::shared_ptr<SharedInputs> shared;
   // The GPU for the OpenGL of the chroma-key method.
   std::optional<int> gpu;
   bool software_gl = false;

@@ -9,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/telemetry.h"
+#include "sequence/setup/shared_inputs.h"
 #include "truth/annotation/lens_facts.h"
 
 namespace airtruth::sequence {
@@ -21,8 +22,8 @@ std::string words_of(const lens::Lens& lens) {
                      fmt::join(facts.distortion, ","));
 }
 
-std::string sha256_of_video(const fs::path& video) {
-  if (fs::is_regular_file(video)) return sha256_of_file(video);
+std::string sha256_of_video(const fs::path& video, SharedInputs* shared) {
+  if (fs::is_regular_file(video)) return shared_sha256(video, shared);
   if (!fs::is_directory(video)) return "";
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(video))
@@ -30,7 +31,7 @@ std::string sha256_of_video(const fs::path& video) {
   std::sort(files.begin(), files.end());
   std::string all;
   for (const fs::path& file : files)
-    all += file.filename().string() + ' ' + sha256_of_file(file) + '\n';
+    all += file.filename().string() + ' ' + shared_sha256(file, shared) + '\n';
   return sha256_of(all);
 }
 

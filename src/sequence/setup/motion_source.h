@@ -20,11 +20,13 @@
 // the clip, or an estimator that runs frame by frame.
 namespace airtruth::sequence {
 
+class SharedInputs;
+
 namespace fs = std::filesystem;
 
 // SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of
 // numbered images.
-std::string sha256_of_video(const fs::path& video);
+std::string sha256_of_video(const fs::path& video, SharedInputs* shared = nullptr);
 
 // Text with every number of a lens, so that two lenses never share an entry of the cache.
 std::string words_of(const lens::Lens& lens);

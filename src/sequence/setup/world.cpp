@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include <fmt/format.h>
 
-#include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -18,70 +17,6 @@ namespace {
 constexpr double kMetresPerSecondInKnots = 1.943844;
 constexpr double kMetresInFeet = 3.280840;
 constexpr double kSearchMarginPx = 1.5;
-
-aircraft::LoadOptions load_options(const scene::Intruder& intruder,
-                                   const trajectory::Path& path,
-                                   const std::stop_token& stop = {}) {
-  aircraft::LoadOptions options;
-  options.stop = stop;
-  if (const auto state = path.at(path.start_s())) {
-    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
-    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
-  }
-  options.catalogue_scale = intruder.catalogue_scale;
-  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
-    aircraft::ModelAxes axes;
-    if (intruder.model_forward) axes.forward = *intruder.model_forward;
-    if (intruder.model_up) axes.up = *intruder.model_up;
-    if (intruder.model_scale) axes.scale = *intruder.model_scale;
-    options.axes = axes;
-  }
-  return options;
-}
-
-struct Type {
-  std::shared_ptr<const aircraft::Aircraft> aircraft;
-  std::shared_ptr<const render::Model> model;
-};
-
-// What decides how an intruder's aircraft is loaded. A FlightGear wrapper answers to the airspeed
-// and the height at which the path begins (gear, flaps); a bare model file does not.
-std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
-  const aircraft::LoadOptions options = load_options(intruder, path);
-  const bool has_wrapper = !aircraft::is_model_file(intruder.aircraft) ||
-                           aircraft::ending_of(intruder.aircraft) == ".xml";
-  std::string key = intruder.aircraft;
-  if (has_wrapper)
-    key +=
-        '|' + std::to_string(options.airspeed_kt) + '|' + std::to_string(options.altitude_agl_ft);
-  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
-  if (options.axes)
-    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
-  return key;
-}
-
-// The aircraft of a scene, each loaded once. Two that come out as the same mesh, such as one type
-// at two cruising speeds, share it with its BVH.
-class LoadedTypes {
- public:
-  const Type& type_of(const scene::Intruder& intruder,
-                      const trajectory::Path& path,
-                      const Warn& warn,
-                      const std::stop_token& stop) {
-    const std::string key = type_key(intruder, path);
-    const auto known = types_.find(key);
-    if (known != types_.end()) return known->second;
-    aircraft::aircraft_file(intruder.aircraft);  // a missing file is an error at the scene's line
-    const auto loaded = aircraft_of(intruder, path, warn, stop);
-    for (const auto& [other_key, other] : types_)
-      if (other.aircraft->name == loaded->name && other.aircraft->mesh == loaded->mesh)
-        return types_[key] = other;
-    return types_[key] = {loaded, std::make_shared<const render::Model>(loaded->mesh)};
-  }
-
- private:
-  std::map<std::string, Type> types_;
-};
 
 bool meets_frame(const Box& box, const lens::ImageSize& size) {
   return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
@@ -126,6 +61,26 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 
 }  // namespace
 
+aircraft::LoadOptions load_options(const scene::Intruder& intruder,
+                                   const trajectory::Path& path,
+                                   const std::stop_token& stop) {
+  aircraft::LoadOptions options;
+  options.stop = stop;
+  if (const auto state = path.at(path.start_s())) {
+    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
+    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
+  }
+  options.catalogue_scale = intruder.catalogue_scale;
+  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
+    aircraft::ModelAxes axes;
+    if (intruder.model_forward) axes.forward = *intruder.model_forward;
+    if (intruder.model_up) axes.up = *intruder.model_up;
+    if (intruder.model_scale) axes.scale = *intruder.model_scale;
+    options.axes = axes;
+  }
+  return options;
+}
+
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
@@ -137,20 +92,25 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
-                 const std::stop_token& stop) {
+                 const std::stop_token& stop,
+                 SharedInputs* shared) {
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
               shutter_of(scene.camera_model)};
-  LoadedTypes types;
+  SharedInputs own;
+  SharedInputs& inputs = shared != nullptr ? *shared : own;
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = path_of(intruder);
-    const Type& type = at_place(
-        intruder.where, [&]() -> const Type& { return types.type_of(intruder, path, warn, stop); });
-    projection::SilhouettePoints silhouette{&type.aircraft->mesh,
-                                            aircraft::silhouette_points(type.aircraft->mesh)};
-    world.actors.push_back(
-        {intruder.id, intruder.aircraft, path, type.aircraft, type.model, std::move(silhouette)});
+    const auto type =
+        at_place(intruder.where, [&] { return inputs.type_of(intruder, path, warn, stop); });
+    world.actors.push_back({intruder.id,
+                            intruder.aircraft,
+                            path,
+                            type->aircraft,
+                            type->model,
+                            type->silhouette,
+                            type});
   }
   return world;
 }

@@ -22,6 +22,9 @@
 // A scene after everything that it names has been loaded: lens, paths, aircraft.
 namespace airtruth::sequence {
 
+struct Type;
+class SharedInputs;
+
 struct Actor {
   std::string id;
   std::string aircraft;
@@ -29,6 +32,7 @@ struct Actor {
   std::shared_ptr<const aircraft::Aircraft> type;
   std::shared_ptr<const render::Model> model;
   projection::SilhouettePoints silhouette;
+  std::shared_ptr<const Type> in_use;  // the three above, as SharedInputs holds them
 };
 
 struct World {
@@ -38,6 +42,12 @@ struct World {
   Shutter shutter;
 };
 
+// How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
+// beginning of its path.
+aircraft::LoadOptions load_options(const scene::Intruder& intruder,
+                                   const trajectory::Path& path,
+                                   const std::stop_token& stop = {});
+
 // Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
 // and the height there determine gear and flaps.
 std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
@@ -45,11 +55,13 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop.
+// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop. `shared` gives the
+// aircraft where it is not nullptr.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
-                 const std::stop_token& stop = {});
+                 const std::stop_token& stop = {},
+                 SharedInputs* shared = nullptr);
 
 // Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
 // than the uncertainty of the clip's stated length.

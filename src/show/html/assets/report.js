@@ -25,9 +25,10 @@
   const drawOverview = () => {
     byId('title').textContent = data.title;
     document.title = data.title;
+    const spread = data.sequences.length < data.count ? `, of which ${data.sequences.length} are shown below` : '';
     const missing = data.missing > 0 ? `, ${counted(data.missing, 'sequence')} missing` : '';
     byId('summary').textContent =
-      `${counted(data.sequences.length, 'sequence')}, ${counted(data.frames, 'frame')}${missing}; ` +
+      `${counted(data.count, 'sequence')}, ${counted(data.frames, 'frame')}${missing}${spread}; ` +
       `negatives: ${counted(data.negative_sequences, 'sequence')} and ${counted(data.frames - data.frames_with_intruder, 'frame')} show no intruder; ` +
       `in view by geometry and without a box: ${number(data.without_box)}`;
     for (const [key, value] of Object.entries(data.card)) {

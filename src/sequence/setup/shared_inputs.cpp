@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/shared_inputs.h"
+
+#include <algorithm>
+#include <set>
+
+#include "aircraft/fleet/configuration.h"
+#include "foundation/base/files.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// What decides how an intruder's aircraft is loaded.
+std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  const aircraft::LoadOptions options = load_options(intruder, path);
+  std::string key =
+      intruder.aircraft + '|' + aircraft::configuration_of(intruder.aircraft, options);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
+}
+
+std::size_t bytes_of(const aircraft::Mesh& mesh) {
+  // Of a triangle: its share of vertices, its BVH, and the openness of its sides.
+  constexpr std::size_t kBytesOfATriangle = 400;
+  std::size_t texels = 0;
+  for (const aircraft::Texture& texture : mesh.textures)
+    for (const aircraft::Texture::Level& level : texture.levels) texels += level.texels.size();
+  // The model holds a copy of the mesh.
+  return 2 * texels * sizeof(std::array<float, 4>) + mesh.triangle_count() * kBytesOfATriangle;
+}
+
+std::vector<FileStamp> stamps_of(const aircraft::Aircraft& aircraft) {
+  std::vector<FileStamp> stamps;
+  for (const auto& source : aircraft.sources) stamps.push_back(file_stamp(source));
+  return stamps;
+}
+
+std::shared_ptr<const Type> prepared(std::shared_ptr<const aircraft::Aircraft> aircraft,
+                                     std::vector<std::string> warnings) {
+  auto type = std::make_shared<Type>();
+  type->model = std::make_shared<const render::Model>(aircraft->mesh);
+  type->silhouette = {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)};
+  type->bytes = bytes_of(aircraft->mesh);
+  type->aircraft = std::move(aircraft);
+  type->warnings = std::move(warnings);
+  return type;
+}
+
+}  // namespace
+
+std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intruder,
+                                                  const trajectory::Path& path,
+                                                  const Warn& warn,
+                                                  const std::stop_token& stop) {
+  aircraft::aircraft_file(intruder.aircraft);  // a missing file is an error at the scene's line
+  const std::shared_ptr<Slot> slot = slot_of(type_key(intruder, path));
+  const std::lock_guard lock(slot->loading);
+  std::shared_ptr<const Type> type = known(*slot);
+  if (!type) {
+    std::vector<std::string> warnings;
+    const auto collect = [&](const std::string& text) { warnings.push_back(text); };
+    const auto loaded = aircraft_of(intruder, path, collect, stop);
+    type = twin_of(*loaded);
+    if (!type || type->warnings != warnings) type = prepared(loaded, warnings);
+    keep(*slot, type);
+  }
+  for (const std::string& text : type->warnings) airtruth::warn(warn, text);
+  return type;
+}
+
+std::string SharedInputs::sha256_of_file(const std::filesystem::path& file) {
+  const FileStamp stamp = file_stamp(file);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = hashes_.find(file.string());
+    if (found != hashes_.end() && found->second.stamp == stamp) return found->second.sha256;
+  }
+  const std::string sha256 = airtruth::sha256_of_file(file);
+  const std::lock_guard lock(mutex_);
+  hashes_[file.string()] = {stamp, sha256};
+  return sha256;
+}
+
+std::size_t SharedInputs::kept() const {
+  const std::lock_guard lock(mutex_);
+  std::set<const Type*> types;
+  for (const auto& [key, slot] : slots_)
+    if (slot->type) types.insert(slot->type.get());
+  return types.size();
+}
+
+std::shared_ptr<SharedInputs::Slot> SharedInputs::slot_of(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<Slot>& slot = slots_[key];
+  if (!slot) slot = std::make_shared<Slot>();
+  slot->last_use = ++uses_;
+  return slot;
+}
+
+// The slot's aircraft; none where it is not loaded, or where a file of it has changed.
+std::shared_ptr<const Type> SharedInputs::known(const Slot& slot) const {
+  const std::lock_guard lock(mutex_);
+  return slot.type && slot.stamps == stamps_of(*slot.type->aircraft) ? slot.type : nullptr;
+}
+
+// A kept aircraft that equals the loaded one in all that a sequence and its record contain.
+std::shared_ptr<const Type> SharedInputs::twin_of(const aircraft::Aircraft& loaded) const {
+  std::vector<std::shared_ptr<const Type>> candidates;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, slot] : slots_)
+      if (slot->type && slot->type->aircraft->name == loaded.name) candidates.push_back(slot->type);
+  }
+  for (const auto& candidate : candidates) {
+    const aircraft::Aircraft& other = *candidate->aircraft;
+    if (other.catalogue_scale == loaded.catalogue_scale && other.sources == loaded.sources &&
+        other.mesh == loaded.mesh)
+      return candidate;
+  }
+  return nullptr;
+}
+
+void SharedInputs::keep(Slot& slot, std::shared_ptr<const Type> type) {
+  std::vector<FileStamp> stamps = stamps_of(*type->aircraft);
+  const std::lock_guard lock(mutex_);
+  slot.type = std::move(type);
+  slot.stamps = std::move(stamps);
+  drop_unused();
+}
+
+// Drops the aircraft whose last use is longest ago until the limit holds, but none that a sequence
+// is using: dropping it would free nothing.
+void SharedInputs::drop_unused() {
+  std::map<const Type*, long> holders;
+  std::size_t bytes = 0;
+  for (const auto& [key, slot] : slots_)
+    if (slot->type && ++holders[slot->type.get()] == 1) bytes += slot->type->bytes;
+  while (bytes > max_kept_bytes_) {
+    Slot* oldest = nullptr;
+    for (const auto& [key, slot] : slots_)
+      if (slot->type && slot->type.use_count() == holders[slot->type.get()] &&
+          (oldest == nullptr || slot->last_use < oldest->last_use))
+        oldest = slot.get();
+    if (oldest == nullptr) return;
+    const std::shared_ptr<const Type> dropped = oldest->type;
+    bytes -= dropped->bytes;
+    for (const auto& [key, slot] : slots_)
+      if (slot->type == dropped) slot->type.reset();
+  }
+}
+
+std::string shared_sha256(const std::filesystem::path& file, SharedInputs* shared) {
+  return shared != nullptr ? shared->sha256_of_file(file) : airtruth::sha256_of_file(file);
+}
+
+}  // namespace airtruth::sequence

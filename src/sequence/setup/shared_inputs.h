@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "aircraft/fleet/fleet.h"
+#include "foundation/base/file_stamp.h"
+#include "foundation/base/log.h"
+#include "picture/render/renderer.h"
+#include "truth/projection/exact_box.h"
+#include "world/scene/scene.h"
+#include "world/trajectory/path.h"
+
+// Inputs that sequences of one process have in common, each read and prepared once: aircraft with
+// their textures, BVHs and silhouettes, and the SHA-256 of files. A sequence has the same bytes
+// with and without them, in any order.
+namespace airtruth::sequence {
+
+// An aircraft that is ready to be drawn.
+struct Type {
+  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const render::Model> model;
+  projection::SilhouettePoints silhouette;
+  std::vector<std::string> warnings;  // of its reader
+  std::size_t bytes = 0;              // of memory, about
+};
+
+class SharedInputs {
+ public:
+  // Aircraft that no sequence is using are kept up to this size together: some ten airliners with
+  // textures of 2048x2048, or a hundred light aircraft.
+  static constexpr std::size_t kMaxKeptBytes = std::size_t{1} << 30;
+
+  explicit SharedInputs(std::size_t max_kept_bytes = kMaxKeptBytes)
+      : max_kept_bytes_(max_kept_bytes) {}
+
+  // The intruder's aircraft in its configuration at the beginning of its path. Two that come out as
+  // the same mesh, such as one type at two cruising speeds, share it with its BVH. A file that has
+  // changed since is read again. Passes the reader's warnings to `warn` at each call. Throws Error
+  // as load_aircraft does, and Interrupted on stop. Threads may call it at the same time; of those
+  // that want one aircraft one loads it, and the others wait.
+  std::shared_ptr<const Type> type_of(const scene::Intruder& intruder,
+                                      const trajectory::Path& path,
+                                      const Warn& warn,
+                                      const std::stop_token& stop);
+
+  // As airtruth::sha256_of_file; a file is read again only where its stamp has changed.
+  std::string sha256_of_file(const std::filesystem::path& file);
+
+  // The number of aircraft that are kept now.
+  std::size_t kept() const;
+
+ private:
+  struct Slot {
+    std::mutex loading;
+    // Guarded by SharedInputs::mutex_.
+    std::shared_ptr<const Type> type;
+    std::vector<FileStamp> stamps;  // of the aircraft's sources
+    std::uint64_t last_use = 0;
+  };
+  struct Hashed {
+    FileStamp stamp;
+    std::string sha256;
+  };
+
+  std::shared_ptr<Slot> slot_of(const std::string& key);
+  std::shared_ptr<const Type> known(const Slot& slot) const;
+  std::shared_ptr<const Type> twin_of(const aircraft::Aircraft& loaded) const;
+  void keep(Slot& slot, std::shared_ptr<const Type> type);
+  void drop_unused();
+
+  const std::size_t max_kept_bytes_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Slot>> slots_;
+  std::uint64_t uses_ = 0;
+  std::map<std::string, Hashed> hashes_;
+};
+
+// SHA-256 of a file, from `shared` where it is given.
+std::string shared_sha256(const std::filesystem::path& file, SharedInputs* shared);
+
+}  // namespace airtruth::sequence

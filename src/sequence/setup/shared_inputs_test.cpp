@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/shared_inputs.h"
+
+#include <array>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "aircraft/fleet/configuration.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::sequence {
+namespace {
+
+constexpr double kKnotsInMps = 0.514444;
+
+scene::Intruder intruder_of(const std::string& aircraft) {
+  scene::Intruder intruder;
+  intruder.id = "a";
+  intruder.aircraft = aircraft;
+  return intruder;
+}
+
+trajectory::Path straight_at(double speed_mps) {
+  scene::Intruder intruder;
+  intruder.waypoints_ned_m = {{100, 0, -1000}, {400, 0, -1000}};
+  intruder.speed_mps = speed_mps;
+  return path_of(intruder);
+}
+
+class SharedInputsTest : public testing::Test {
+ protected:
+  SharedInputsTest()
+      : root_(fs::temp_directory_path() / ("airtruth_shared_" + std::to_string(::getpid()))) {
+    fs::create_directories(root_);
+  }
+  ~SharedInputsTest() override { fs::remove_all(root_); }
+
+  // A triangle in FlightGear's axes, `span_m` wide.
+  std::string triangle(double span_m) const {
+    const std::string side = std::to_string(span_m / 2);
+    write_file(root_ / "t.ac",
+               "AC3Db\nMATERIAL \"w\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
+               "OBJECT world\nkids 1\nOBJECT poly\nname \"t\"\nnumvert 3\n0 0 -" +
+                   side + "\n0 0 " + side +
+                   "\n-4 0 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 1 0\n2 0 1\nkids 0\n");
+    return (root_ / "t.ac").string();
+  }
+
+  fs::path root_;
+};
+
+TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
+  SharedInputs shared;
+  // Gear up above 180 knots, by the model's own wrapper.
+  const scene::Intruder intruder = intruder_of("738/738-Ryanair");
+  const auto fast = shared.type_of(intruder, straight_at(250 * kKnotsInMps), {}, {});
+  EXPECT_EQ(shared.type_of(intruder, straight_at(300 * kKnotsInMps), {}, {}), fast);
+  const auto slow = shared.type_of(intruder, straight_at(150 * kKnotsInMps), {}, {});
+  EXPECT_NE(slow, fast);
+  EXPECT_GT(slow->aircraft->mesh.triangle_count(), fast->aircraft->mesh.triangle_count());
+  EXPECT_EQ(shared.kept(), 2u);
+  // The same as loaded alone.
+  const auto alone = aircraft_of(intruder, straight_at(300 * kKnotsInMps), {});
+  EXPECT_EQ(alone->mesh, fast->aircraft->mesh);
+  EXPECT_EQ(alone->sources, fast->aircraft->sources);
+}
+
+TEST_F(SharedInputsTest, ThreadsThatWantOneAircraftGetOne) {
+  SharedInputs shared;
+  const scene::Intruder intruder = intruder_of("c172/news");
+  std::array<std::shared_ptr<const Type>, 4> types;
+  {
+    std::vector<std::jthread> threads;
+    for (auto& type : types)
+      threads.emplace_back([&] { type = shared.type_of(intruder, straight_at(60), {}, {}); });
+  }
+  for (const auto& type : types) EXPECT_EQ(type, types[0]);
+}
+
+TEST_F(SharedInputsTest, AFileThatHasChangedIsReadAgain) {
+  SharedInputs shared;
+  const scene::Intruder intruder = intruder_of(triangle(10));
+  const auto first = shared.type_of(intruder, straight_at(60), {}, {});
+  const std::string before = shared.sha256_of_file(intruder.aircraft);
+  EXPECT_EQ(before, airtruth::sha256_of_file(intruder.aircraft));
+  triangle(12.5);
+  const auto second = shared.type_of(intruder, straight_at(60), {}, {});
+  EXPECT_DOUBLE_EQ(aircraft::extents(first->aircraft->mesh).span_m(), 10);
+  EXPECT_DOUBLE_EQ(aircraft::extents(second->aircraft->mesh).span_m(), 12.5);
+  EXPECT_EQ(shared.sha256_of_file(intruder.aircraft), airtruth::sha256_of_file(intruder.aircraft));
+  EXPECT_NE(shared.sha256_of_file(intruder.aircraft), before);
+}
+
+TEST_F(SharedInputsTest, WhatNoSequenceUsesIsDroppedBeyondTheLimit) {
+  SharedInputs shared(1);
+  auto used = shared.type_of(intruder_of("c172/news"), straight_at(60), {}, {});
+  EXPECT_EQ(shared.kept(), 1u);  // in use
+  shared.type_of(intruder_of(triangle(10)), straight_at(60), {}, {});
+  EXPECT_EQ(shared.type_of(intruder_of("c172/news"), straight_at(60), {}, {}), used);
+  used.reset();
+  shared.type_of(intruder_of(triangle(11)), straight_at(60), {}, {});
+  EXPECT_LE(shared.kept(), 1u);
+}
+
+TEST_F(SharedInputsTest, EveryCallPassesTheWarnings) {
+  std::vector<std::string> first, second;
+  SharedInputs shared;
+  const scene::Intruder intruder = intruder_of("738/738-Ryanair");
+  const auto into = [](std::vector<std::string>& list) {
+    return [&list](const std::string& text) { list.push_back(text); };
+  };
+  shared.type_of(intruder, straight_at(120), into(first), {});
+  shared.type_of(intruder, straight_at(130), into(second), {});
+  EXPECT_EQ(first, second);
+}
+
+TEST_F(SharedInputsTest, AnAircraftThatIsMissingIsAnErrorEachTime) {
+  SharedInputs shared;
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THROW(shared.type_of(intruder_of("738/none"), straight_at(60), {}, {}), Error);
+}
+
+// The text is the same exactly where the loaded aircraft is.
+TEST(Configuration, FollowsTheLimitsOfTheWrapper) {
+  const auto at = [](double airspeed_kt, double altitude_agl_ft = 3000) {
+    aircraft::LoadOptions options;
+    options.airspeed_kt = airspeed_kt;
+    options.altitude_agl_ft = altitude_agl_ft;
+    return aircraft::configuration_of("738/738-Ryanair", options);
+  };
+  EXPECT_EQ(at(250), at(251.5));
+  EXPECT_EQ(at(250), at(250, 30'000));
+  EXPECT_NE(at(170), at(190));  // gear
+  EXPECT_NE(at(75), at(80));    // the nose, which is turned by a table between 70 and 90
+}
+
+TEST(Configuration, OfABareModelFileIsEmpty) {
+  EXPECT_EQ(aircraft::configuration_of("some/file.obj", {}), "");
+  EXPECT_NE(aircraft::configuration_of("some/file.xml", {}), "");
+}
+
+}  // namespace
+}  // namespace airtruth::sequence
