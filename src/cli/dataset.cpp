@@ -77,8 +77,15 @@ std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& 
     aircraft += (k > 0 ? ", " : "") + item.scene.intruders[k].aircraft;
     if (k >= item.drawn.encounters.size()) continue;
     const dataset::Encounter& encounter = item.drawn.encounters[k];
-    aircraft += encounter.size_px ? fmt::format(" at {:.0f} px", *encounter.size_px)
-                                  : fmt::format(" at {:.0f} m", *encounter.range_m);
+    if (encounter.approach)
+      aircraft += fmt::format(" nearest at {:.1f} s, on course {:.0f}",
+                              item.scene.intruders[k].encounter->cpa_time_s,
+                              encounter.approach->course_deg);
+    else if (!encounter.seen.empty())
+      aircraft += fmt::format(" seen at {} moments", encounter.seen.size());
+    else
+      aircraft += encounter.size_px ? fmt::format(" at {:.0f} px", *encounter.size_px)
+                                    : fmt::format(" at {:.0f} m", *encounter.range_m);
   }
   return fmt::format("{:<28} {:>6}  {:<12} {}",
                      item.name,

@@ -97,9 +97,11 @@ class Planner {
   // The speed, climb and bank of random paths are known before place(); the range does not change
   // them.
   void fly(const Item& item, double clip_s) {
+    const trajectory::Path camera = sequence::camera_path(item.scene.camera);
     for (const scene::Intruder& intruder : item.scene.intruders) {
-      const std::string words =
-          sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, clip_s);
+      if (!intruder.seen.empty()) continue;  // its path follows from the measured motion
+      const std::string words = sequence::words_beyond_limits(
+          intruder.aircraft, sequence::path_of(intruder, camera), 0, clip_s);
       if (words.empty()) continue;
       ++plan_.not_flyable;
       if (plan_.not_flyable_words.size() < Plan::kMaxNamed)

@@ -8,6 +8,7 @@
 #include "dataset/catalogue/names.h"
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
+#include "world/scene/parse_encounter.h"
 #include "world/scene/tables.h"
 
 namespace airtruth::dataset {
@@ -69,6 +70,12 @@ Trajectory trajectory_from(const TableReader& table) {
   Trajectory trajectory;
   trajectory.where = table.where();
   trajectory.name = required_name(table);
+  table.exclude("encounter", {"seen", "waypoints_ned_m", "speed_mps", "times_s"});
+  table.exclude("seen", {"waypoints_ned_m", "speed_mps", "times_s"});
+  trajectory.frame_count = table.whole("frame_count", 1, kMost);
+  if (table.has("encounter")) trajectory.encounter = scene::encounter_in(table);
+  trajectory.seen = scene::seen_in(table);
+  if (trajectory.encounter || !trajectory.seen.empty()) return trajectory;
   const auto points = table.points("waypoints_ned_m", scene::kPosition);
   if (!points || points->size() < 2)
     throw Error("trajectory '" + trajectory.name + "' has fewer than two waypoints_ned_m",
@@ -83,7 +90,6 @@ Trajectory trajectory_from(const TableReader& table) {
                     std::to_string(trajectory.times_s.size()) +
                     " times_s; expected one for each, or speed_mps",
                 table.where());
-  trajectory.frame_count = table.whole("frame_count", 1, kMost);
   return trajectory;
 }
 
@@ -159,7 +165,8 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
     catalogue.aircraft.push_back(
         {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
   for (const TableReader& table : root.tables(
-           "trajectory", {"name", "waypoints_ned_m", "times_s", "speed_mps", "frame_count"}))
+           "trajectory",
+           {"name", "waypoints_ned_m", "times_s", "speed_mps", "encounter", "seen", "frame_count"}))
     catalogue.trajectories.push_back(trajectory_from(table));
   const std::string file = catalogue.file.string();
   refuse_twice(catalogue.backgrounds, "background", file);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "dataset/catalogue/drawn_path.h"
 #include "foundation/base/enum_names.h"
 #include "world/scene/scene.h"
 #include "world/synthetic/flight.h"
@@ -54,6 +55,9 @@ struct Trajectory {
   std::vector<Vector3> waypoints_ned_m;
   std::vector<double> times_s;  // set unless speed_mps is
   std::optional<double> speed_mps;
+  // In place of the three above.
+  std::optional<scene::Encounter> encounter;
+  std::vector<scene::Seen> seen;
   std::optional<std::int64_t> frame_count;
   Where where;
 };
@@ -128,6 +132,9 @@ struct Drawn {
   // Positive with the right wing down. Empty: straight flight, or a bank that suits the type.
   std::optional<Range> bank_deg;
   bool bank_suits_type = false;
+  // Each in place of all from range_m to bank_deg.
+  std::optional<DrawnApproach> approach;
+  std::vector<DrawnSeen> seen;
   // Empty: the sun of the background.
   std::optional<Range> sun_azimuth_deg, sun_elevation_deg;
   // Replaces the two sun ranges.

@@ -67,12 +67,30 @@ double drawn_bank_deg(Random random, const Drawn& rule, const aircraft::FlightLi
   return random.uniform(-most_deg, most_deg);
 }
 
-Encounter drawn_encounter(Random& random, const Random& of_bank, const Drawn& rule) {
+// The random numbers of one intruder. What was added later has a stream of its own, so that older
+// catalogues draw what they drew.
+struct Streams {
+  Random bank;
+  Random path;
+};
+
+// A path by its closest approach or by what is seen; false where the rule has neither.
+bool draw_stated_path(const Drawn& rule, Random of_path, Encounter& encounter) {
+  if (rule.approach) {
+    encounter.approach = rule.approach->draw(of_path, encounter.speed_mps);
+    encounter.approaches_at_meeting = !rule.approach->cpa_time_s;
+  }
+  for (const DrawnSeen& seen : rule.seen) encounter.seen.push_back(seen.draw(of_path));
+  return rule.approach || !rule.seen.empty();
+}
+
+Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& rule) {
   Encounter encounter;
   encounter.aircraft = drawn_aircraft(random, rule.types);
   const aircraft::FlightLimits* limits = aircraft::flight_limits(encounter.aircraft);
   encounter.speed_mps = drawn(random, speed_range(rule, limits));
   encounter.meeting_share = random.uniform(0.2, 0.8);
+  if (draw_stated_path(rule, streams.path, encounter)) return encounter;
   if (rule.size_px)
     encounter.size_px = drawn_evenly_in_logarithm(random, *rule.size_px);
   else
@@ -81,7 +99,7 @@ Encounter drawn_encounter(Random& random, const Random& of_bank, const Drawn& ru
   encounter.elevation_deg = drawn(random, rule.elevation_deg);
   encounter.heading_deg = drawn(random, rule.heading_deg);
   encounter.climb_deg = drawn(random, climb_range(rule, limits, encounter.speed_mps));
-  encounter.bank_deg = drawn_bank_deg(of_bank, rule, limits);
+  encounter.bank_deg = drawn_bank_deg(streams.bank, rule, limits);
   return encounter;
 }
 
@@ -115,7 +133,8 @@ DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t ind
   DrawnSequence result;
   Random random = stream("sequence ");
   result.background = drawn(random, rule.backgrounds);
-  result.encounters.push_back(drawn_encounter(random, stream("bank of sequence "), rule));
+  result.encounters.push_back(
+      drawn_encounter(random, {stream("bank of sequence "), stream("path of sequence ")}, rule));
   if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
   if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
   Random of_count = stream("intruders of sequence ");
@@ -126,7 +145,8 @@ DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t ind
   for (std::int64_t k = 1; k < count; ++k) {
     const std::string which = std::to_string(k + 1) + " of sequence ";
     Random other = stream("intruder " + which);
-    result.encounters.push_back(drawn_encounter(other, stream("bank of intruder " + which), rule));
+    result.encounters.push_back(drawn_encounter(
+        other, {stream("bank of intruder " + which), stream("path of intruder " + which)}, rule));
   }
   if (rule.daytime) {
     const SunPosition sun =

@@ -17,6 +17,11 @@ struct Encounter {
   std::string aircraft;
   // The meeting moment as a share of the clip's time, from 0.2 to 0.8.
   double meeting_share = 0.5;
+  // A path by its closest approach, or by what is seen; then nothing below holds.
+  std::optional<scene::Encounter> approach;
+  // True: the closest approach is at the meeting moment.
+  bool approaches_at_meeting = false;
+  std::vector<scene::Seen> seen;
   // Distance at the meeting moment; exactly one of range_m and size_px is set.
   std::optional<double> range_m;
   std::optional<double> size_px;

@@ -117,6 +117,10 @@ TEST(Drawing, TheNumberOfIntrudersIsEvenOverItsRange) {
 }
 
 // What is drawn where nothing is stated is flyable for its type: speed, climb and bank.
+trajectory::Path path_of_first(const scene::Scene& scene) {
+  return sequence::path_of(scene.intruders[0], sequence::camera_path(scene.camera));
+}
+
 TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
   const Catalogue catalogue = with_random(
       "count = 300\nframe_count = 90\nbank_deg = \"type\"\naircraft = [\"738/*\", \"c172/*\", "
@@ -128,8 +132,7 @@ TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
     const aircraft::FlightLimits& limits = *aircraft::flight_limits(intruder.aircraft);
     EXPECT_GE(*intruder.speed_mps, limits.usual_low_mps);
     EXPECT_LE(*intruder.speed_mps, limits.usual_high_mps);
-    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, 3),
-              "")
+    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, path_of_first(item.scene), 0, 3), "")
         << item.name;
   }
   const Plan plan = plan_of(catalogue, {}, {});
@@ -154,7 +157,7 @@ TEST(Drawing, ABankedPathIsACoordinatedTurn) {
       "count = 20\nframe_count = 90\naircraft = [\"c172/*\"]\nspeed_mps = [55, 55]\n"
       "climb_deg = [0, 0]\nbank_deg = [30, 30]\nrange_m = [400, 500]\n");
   for (std::int64_t i = 0; i < 20; ++i) {
-    const auto path = sequence::path_of(Expansion(catalogue).at(i).scene.intruders[0]);
+    const auto path = path_of_first(Expansion(catalogue).at(i).scene);
     const double radius_m = 55.0 * 55 / (9.80665 * std::tan(radians(30)));
     const auto begin = path.at(0);
     const auto end = path.at(3);

@@ -143,6 +143,19 @@ void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& dra
 }
 
 void read_paths(const TableReader& table, Drawn& drawn) {
+  const TableReader::Keys meeting = {"range_m",
+                                     "size_px",
+                                     "azimuth_deg",
+                                     "elevation_deg",
+                                     "speed_mps",
+                                     "heading_deg",
+                                     "climb_deg",
+                                     "bank_deg"};
+  table.exclude("encounter", {"seen"});
+  table.exclude("encounter", meeting);
+  table.exclude("seen", meeting);
+  drawn.approach = drawn_approach_in(table);
+  drawn.seen = drawn_seen_in(table);
   table.exclude("size_px", {"range_m"});
   drawn.range_m = maybe_range(table, "range_m", scene::kRangeToAircraft).value_or(drawn.range_m);
   drawn.size_px = maybe_range(table, "size_px", scene::kApparentSize);
@@ -188,7 +201,7 @@ std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalog
             "range_m",       "size_px",      "azimuth_deg", "elevation_deg",   "speed_mps",
             "heading_deg",   "climb_deg",    "bank_deg",    "sun_azimuth_deg", "sun_elevation_deg",
             "time_of_day_h", "latitude_deg", "day_of_year", "negatives",       "intruders",
-            "start"}))
+            "start",         "encounter",    "seen"}))
     result.push_back(drawn_from(table, catalogue));
   return result;
 }

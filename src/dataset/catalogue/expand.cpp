@@ -61,6 +61,8 @@ Item item_of(const Catalogue& catalogue,
   intruder.waypoints_ned_m = path.waypoints_ned_m;
   intruder.times_s = path.times_s;
   intruder.speed_mps = path.speed_mps;
+  intruder.encounter = path.encounter;
+  intruder.seen = path.seen;
   intruder.where = path.where;
   item.scene.intruders = {intruder};
   return item;
@@ -100,11 +102,12 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
   for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
     const Encounter& encounter = item.drawn.encounters[k];
     scene::Intruder intruder = intruder_of(rule, encounter, k);
-    lay_path(intruder,
-             encounter,
-             item.scene.camera,
-             clip,
-             encounter.range_m.value_or(kProvisionalRangeM));
+    if (!lay_stated_path(intruder, encounter, clip))
+      lay_path(intruder,
+               encounter,
+               item.scene.camera,
+               clip,
+               encounter.range_m.value_or(kProvisionalRangeM));
     item.scene.intruders.push_back(std::move(intruder));
   }
   return item;

@@ -192,6 +192,15 @@ trajectory::State camera_at(const scene::Camera& camera, double time_s) {
 
 }  // namespace
 
+bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, const DrawnClip& clip) {
+  if (!encounter.approach && encounter.seen.empty()) return false;
+  intruder.speed_mps.reset();
+  intruder.seen = encounter.seen;
+  intruder.encounter = encounter.approach;
+  if (encounter.approaches_at_meeting) intruder.encounter->cpa_time_s = meeting_s(encounter, clip);
+  return true;
+}
+
 scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k) {
   scene::Intruder intruder;
   intruder.id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder";
@@ -228,6 +237,7 @@ void meet(scene::Scene& scene,
   // Length for the first estimate of the range.
   constexpr double kUsualLengthM = 15;
   scene::Intruder& intruder = scene.intruders[k];
+  if (lay_stated_path(intruder, encounter, clip)) return;
   const double meets_s = meeting_s(encounter, clip);
   const trajectory::State camera = camera_at(scene.camera, meets_s);
   const Vector3 direction = direction_in_world(encounter, camera.world_from_body);
@@ -239,7 +249,7 @@ void meet(scene::Scene& scene,
   const Sizer sizer(scene, size, camera, meets_s);
   const double guess_m = sizer.focal_px() * kUsualLengthM / *encounter.size_px;
   lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
-  const trajectory::Path path = sequence::path_of(intruder);
+  const trajectory::Path path = sequence::path_of(intruder, sequence::camera_path(scene.camera));
   const Outline outline = outline_of(intruder, path, shared);
   const auto position = sizer.position(outline.silhouette,
                                        path.at(meets_s)->world_from_body,

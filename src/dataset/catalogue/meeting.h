@@ -29,6 +29,10 @@ scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::
 // moment is the time of a frame, so that the truth of that frame has the size.
 double meeting_s(const Encounter& encounter, const DrawnClip& clip);
 
+// Gives the intruder the path of an encounter that states a closest approach or what is seen.
+// Returns false, and changes nothing, for any other encounter.
+bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, const DrawnClip& clip);
+
 // Gives the intruder a path that at the meeting moment passes the point at range_m in the
 // encounter's direction. The path is straight, or a coordinated turn with the encounter's bank: a
 // helix of radius speed^2 / (g tan bank) over the ground. It covers the clip and at least one

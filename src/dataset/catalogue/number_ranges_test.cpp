@@ -328,7 +328,15 @@ std::vector<std::string> scenes() {
           "noise_correlation_px = 0.5\nchroma_spread_px = 2\ncodec_step = 4\ngamma = 2.2\n" +
           kIntruder + "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\ntimes_s = [0, 1]\n",
       head + "[lens]\nfile = 'lens.json'\n[shutter]\nangle_deg = 180\n" + light + kIntruder +
-          "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\nspeed_mps = 20\n"};
+          "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\nspeed_mps = 20\n",
+      head + "[lens]\nvertical_fov_deg = 60\n[camera]\nvelocity_ned_mps = [30, 0, 0]\n" + light +
+          "[[intruder]]\naircraft = 'box.obj'\n[intruder.encounter]\ncpa_time_s = 1\n"
+          "cpa_right_m = 5\ncpa_above_m = 2\ncourse_deg = 180\nspeed_mps = 40\nclimb_mps = 1\n"
+          "turn_rate_dps = 0\n[[intruder]]\naircraft = 'box.obj'\n[intruder.encounter]\n"
+          "cpa_time_s = 1\ncpa_ahead_m = 50\ncourse_deg = 90\nspeed_mps = 40\n",
+      head + "[lens]\nvertical_fov_deg = 60\n" + light +
+          "[[intruder]]\naircraft = 'box.obj'\n[[intruder.seen]]\ntime_s = 0\npixel = [30, 30]\n"
+          "range_m = 60\n[[intruder.seen]]\ntime_s = 0.0333\npixel = [32, 30]\nwidth_px = 4\n"};
 }
 
 TEST_F(NumberRanges, OfAScene) {
@@ -362,6 +370,12 @@ const std::string kTables =
     "20\n"
     "frame_count = 2\n[[trajectory]]\nname = 'b'\n"
     "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\ntimes_s = [0, 1]\n"
+    "[[trajectory]]\nname = 'c'\nencounter = { cpa_time_s = 1, cpa_right_m = 9, cpa_above_m = 1, "
+    "course_deg = 180, speed_mps = 20, climb_mps = 1, turn_rate_dps = 1 }\n"
+    "[[trajectory]]\nname = 'd'\nencounter = { cpa_time_s = 1, cpa_ahead_m = 9, "
+    "course_deg = 180, speed_mps = 20 }\n"
+    "[[trajectory]]\nname = 'e'\n[[trajectory.seen]]\ntime_s = 0\npixel = [30, 30]\nrange_m = 60\n"
+    "[[trajectory.seen]]\ntime_s = 0.03\npixel = [32, 30]\nwidth_px = 4\n"
     "[[sequence]]\nname = 'x'\nbackground = 'sky'\ntrajectory = 'a'\naircraft = 'box'\nframe_count "
     "= 2\n"
     "[[product]]\nname = '{trajectory}'\nbackgrounds = ['sky']\nframe_count = 2\n";
@@ -386,11 +400,25 @@ TEST_F(NumberRanges, OfACatalogue) {
       "range_m = [100, 200]\nazimuth_deg = [-5, 5]\nelevation_deg = [-5, 5]\n"
       "speed_mps = [40, 50]\nheading_deg = [0, 10]\nclimb_deg = [-1, 1]\n"
       "sun_azimuth_deg = [1, 2]\nsun_elevation_deg = [1, 2]\n";
+  const std::string by_approach =
+      "[random.encounter]\ncpa_time_s = 1\ncpa_right_m = [-60, 60]\ncpa_above_m = [-20, 20]\n"
+      "course_deg = 180\nspeed_mps = [40, 50]\nclimb_mps = 1\nturn_rate_dps = 0\n";
+  const std::string by_approach_ahead =
+      "[random.encounter]\ncpa_ahead_m = { any_of = [100, 200] }\ncourse_deg = 90\n";
+  const std::string by_seen =
+      "[[random.seen]]\ntime_s = 0\nx_px = [10, 20]\ny_px = 20\nrange_m = 100\n"
+      "[[random.seen]]\ntime_s = 0.0333\npixel = [30, 30]\nwidth_px = 4\n";
   const std::string by_size =
       "size_px = [8, 30]\nbank_deg = [-20, 20]\ntime_of_day_h = [10, 12]\nlatitude_deg = 40\n"
       "day_of_year = 100\nintruders = [1, 2]\nnegatives = 0.1\nstart = 'first'\n"
       "[slurm]\ncpus = 2\n";
-  walk({{kTables, use}, {video + by_range, use, true}, {video + by_size, read, true}}, {});
+  walk({{kTables, use},
+        {video + by_range, use, true},
+        {video + by_size, read, true},
+        {video + by_approach, use, true},
+        {video + by_approach_ahead, use, true},
+        {video + by_seen, use, true}},
+       {});
 }
 
 TEST_F(NumberRanges, OfLensFiles) {

@@ -2,7 +2,11 @@
 #include "sequence/sequence/frame_maker.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "sequence/frame/frame_truth.h"
 #include "sequence/setup/from_scene.h"
@@ -20,6 +24,31 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
     info.frame_count_estimate =
         left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
   return info;
+}
+
+}  // namespace
+
+namespace {
+
+bool is_given_by_what_is_seen(const scene::Scene& scene) {
+  return std::any_of(scene.intruders.begin(), scene.intruders.end(), [](const auto& intruder) {
+    return !intruder.seen.empty();
+  });
+}
+
+FramePose frame_near(const MotionSource& motion,
+                     const video::StreamInfo& info,
+                     const scene::Seen& seen) {
+  const MotionSource::Measured frame = motion.nearest(seen.time_s);
+  const double rate_hz = info.frame_rate.value();
+  const double interval_s = rate_hz > 0 ? 1 / rate_hz : 1;
+  if (std::abs(frame.motion.time_s - seen.time_s) > interval_s && !info.variable_frame_rate)
+    throw Error(fmt::format("time_s is {:.3f}, where the clip has no frame: the nearest is at "
+                            "{:.3f} s; expected a time within the clip",
+                            seen.time_s,
+                            frame.motion.time_s),
+                seen.where);
+  return {frame.motion.time_s, frame.shake};
 }
 
 }  // namespace
@@ -79,10 +108,18 @@ void FrameMaker::measure() {
                   video_sha256_,
                   setting_.own_aircraft(),
                   motion_cache(options_));
-  if (motion_->needs_pass()) {
+  const bool has_seen = is_given_by_what_is_seen(setting_.scene);
+  if (motion_->needs_pass() || (has_seen && !motion_->knows_all())) {
     motion_->measure(reader_, options_.stop, {});
     reader_ = open_background(setting_.scene, options_);
   }
+  if (has_seen)
+    place_seen(
+        setting_.scene,
+        setting_.world,
+        [&](const scene::Seen& seen) { return frame_near(*motion_, info_, seen); },
+        options_.stop,
+        options_.shared.get());
   ambient_.emplace(
       setting_.scene.light, tone_of(setting_.scene.camera_model), setting_.own_aircraft());
 }

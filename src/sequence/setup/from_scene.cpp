@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "camera/lens/calibration_file.h"
+#include "encounter/placement/by_approach.h"
 #include "picture/render/renderer.h"
 #include "sequence/setup/own_log.h"
 
@@ -55,9 +56,11 @@ trajectory::Path camera_path(const scene::Camera& camera) {
       camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
 }
 
-trajectory::Path path_of(const scene::Intruder& intruder) {
+trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path& own) {
+  check(intruder.seen.empty(), "an intruder that is given by what is seen has been placed");
   const trajectory::AttitudeOverride attitude{
       intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  if (intruder.encounter) return encounter::path_to_approach(*intruder.encounter, own, attitude);
   return at_place(intruder.where, [&] {
     const trajectory::Path path =
         intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)

@@ -23,8 +23,9 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 trajectory::Path camera_path(const scene::Camera& camera);
 
-// [[intruder]]: its path on the clip's clock.
-trajectory::Path path_of(const scene::Intruder& intruder);
+// [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
+// `seen` must have been placed (seen.h).
+trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path& own);
 
 // [light]: the unit vector to the sun, in world axes.
 Vector3 to_sun_in_world(const scene::Light& light);

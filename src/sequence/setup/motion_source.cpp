@@ -13,6 +13,18 @@
 #include "truth/annotation/lens_facts.h"
 
 namespace airtruth::sequence {
+namespace {
+
+// The motion of a frame of a clip that does not shake.
+motion::FrameMotion still_at(const video::Frame& frame) {
+  motion::FrameMotion still;
+  still.frame = frame.index;
+  still.time_s = frame.time_s;
+  return still;
+}
+
+}  // namespace
+
 std::string words_of(const lens::Lens& lens) {
   const annotation::LensFacts facts = annotation::facts_of(lens);
   return fmt::format("{} {} {} {}",
@@ -93,24 +105,43 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
 void MotionSource::measure(video::Reader& reader,
                            const std::stop_token& stop,
                            const std::function<void(std::int64_t)>& seen) {
+  if (none_) {
+    while (const auto frame = reader.next()) {
+      if (stop.stop_requested()) throw Interrupted();
+      all_.push_back(still_at(*frame));
+      if (seen) seen(std::ssize(all_));
+    }
+    ready_ = true;
+    return;
+  }
   set_pass(
       measure_motion(reader, estimator(reader.info().width, reader.info().height), stop, seen));
 }
 
 MotionSource::Measured MotionSource::next(const video::Frame& frame) {
-  if (none_) {
-    motion::FrameMotion still;
-    still.frame = frame.index;
-    still.time_s = frame.time_s;
-    return {still, {}};
-  }
+  if (none_) return {still_at(frame), {}};
   if (!ready_) {
     const motion::FrameMotion motion = guard_.next(measured(frame));
     return {motion, motion::shake_of({motion}, 0)};
   }
   check(frame.index < static_cast<std::int64_t>(all_.size()), "motion is known for every frame");
-  const auto k = static_cast<std::size_t>(frame.index);
+  return known(static_cast<std::size_t>(frame.index));
+}
+
+MotionSource::Measured MotionSource::known(std::size_t k) const {
+  if (none_) return {all_[k], {}};
   return {all_[k], needs_change_ ? motion::shake_of(all_, k) : motion::shake_of({all_[k]}, 0)};
+}
+
+MotionSource::Measured MotionSource::nearest(double time_s) const {
+  check(ready_ && !all_.empty(), "the clip's motion is known");
+  const auto after =
+      std::lower_bound(all_.begin(), all_.end(), time_s, [](const auto& motion, double t) {
+        return motion.time_s < t;
+      });
+  auto k = static_cast<std::size_t>(after - all_.begin());
+  if (k == all_.size() || (k > 0 && time_s - all_[k - 1].time_s <= all_[k].time_s - time_s)) --k;
+  return known(k);
 }
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {

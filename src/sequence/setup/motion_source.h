@@ -47,8 +47,10 @@ class MotionSource {
   bool needs_pass() const {
     return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
   }
-  // Makes that pass over all frames of a reader and calls `seen` after each frame. Throws
-  // Interrupted on stop.
+  // True once the motion and time of every frame are known.
+  bool knows_all() const { return ready_; }
+  // Makes that pass over all frames of a reader, whatever needs it, and calls `seen` after each
+  // frame. Throws Interrupted on stop.
   void measure(video::Reader& reader,
                const std::stop_token& stop,
                const std::function<void(std::int64_t)>& seen);
@@ -59,6 +61,8 @@ class MotionSource {
     Shake shake;
   };
   Measured next(const video::Frame& frame);
+  // The frame nearest to a time; only where knows_all() and the clip has a frame.
+  Measured nearest(double time_s) const;
   // Stores the measured motion for the next run, after the last frame. A cache that cannot be
   // written is no error.
   void store() const;
@@ -67,6 +71,8 @@ class MotionSource {
  private:
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
+  // Frame k, where all are known.
+  Measured known(std::size_t k) const;
 
   motion::Estimator estimator(int width, int height) const;
 

@@ -36,27 +36,43 @@ std::optional<Box> search_box(const projection::ExactBox& exact, const lens::Ima
   return box;
 }
 
-Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake, double dt_s) {
-  Rigid world_from_cam =
-      camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
-  if (shake.rotation)
-    world_from_cam.rotation =
-        (world_from_cam.rotation * shake.rotation_at(dt_s).conjugate()).normalized();
-  return world_from_cam;
+struct Loaded {
+  scene::Intruder intruder;  // with waypoints in place of what is seen
+  Actor actor;
+};
+
+// Of a flown intruder: its path has no `seen` left.
+Actor actor_of(const scene::Intruder& intruder,
+               const World& world,
+               SharedInputs& types,
+               const Warn& warn,
+               const std::stop_token& stop) {
+  const trajectory::Path path = path_of(intruder, world.camera);
+  const auto type =
+      at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
+  return {intruder.id,
+          intruder.aircraft,
+          path,
+          type->aircraft,
+          type->model,
+          type->silhouette,
+          type};
 }
 
-// Angular rate along a path in world axes, from one-sided differences where the path begins or
-// ends. rotation(state, dt_s) gives the rotation.
-template <typename Rotation>
-Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
-  constexpr double kStep_s = 1e-3;
-  const double before_s = path.at(time_s - kStep_s) ? -kStep_s : 0;
-  const double after_s = path.at(time_s + kStep_s) ? kStep_s : 0;
-  if (!(after_s > before_s)) return Vector3::Zero();
-  const auto before = path.at(time_s + before_s);
-  const auto after = path.at(time_s + after_s);
-  return vector_from_rotation(rotation(*after, after_s) * rotation(*before, before_s).conjugate()) /
-         (after_s - before_s);
+// An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed
+// and height there, and placed and loaded once more by its own shape.
+Loaded load_actor(const scene::Intruder& intruder,
+                  const World& world,
+                  const FrameNear& frame_near,
+                  SharedInputs& types,
+                  const Warn& warn,
+                  const std::stop_token& stop) {
+  if (intruder.seen.empty()) return {intruder, actor_of(intruder, world, types, warn, stop)};
+  const SeenThrough through{&world.lens, &world.camera, world.shutter, frame_near};
+  const Actor first =
+      actor_of(placed_as_seen(intruder, through, nullptr), world, types, warn, stop);
+  const scene::Intruder placed = placed_as_seen(intruder, through, &first.silhouette);
+  return {placed, actor_of(placed, world, types, {}, stop)};
 }
 
 }  // namespace
@@ -66,7 +82,9 @@ aircraft::LoadOptions load_options(const scene::Intruder& intruder,
                                    const std::stop_token& stop) {
   aircraft::LoadOptions options;
   options.stop = stop;
-  if (const auto state = path.at(path.start_s())) {
+  // A path without a beginning begins with the clip.
+  const double begin_s = std::isfinite(path.start_s()) ? path.start_s() : 0;
+  if (const auto state = path.at(begin_s)) {
     options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
     options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
   }
@@ -99,20 +117,25 @@ World load_world(const scene::Scene& scene,
               {},
               shutter_of(scene.camera_model)};
   SharedInputs own;
-  SharedInputs& inputs = shared != nullptr ? *shared : own;
-  for (const scene::Intruder& intruder : scene.intruders) {
-    const trajectory::Path path = path_of(intruder);
-    const auto type =
-        at_place(intruder.where, [&] { return inputs.type_of(intruder, path, warn, stop); });
-    world.actors.push_back({intruder.id,
-                            intruder.aircraft,
-                            path,
-                            type->aircraft,
-                            type->model,
-                            type->silhouette,
-                            type});
-  }
+  SharedInputs& types = shared != nullptr ? *shared : own;
+  for (const scene::Intruder& intruder : scene.intruders)
+    world.actors.push_back(load_actor(intruder, world, steady_frame, types, warn, stop).actor);
   return world;
+}
+
+void place_seen(scene::Scene& scene,
+                World& world,
+                const FrameNear& frame_near,
+                const std::stop_token& stop,
+                SharedInputs* shared) {
+  SharedInputs own;
+  SharedInputs& types = shared != nullptr ? *shared : own;
+  for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
+    if (scene.intruders[i].seen.empty()) continue;
+    Loaded loaded = load_actor(scene.intruders[i], world, frame_near, types, {}, stop);
+    world.actors[i] = std::move(loaded.actor);
+    scene.intruders[i] = std::move(loaded.intruder);
+  }
 }
 
 void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info) {
@@ -134,10 +157,14 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 }
 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
-  check_camera_path(at_place(scene.camera.where, [&] { return camera_path(scene.camera); }), info);
+  const trajectory::Path camera =
+      at_place(scene.camera.where, [&] { return camera_path(scene.camera); });
+  check_camera_path(camera, info);
+  const lens::Lens lens = lens_of(scene.lens, {info.width, info.height});
+  const SeenThrough through{&lens, &camera, shutter_of(scene.camera_model), steady_frame};
   for (const scene::Intruder& intruder : scene.intruders) {
     at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
-    path_of(intruder);
+    path_of(intruder.seen.empty() ? intruder : placed_as_seen(intruder, through, nullptr), camera);
   }
 }
 
@@ -147,39 +174,6 @@ std::optional<PixelBox> search_bounds(const Moment& moment) {
     if (box) all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
   return all;
 }
-
-namespace {
-
-// The motion of an actor during the exposure; none if the shutter is instant.
-Twist twist_of(const World& world,
-               const Actor& actor,
-               const std::optional<trajectory::State>& state,
-               double time_s) {
-  if (!state || world.shutter.is_instant()) return {};
-  return {state->velocity_in_world_mps,
-          turning(actor.path, time_s, [](const trajectory::State& then, double) {
-            return then.world_from_body;
-          })};
-}
-
-// Where a camera with the given shake stands, looks and moves.
-projection::Sight sight_of(const World& world,
-                           const trajectory::State& camera,
-                           double time_s,
-                           const Shake& shake) {
-  const Rigid world_from_cam = world_from_shaken_cam(camera, shake, 0);
-  projection::Sight sight{&world.lens, world_from_cam.inverse(), shake.frame_from_reference};
-  if (world.shutter.is_instant()) return sight;
-  sight.shutter = world.shutter;
-  sight.frame_from_nominal_per_s = shake.frame_from_reference_per_s;
-  sight.camera = {camera.velocity_in_world_mps,
-                  turning(world.camera, time_s, [&](const trajectory::State& state, double dt_s) {
-                    return world_from_shaken_cam(state, shake, dt_s).rotation;
-                  })};
-  return sight;
-}
-
-}  // namespace
 
 Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
   const auto camera = world.camera.at(time_s);
@@ -191,11 +185,11 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
   moment.frame = frame;
   moment.time_s = time_s;
   moment.camera = *camera;
-  moment.sight = sight_of(world, *camera, time_s, shake);
+  moment.sight = sight_of(world.lens, world.shutter, world.camera, *camera, time_s, shake);
   for (const Actor& actor : world.actors) {
     const auto state = actor.path.at(time_s);
     moment.states.push_back(state);
-    const Twist twist = twist_of(world, actor, state, time_s);
+    const Twist twist = state ? twist_of(actor.path, *state, time_s, world.shutter) : Twist{};
     moment.twists.push_back(twist);
     moment.boxes.push_back(
         state ? projection::exact_box(

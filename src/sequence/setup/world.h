@@ -14,6 +14,7 @@
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "picture/video/reader.h"
+#include "sequence/setup/seen.h"
 #include "truth/annotation/truth.h"
 #include "truth/projection/exact_box.h"
 #include "world/scene/scene.h"
@@ -55,13 +56,22 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop. `shared` gives the
-// aircraft where it is not nullptr.
+// Loads a scene without "auto" keys (resolve.h). Intruders of [[intruder.seen]] are placed as if
+// the camera did not shake; place_seen() puts them right. Throws Interrupted on stop. `shared` gives
+// the aircraft where it is not nullptr.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
                  const std::stop_token& stop = {},
                  SharedInputs* shared = nullptr);
+
+// Places the intruders of [[intruder.seen]] by the frames of the clip: their paths and aircraft in
+// the world, and their words in the scene, which then has their waypoints and times.
+void place_seen(scene::Scene& scene,
+                World& world,
+                const FrameNear& frame_near,
+                const std::stop_token& stop = {},
+                SharedInputs* shared = nullptr);
 
 // Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
 // than the uncertainty of the clip's stated length.

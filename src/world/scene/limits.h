@@ -43,6 +43,12 @@ inline constexpr Limits kVelocity{
     .expected = "metres a second from -1e4 to 1e4", .low = -1e4, .high = 1e4};
 inline constexpr Limits kSpeed{
     .expected = "metres a second from 0.001 to 1e4", .low = 0.001, .high = 1e4};
+// A miss distance: beyond it two aircraft do not meet.
+inline constexpr Limits kMiss{.expected = "metres from -1e5 to 1e5", .low = -1e5, .high = 1e5};
+inline constexpr Limits kClimb{
+    .expected = "metres a second from -1000 to 1000", .low = -1000, .high = 1000};
+inline constexpr Limits kTurnRate{
+    .expected = "degrees a second from -90 to 90", .low = -90, .high = 90};
 inline constexpr Limits kSmoothing{
     .expected = "seconds from 0.001 to 1e4", .low = 0.001, .high = 1e4};
 inline constexpr Limits kModelScale{
@@ -54,6 +60,9 @@ inline constexpr Limits kPrincipalPoint{
     .expected = "pixels from -1e6 to 1e6", .low = -1e6, .high = 1e6};
 inline constexpr Limits kDistortion{
     .expected = "a number from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+
+// A place in the picture; it may lie outside the image.
+inline constexpr Limits kPixel{.expected = "pixels from -1e5 to 1e5", .low = -1e5, .high = 1e5};
 
 // Light, air, optics and sensor.
 inline constexpr Limits kExposureFactor{

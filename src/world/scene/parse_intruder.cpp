@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "aircraft/wrapper/reader.h"
+#include "world/scene/parse_encounter.h"
 #include "world/scene/tables.h"
 
 namespace airtruth::scene {
@@ -60,6 +61,12 @@ void check_times(const TableReader& table,
 
 void read_path(const TableReader& table, Intruder& intruder) {
   table.exclude("path_file", {"waypoints_ned_m", "speed_mps", "times_s"});
+  table.exclude("encounter",
+                {"seen", "waypoints_ned_m", "speed_mps", "times_s", "path_file", "start_s"});
+  table.exclude("seen", {"waypoints_ned_m", "speed_mps", "times_s", "path_file", "start_s"});
+  if (table.has("encounter")) intruder.encounter = encounter_in(table);
+  intruder.seen = seen_in(table);
+  if (intruder.encounter || !intruder.seen.empty()) return;
   table.exclude("speed_mps", {"times_s"});
   intruder.start_s = table.number("start_s", kTime).value_or(0);
   intruder.path_file = table.path("path_file");
@@ -67,8 +74,8 @@ void read_path(const TableReader& table, Intruder& intruder) {
   const auto points = table.points("waypoints_ned_m", kPosition);
   if (!points)
     throw Error(
-        "[[intruder]] has no path; expected waypoints_ned_m with speed_mps or times_s, or "
-        "path_file",
+        "[[intruder]] has no path; expected waypoints_ned_m with speed_mps or times_s, path_file, "
+        "[intruder.encounter] or [[intruder.seen]]",
         table.where());
   check_waypoints(table, *points);
   intruder.waypoints_ned_m = *points;
@@ -109,6 +116,8 @@ std::vector<Intruder> intruders_from(const TableReader& root) {
                                                "speed_mps",
                                                "times_s",
                                                "path_file",
+                                               "encounter",
+                                               "seen",
                                                "start_s",
                                                "yaw_deg",
                                                "pitch_deg",

@@ -160,8 +160,36 @@ struct Realism {
   Where where;
 };
 
+// [intruder.encounter]: a path by its closest approach to the own aircraft
+// (encounter/placement/by_approach.h states how it follows).
+struct Encounter {
+  // When the two come nearest, in seconds of the clip.
+  double cpa_time_s = 0;
+  // Where the intruder is then, from the own aircraft: right of and ahead along the own course, and
+  // above. One of right and ahead may be empty: it follows.
+  std::optional<double> cpa_right_m, cpa_ahead_m;
+  double cpa_above_m = 0;
+  // Course over the ground from the own course, clockwise: 180 is head-on.
+  double course_deg = 180;
+  double speed_mps = 0;  // along the path, climb included
+  double climb_mps = 0;
+  double turn_rate_dps = 0;  // positive to the right
+  Where where;
+};
+
+// [[intruder.seen]]: a place of the path by what the picture shows. Exactly one of range_m and
+// width_px is present.
+struct Seen {
+  // Of the frame nearest to it, in seconds of the clip.
+  double time_s = 0;
+  Pixel pixel = Pixel::Zero();
+  std::optional<double> range_m;
+  std::optional<double> width_px;  // of the exact box
+  Where where;
+};
+
 // [[intruder]]: an aircraft and its path. A path comes from waypoints with a speed or with times,
-// or from a file.
+// from a file, from an encounter, or from what is seen.
 struct Intruder {
   std::string id;
   std::string aircraft;
@@ -176,6 +204,9 @@ struct Intruder {
   std::optional<double> speed_mps;
   std::vector<double> times_s;
   std::optional<fs::path> path_file;
+  std::optional<Encounter> encounter;
+  // At increasing times; empty, or at least two.
+  std::vector<Seen> seen;
   // The time at which the path begins, in seconds of the clip.
   double start_s = 0;
   // Each angle replaces that of the path.

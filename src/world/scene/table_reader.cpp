@@ -142,6 +142,11 @@ bool TableReader::is_array(std::string_view key) const {
   return value != nullptr && value->is_array();
 }
 
+bool TableReader::is_table(std::string_view key) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_table();
+}
+
 Where TableReader::where() const { return place(*table_); }
 
 Where TableReader::where(std::string_view key) const {

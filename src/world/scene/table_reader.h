@@ -37,8 +37,9 @@ class TableReader {
   bool has(std::string_view key) const;
   // True where the value is exactly this string.
   bool says(std::string_view key, std::string_view word) const;
-  // True where the value is an array.
+  // True where the value is an array; a table.
   bool is_array(std::string_view key) const;
+  bool is_table(std::string_view key) const;
   // The place of the table; without a line where the file lacks the table.
   Where where() const;
   // The place of the value.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -142,6 +143,26 @@ std::string aircraft_text(const std::string& aircraft) {
                                            : aircraft;
 }
 
+void add_encounter(Text& text, const Encounter& encounter) {
+  text.heading("[intruder.encounter]");
+  text.add("cpa_time_s", encounter.cpa_time_s);
+  text.add("cpa_right_m", encounter.cpa_right_m);
+  text.add("cpa_above_m", encounter.cpa_above_m);
+  text.add("cpa_ahead_m", encounter.cpa_ahead_m);
+  text.add("course_deg", encounter.course_deg);
+  text.add("speed_mps", encounter.speed_mps);
+  text.add("climb_mps", encounter.climb_mps);
+  text.add("turn_rate_dps", encounter.turn_rate_dps);
+}
+
+void add_seen(Text& text, const Seen& seen) {
+  text.heading("[[intruder.seen]]");
+  text.add("time_s", seen.time_s);
+  text.add("pixel", std::array<double, 2>{seen.pixel.x(), seen.pixel.y()});
+  text.add("range_m", seen.range_m);
+  text.add("width_px", seen.width_px);
+}
+
 void add_intruder(Text& text, const Intruder& intruder) {
   text.heading("[[intruder]]");
   text.add("id", intruder.id);
@@ -151,15 +172,19 @@ void add_intruder(Text& text, const Intruder& intruder) {
   text.add("model_scale", intruder.model_scale);
   text.add("catalogue_scale", intruder.catalogue_scale);
   text.add("path_file", intruder.path_file);
-  if (!intruder.path_file) {
+  const bool has_tables = intruder.encounter || !intruder.seen.empty();
+  if (!intruder.path_file && !has_tables) {
     text.add("waypoints_ned_m", intruder.waypoints_ned_m);
     text.add("speed_mps", intruder.speed_mps);
     if (!intruder.speed_mps) text.add("times_s", intruder.times_s);
   }
-  text.add("start_s", intruder.start_s);
+  if (!has_tables) text.add("start_s", intruder.start_s);
   text.add("yaw_deg", intruder.yaw_deg);
   text.add("pitch_deg", intruder.pitch_deg);
   text.add("roll_deg", intruder.roll_deg);
+  // Tables come last: a key after them would belong to them.
+  if (intruder.encounter) add_encounter(text, *intruder.encounter);
+  for (const Seen& seen : intruder.seen) add_seen(text, seen);
 }
 
 }  // namespace

@@ -72,6 +72,16 @@ YawPitchRoll attitude_along(const Vector3& velocity,
   return attitude;
 }
 
+State state_with(const Vector3& position,
+                 const Vector3& velocity,
+                 YawPitchRoll attitude,
+                 const AttitudeOverride& stated) {
+  attitude.yaw_deg = stated.yaw_deg.value_or(attitude.yaw_deg);
+  attitude.pitch_deg = stated.pitch_deg.value_or(attitude.pitch_deg);
+  attitude.roll_deg = stated.roll_deg.value_or(attitude.roll_deg);
+  return {position, velocity, world_from_body(attitude)};
+}
+
 State state_along(const Vector3& position,
                   const Vector3& velocity,
                   const Vector3& acceleration,
@@ -79,11 +89,8 @@ State state_along(const Vector3& position,
                   const CubicSpline<Vector3>& spline,
                   double u) {
   const double kept_yaw_deg = has_heading(velocity) ? 0.0 : heading_near_deg(spline, u);
-  YawPitchRoll attitude = attitude_along(velocity, acceleration, kept_yaw_deg);
-  attitude.yaw_deg = stated.yaw_deg.value_or(attitude.yaw_deg);
-  attitude.pitch_deg = stated.pitch_deg.value_or(attitude.pitch_deg);
-  attitude.roll_deg = stated.roll_deg.value_or(attitude.roll_deg);
-  return {position, velocity, world_from_body(attitude)};
+  return state_with(
+      position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
 }
 
 class AtTimes : public Path::Impl {
@@ -189,6 +196,41 @@ class Uniform : public Path::Impl {
   Quaternion attitude_;
 };
 
+class Steady : public Path::Impl {
+ public:
+  Steady(const SteadyFlight& flight, const AttitudeOverride& stated)
+      : flight_(flight), stated_(stated) {}
+  double start_s() const override { return -std::numeric_limits<double>::infinity(); }
+  double end_s() const override { return std::numeric_limits<double>::infinity(); }
+  State at(double t) const override {
+    const double after_s = t - flight_.time_s;
+    const double rate = radians(flight_.turn_rate_dps);
+    const double course = radians(flight_.course_deg);
+    const double speed_mps = flight_.ground_speed_mps;
+    // The chord of a turn by an angle has the direction of half the angle and the length of the arc
+    // times sin(angle / 2) / (angle / 2).
+    const double half_angle = 0.5 * rate * after_s;
+    const double share = std::abs(half_angle) < 1e-6 ? 1 - half_angle * half_angle / 6
+                                                     : std::sin(half_angle) / half_angle;
+    const double chord_m = speed_mps * after_s * share;
+    const Vector3 moved(chord_m * std::cos(course + half_angle),
+                        chord_m * std::sin(course + half_angle),
+                        -flight_.climb_mps * after_s);
+    const double now = course + 2 * half_angle;
+    const Vector3 velocity(
+        speed_mps * std::cos(now), speed_mps * std::sin(now), -flight_.climb_mps);
+    const Vector3 acceleration(-velocity.y() * rate, velocity.x() * rate, 0);
+    return state_with(flight_.position_ned_m + moved,
+                      velocity,
+                      attitude_along(velocity, acceleration, degrees(now)),
+                      stated_);
+  }
+
+ private:
+  SteadyFlight flight_;
+  AttitudeOverride stated_;
+};
+
 class Shifted : public Path::Impl {
  public:
   Shifted(Path path, double by) : path_(std::move(path)), by_(by) {}
@@ -271,6 +313,10 @@ Path uniform(const Vector3& position_ned_m,
              const Vector3& velocity_ned_mps,
              const YawPitchRoll& attitude) {
   return Path(std::make_shared<Uniform>(position_ned_m, velocity_ned_mps, attitude));
+}
+
+Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
+  return Path(std::make_shared<Steady>(flight, attitude));
 }
 
 std::shared_ptr<const Path::Impl> path_through(std::vector<double> times_s,

@@ -47,7 +47,7 @@ class Path {
   // is not finite.
   std::optional<State> at(double time_s) const;
   double start_s() const;
-  // The last time of the path; +infinity for a uniform path.
+  // The last time of the path; +infinity for uniform and steady flight, whose start is -infinity.
   double end_s() const;
 
   struct Impl;
@@ -96,6 +96,21 @@ struct Samples {
 // unwrapped values; any other angle follows from the path as above. `attitude` replaces either.
 // The samples must hold at least two times.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude = {});
+
+// Flight at constant speed, climb and rate of turn: a straight line or a helix. It passes
+// `position_ned_m` at `time_s` and has neither start nor end.
+struct SteadyFlight {
+  Vector3 position_ned_m = Vector3::Zero();
+  double time_s = 0;
+  // Direction over the ground at that time, from north towards east.
+  double course_deg = 0;
+  double ground_speed_mps = 0;
+  double climb_mps = 0;      // positive up
+  double turn_rate_dps = 0;  // positive to the right
+};
+// The wings bank as in a coordinated turn; each angle that `attitude` states replaces that of the
+// flight.
+Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude = {});
 
 // Reads a sampled path: CSV with a header and the columns
 // time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. The position follows the

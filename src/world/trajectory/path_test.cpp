@@ -150,6 +150,49 @@ TEST(Uniform, GoesOnForEver) {
   EXPECT_TRUE(path.at(1e6)->position_in_world.isApprox(Vector3(4e7, 0, -150)));
 }
 
+// A level turn to the left of 90 degrees in 10 s at 50 m/s: the radius is 50 / (pi / 20) = 1000 /
+// pi.
+TEST(Steady, ATurnIsAnArc) {
+  const Path path = steady({.position_ned_m = {10, 20, -300},
+                            .time_s = 4,
+                            .course_deg = 0,
+                            .ground_speed_mps = 50,
+                            .climb_mps = 2,
+                            .turn_rate_dps = -9});
+  const double radius_m = 1000 / kPi;
+  const auto end = path.at(14);
+  ASSERT_TRUE(end);
+  EXPECT_TRUE(end->position_in_world.isApprox(Vector3(10 + radius_m, 20 - radius_m, -320), 1e-12));
+  EXPECT_TRUE(end->velocity_in_world_mps.isApprox(Vector3(0, -50, -2), 1e-12));
+  const YawPitchRoll attitude = yaw_pitch_roll(end->world_from_body);
+  EXPECT_NEAR(attitude.yaw_deg, -90, 1e-9);
+  EXPECT_NEAR(attitude.pitch_deg, degrees(std::atan2(2, 50)), 1e-9);
+  EXPECT_NEAR(attitude.roll_deg, degrees(std::atan(50 * radians(-9) / 9.80665)), 1e-9);
+}
+
+TEST(Steady, VelocityIsTheChangeOfPosition) {
+  for (const double turn_rate_dps : {0.0, 1e-9, 1e-4, 0.3, -6.0}) {
+    const Path path = steady({.position_ned_m = {1, 2, -300},
+                              .time_s = 3,
+                              .course_deg = 250,
+                              .ground_speed_mps = 70,
+                              .climb_mps = -4,
+                              .turn_rate_dps = turn_rate_dps});
+    EXPECT_TRUE(path.at(3)->position_in_world.isApprox(Vector3(1, 2, -300), 1e-15));
+    for (const double t : {-5.0, 2.9999, 3.0, 3.1, 40.0}) {
+      const Vector3 moved =
+          path.at(t + 1e-3)->position_in_world - path.at(t - 1e-3)->position_in_world;
+      EXPECT_LT((moved / 2e-3 - path.at(t)->velocity_in_world_mps).norm(), 1e-6) << t;
+    }
+  }
+}
+
+TEST(Steady, OneThatHoversKeepsItsHeading) {
+  const Path path = steady({.course_deg = 130, .climb_mps = 1});
+  EXPECT_NEAR(yaw_pitch_roll(path.at(9)->world_from_body).yaw_deg, 130, 1e-9);
+  EXPECT_EQ(path.at(9)->position_in_world, Vector3(0, 0, -9));
+}
+
 TEST(Waypoints, SayWhatIsWrong) {
   EXPECT_THAT(error_of([] {
                 spline_at_speed(Points{{0, 0, 0}}, 5);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/passage/passage.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::encounter {
+namespace {
+
+constexpr int kMaxSteps = 200'000;
+constexpr int kHalvings = 50;  // of a step: far below a microsecond
+
+struct Both {
+  trajectory::State own;
+  trajectory::State intruder;
+
+  Relative between() const { return relative(mover_of(own), mover_of(intruder)); }
+};
+
+std::optional<Both> both_at(const trajectory::Path& own,
+                            const trajectory::Path& intruder,
+                            double time_s) {
+  const auto a = own.at(time_s);
+  const auto b = intruder.at(time_s);
+  if (!a || !b) return std::nullopt;
+  return Both{*a, *b};
+}
+
+// The times at which two paths are walked while both exist; empty where they never do.
+std::vector<double> walked_times(const trajectory::Path& own,
+                                 const trajectory::Path& intruder,
+                                 double begin_s,
+                                 double end_s) {
+  begin_s = std::max({begin_s, own.start_s(), intruder.start_s()});
+  end_s = std::min({end_s, own.end_s(), intruder.end_s()});
+  if (!(begin_s <= end_s)) return {};
+  const double span_s = end_s - begin_s;
+  const int steps = std::clamp(
+      static_cast<int>(std::min(std::ceil(span_s / kStep_s), 1e6)), span_s > 0 ? 1 : 0, kMaxSteps);
+  std::vector<double> times_s;
+  for (int i = 0; i <= steps; ++i)
+    times_s.push_back(steps == 0 ? begin_s : begin_s + span_s * i / steps);
+  return times_s;
+}
+
+// Between two times, the one at which `is_before` turns from true to false.
+template <typename Condition>
+double turning_point(double before_s, double after_s, const Condition& is_before) {
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle_s = 0.5 * (before_s + after_s);
+    (is_before(middle_s) ? before_s : after_s) = middle_s;
+  }
+  return 0.5 * (before_s + after_s);
+}
+
+}  // namespace
+
+Mover mover_of(const trajectory::State& state) {
+  return {state.position_in_world, state.velocity_in_world_mps};
+}
+
+double course_rad(const trajectory::State& own) {
+  const Vector3& v = own.velocity_in_world_mps;
+  if (std::hypot(v.x(), v.y()) >= kCourseMps) return std::atan2(v.y(), v.x());
+  return radians(yaw_pitch_roll(own.world_from_body).yaw_deg);
+}
+
+Offset offset_from(const trajectory::State& own, const Vector3& offset_ned_m) {
+  const double course = course_rad(own);
+  const Vector3& r = offset_ned_m;
+  return {std::cos(course) * r.x() + std::sin(course) * r.y(),
+          -std::sin(course) * r.x() + std::cos(course) * r.y(),
+          -r.z()};
+}
+
+std::optional<Approach> closest_approach(const trajectory::Path& own,
+                                         const trajectory::Path& intruder,
+                                         double begin_s,
+                                         double end_s) {
+  const std::vector<double> times_s = walked_times(own, intruder, begin_s, end_s);
+  if (times_s.empty()) return std::nullopt;
+  std::size_t best = 0;
+  double least_m = HUGE_VAL;
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const auto both = both_at(own, intruder, times_s[i]);
+    const double distance_m = both ? both->between().offset_ned_m.norm() : HUGE_VAL;
+    if (distance_m < least_m) {
+      least_m = distance_m;
+      best = i;
+    }
+  }
+  // Around the nearest step the distance falls and then rises.
+  const double before_s = times_s[best > 0 ? best - 1 : 0];
+  const double after_s = times_s[std::min(best + 1, times_s.size() - 1)];
+  const double time_s = turning_point(before_s, after_s, [&](double t) {
+    const auto both = both_at(own, intruder, t);
+    if (!both) return false;
+    const Relative between = both->between();
+    return between.offset_ned_m.dot(between.velocity_ned_mps) < 0;
+  });
+  const auto both = both_at(own, intruder, time_s);
+  if (!both) return std::nullopt;
+  const Vector3 offset = both->between().offset_ned_m;
+  return Approach{
+      time_s, offset.norm(), std::hypot(offset.x(), offset.y()), offset_from(both->own, offset)};
+}
+
+std::vector<Interval> violations(const Volume& volume,
+                                 const trajectory::Path& own,
+                                 const trajectory::Path& intruder,
+                                 double begin_s,
+                                 double end_s) {
+  std::vector<double> times_s = walked_times(own, intruder, begin_s, end_s);
+  if (const auto nearest = closest_approach(own, intruder, begin_s, end_s))
+    times_s.insert(std::upper_bound(times_s.begin(), times_s.end(), nearest->time_s),
+                   nearest->time_s);
+  const auto inside = [&](double time_s) {
+    const auto both = both_at(own, intruder, time_s);
+    return both && is_inside(volume, mover_of(both->own), mover_of(both->intruder));
+  };
+  std::vector<Interval> result;
+  bool was_inside = false;
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const bool is_now = inside(times_s[i]);
+    if (is_now && !was_inside) {
+      const double entry_s =
+          i == 0 ? times_s[0]
+                 : turning_point(times_s[i - 1], times_s[i], [&](double t) { return !inside(t); });
+      result.push_back({entry_s, times_s.back()});
+    }
+    if (!is_now && was_inside)
+      result.back().end_s = turning_point(times_s[i - 1], times_s[i], inside);
+    was_inside = is_now;
+  }
+  return result;
+}
+
+}  // namespace airtruth::encounter

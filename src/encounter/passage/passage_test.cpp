@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/passage/passage.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "encounter/passage/geometry_class.h"
+#include "encounter/separation/random_encounter.h"
+
+namespace airtruth::encounter {
+namespace {
+
+trajectory::Path straight(const Mover& mover) {
+  return trajectory::uniform(mover.position_ned_m, mover.velocity_ned_mps, {});
+}
+
+// Of straight paths the closest approach in space is at -r.v / v.v, limited to the span.
+TEST(Passage, TheClosestApproachOfStraightPathsIsTheClosedForm) {
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const Pair pair = random_pair(i);
+    const Relative r = relative(pair.own, pair.intruder);
+    const double square = r.velocity_ned_mps.squaredNorm();
+    if (square < 1) continue;
+    const double at_s = std::clamp(-r.offset_ned_m.dot(r.velocity_ned_mps) / square, 0.0, 60.0);
+    const auto found = closest_approach(straight(pair.own), straight(pair.intruder), 0, 60);
+    ASSERT_TRUE(found);
+    ASSERT_NEAR(found->time_s, at_s, 1e-6) << i;
+    const double distance_m = (r.offset_ned_m + at_s * r.velocity_ned_mps).norm();
+    ASSERT_NEAR(found->distance_m, distance_m, 1e-6 + 1e-9 * distance_m) << i;
+  }
+}
+
+// Two circles of one centre, 300 m and 500 m, one angle apart: they are nearest where both are in
+// one direction, (500 - 300) m apart.
+TEST(Passage, OfTurningPathsToo) {
+  const auto circle = [](double radius_m, double rate_dps, double phase_deg) {
+    const double speed_mps = radius_m * radians(rate_dps);
+    const double phase = radians(phase_deg);
+    return trajectory::steady(
+        {.position_ned_m = {radius_m * std::cos(phase), radius_m * std::sin(phase), -100},
+         .course_deg = phase_deg + 90,
+         .ground_speed_mps = speed_mps,
+         .turn_rate_dps = rate_dps});
+  };
+  const auto found = closest_approach(circle(300, 6, 0), circle(500, 2, 40), 0, 30);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->time_s, 10, 1e-6);
+  EXPECT_NEAR(found->distance_m, 200, 1e-9);
+  EXPECT_NEAR(found->offset.right_m, -200, 1e-6);  // outside of a turn to the right
+  EXPECT_NEAR(found->offset.ahead_m, 0, 1e-3);
+}
+
+TEST(Passage, OnlyWhileBothAreInTheWorld) {
+  const auto own = straight({{0, 0, -100}, {50, 0, 0}});
+  const std::vector<Vector3> points = {{400, 30, -100}, {300, 30, -100}};
+  const auto late = trajectory::shifted(trajectory::spline_at_speed(points, 50), 2);
+  const auto found = closest_approach(own, late, 0, 60);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->time_s, 4, 1e-6);  // its path ends there, still 100 m ahead
+  EXPECT_NEAR(found->distance_m, std::hypot(100, 30), 1e-6);
+  EXPECT_FALSE(closest_approach(own, late, 0, 1));
+}
+
+// Of straight paths, walking finds the interval of the closed form.
+TEST(Passage, ViolationsOfStraightPathsAreTheClosedForm) {
+  for (const NamedVolume& named : named_volumes()) {
+    int violated = 0;
+    for (std::uint64_t i = 0; i < 120; ++i) {
+      const Pair pair = random_pair(i);
+      const auto expected = violation(named.volume, pair.own, pair.intruder, 60);
+      const auto found =
+          violations(named.volume, straight(pair.own), straight(pair.intruder), 0, 60);
+      if (expected && expected->end_s - expected->begin_s < kStep_s) continue;
+      ASSERT_EQ(found.size(), expected ? 1u : 0u) << named.name << ' ' << i;
+      if (!expected) continue;
+      ++violated;
+      ASSERT_NEAR(found[0].begin_s, expected->begin_s, 1e-6) << named.name << ' ' << i;
+      ASSERT_NEAR(found[0].end_s, expected->end_s, 1e-6) << named.name << ' ' << i;
+    }
+    EXPECT_GT(violated, 0) << named.name;
+  }
+}
+
+// A violation far shorter than a step is found where the two are nearest: 300 m/s across a chord of
+// 2 m takes 7 ms.
+TEST(Passage, AShortViolationIsFoundAtTheClosestApproach) {
+  const double miss_m = 152.4 - 0.5 / 152.4;
+  const auto own = straight({{0, 0, -100}, {150, 0, 0}});
+  const auto other = straight({{3001, miss_m, -100}, {-150, 0, 0}});
+  const auto found = violations(named_volume("nmac")->volume, own, other, 0, 20);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].end_s - found[0].begin_s, 2.0 / 300, 1e-4);
+}
+
+Mover flying(double course_deg, double speed_mps, double climb_mps = 0) {
+  const double course = radians(course_deg);
+  return {{0, 0, 0}, {speed_mps * std::cos(course), speed_mps * std::sin(course), -climb_mps}};
+}
+
+TEST(GeometryClass, CoursesAreCountedFromTheOwnCourse) {
+  const Mover own = flying(30, 40);
+  EXPECT_EQ(meeting_of(own, flying(210, 50)), Meeting::kHeadOn);
+  EXPECT_EQ(meeting_of(own, flying(185, 50)), Meeting::kHeadOn);
+  EXPECT_EQ(meeting_of(own, flying(120, 50)), Meeting::kCrossingFromLeft);
+  EXPECT_EQ(meeting_of(own, flying(-60, 50)), Meeting::kCrossingFromRight);
+  EXPECT_EQ(meeting_of(own, flying(30, 50)), Meeting::kOvertaken);
+  EXPECT_EQ(meeting_of(own, flying(60, 30)), Meeting::kOvertaking);
+  EXPECT_EQ(meeting_of(own, flying(30, 40)), std::nullopt);
+  EXPECT_EQ(meeting_of(flying(0, 0), flying(30, 40)), std::nullopt);
+}
+
+TEST(GeometryClass, ClimbsFromFiveHundredFeetAMinute) {
+  EXPECT_EQ(vertical_motion_of(flying(0, 40, 2.55)), VerticalMotion::kClimbing);
+  EXPECT_EQ(vertical_motion_of(flying(0, 40, 2.53)), VerticalMotion::kLevel);
+  EXPECT_EQ(vertical_motion_of(flying(0, 40, -3)), VerticalMotion::kDescending);
+}
+
+// At 1000 m the horizon is 1.015 degrees below the level: the usual 0.0321 sqrt(h) degrees.
+TEST(GeometryClass, TheHorizonDipsWithHeight) {
+  EXPECT_NEAR(horizon_dip_deg(1000), 0.0321 * std::sqrt(1000), 2e-3);
+  EXPECT_EQ(horizon_dip_deg(-5), 0);
+  const Mover own{{0, 0, -1000}, {}};
+  const auto at_height = [&](double down_m) {
+    return against_horizon(own, {{2000, 0, down_m}, {}}, 0.1);
+  };
+  EXPECT_EQ(at_height(-1000), AgainstHorizon::kAbove);  // level is above the horizon
+  EXPECT_EQ(at_height(-1000 + 2000 * std::tan(radians(1.015))), AgainstHorizon::kOn);
+  EXPECT_EQ(at_height(-1000 + 2000 * std::tan(radians(1.2))), AgainstHorizon::kBelow);
+}
+
+}  // namespace
+}  // namespace airtruth::encounter

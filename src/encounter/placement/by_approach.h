@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "world/scene/scene.h"
+#include "world/trajectory/path.h"
+
+namespace airtruth::encounter {
+
+// The path of an intruder that comes nearest to the own aircraft as a scene states it
+// (docs/formats/scene.md, [intruder.encounter]). The path is straight, or a helix where it turns,
+// and has neither start nor end.
+//
+// The own aircraft's position, velocity and course at cpa_time_s are those of `own`. Its course is
+// that of course_rad() (encounter/passage/passage.h). "Right" and "ahead" are horizontal, "above"
+// is vertical.
+//
+// The offset r of the intruder at its closest approach is across the relative velocity v: r . v =
+// 0. This leaves two of the three numbers free. cpa_above_m and either cpa_right_m or cpa_ahead_m
+// are taken as stated and the other one follows; where neither is stated, cpa_right_m is 0.
+//
+// Throws Error at the encounter's place where no path has that closest approach: it climbs faster
+// than it flies, the own path does not reach cpa_time_s, both aircraft have the same velocity, the
+// number that follows does not exist or is beyond kFarthestMissM, all three numbers are stated and
+// lie more than kMissErrorM along the path from the closest approach, or the paths turn so that the
+// distance there is not the least.
+trajectory::Path path_to_approach(const scene::Encounter& encounter,
+                                  const trajectory::Path& own,
+                                  const trajectory::AttitudeOverride& attitude = {});
+
+constexpr double kFarthestMissM = 1e5;
+constexpr double kMissErrorM = 0.01;
+
+}  // namespace airtruth::encounter

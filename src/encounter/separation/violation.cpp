@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/separation/violation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace airtruth::encounter {
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+constexpr Interval kAlways{-std::numeric_limits<double>::infinity(),
+                           std::numeric_limits<double>::infinity()};
+
+// Time is counted from the closest approach, where the quadratic of the header becomes
+// v^2 t^2 + tau v^2 t + dcpa^2 - D^2 = 0.
+std::optional<Interval> horizontal_violation(const Volume& volume, const Relative& between) {
+  const Vector2 r = between.offset_ned_m.head<2>();
+  const Vector2 v = between.velocity_ned_mps.head<2>();
+  const double speed_mps = v.norm();
+  if (!(speed_mps > kStillMps))
+    return r.norm() <= volume.horizontal_m ? std::optional(kAlways) : std::nullopt;
+  const double dcpa_m = std::abs(r.x() * v.y() - r.y() * v.x()) / speed_mps;
+  if (dcpa_m > volume.horizontal_m) return std::nullopt;
+  const double half_chord_s =
+      std::sqrt((volume.horizontal_m - dcpa_m) * (volume.horizontal_m + dcpa_m)) / speed_mps;
+  const double before_s = 0.5 * (volume.tau_s + std::hypot(volume.tau_s, 2 * half_chord_s));
+  const double tcpa_s = -r.dot(v) / (speed_mps * speed_mps);
+  return Interval{tcpa_s - before_s, tcpa_s + half_chord_s};
+}
+
+std::optional<Interval> vertical_violation(const Volume& volume, const Relative& between) {
+  const double z = between.offset_ned_m.z();
+  const double w = between.velocity_ned_mps.z();
+  if (!(std::abs(w) > kStillMps))
+    return std::abs(z) <= volume.vertical_m ? std::optional(kAlways) : std::nullopt;
+  const double tcoa_s = -z / w;
+  const double half_slab_s = volume.vertical_m / std::abs(w);
+  return Interval{tcoa_s - std::max(volume.coaltitude_s, half_slab_s), tcoa_s + half_slab_s};
+}
+
+}  // namespace
+
+bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder) {
+  const Measures now =
+      measures(own, intruder, {.lookahead_s = 0, .tau_distance_m = volume.horizontal_m});
+  const bool soon_near = now.dcpa_m && *now.dcpa_m <= volume.horizontal_m && now.tau_mod_s &&
+                         *now.tau_mod_s <= volume.tau_s;
+  const bool soon_level = now.tcoa_s && *now.tcoa_s <= volume.coaltitude_s;
+  return (now.horizontal_m <= volume.horizontal_m || soon_near) &&
+         (std::abs(now.above_m) <= volume.vertical_m || soon_level);
+}
+
+std::optional<Interval> violation(const Volume& volume,
+                                  const Mover& own,
+                                  const Mover& intruder,
+                                  double lookahead_s) {
+  const Relative between = relative(own, intruder);
+  const auto horizontal = horizontal_violation(volume, between);
+  const auto vertical = vertical_violation(volume, between);
+  if (!horizontal || !vertical) return std::nullopt;
+  const Interval both{std::max({0.0, horizontal->begin_s, vertical->begin_s}),
+                      std::min({lookahead_s, horizontal->end_s, vertical->end_s})};
+  return both.begin_s <= both.end_s ? std::optional(both) : std::nullopt;
+}
+
+}  // namespace airtruth::encounter

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/seen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// How long the path goes on beyond the first and the last moment.
+constexpr double kBeyond_s = 3600;
+constexpr double kFarthestM = 1e6;
+
+// A moment with its frame and the ray of its pixel.
+struct Ray {
+  const scene::Seen* seen = nullptr;
+  double frame_s = 0;
+  // When the pixel's own row is exposed.
+  double time_s = 0;
+  projection::Sight sight;  // at the frame's time
+  Vector3 from_ned_m = Vector3::Zero();
+  Vector3 direction_in_world = Vector3::Zero();
+  double range_m = 0;
+};
+
+[[noreturn]] void refuse_pixel(const scene::Seen& seen, const char* reason) {
+  throw Error(fmt::format("pixel [{}, {}] {}; expected a pixel that the lens shows",
+                          seen.pixel.x(),
+                          seen.pixel.y(),
+                          reason),
+              seen.where);
+}
+
+Ray ray_of(const scene::Seen& seen, const SeenThrough& through) {
+  const FramePose frame = through.frame_near(seen);
+  const auto camera = through.camera->at(frame.time_s);
+  if (!camera)
+    throw Error(
+        fmt::format("time_s is {:.3f}, which the camera's path does not reach", seen.time_s),
+        seen.where);
+  Ray ray{.seen = &seen, .frame_s = frame.time_s};
+  ray.sight =
+      sight_of(*through.lens, through.shutter, *through.camera, *camera, frame.time_s, frame.shake);
+  const lens::ImageSize size = through.lens->size();
+  const Pixel inside(std::clamp(seen.pixel.x(), 0.0, double(size.width)),
+                     std::clamp(seen.pixel.y(), 0.0, double(size.height)));
+  const double dt_s = through.shutter.middle_s(inside, size.width, size.height);
+  const projection::Sight then = dt_s == 0 ? ray.sight : ray.sight.at(dt_s);
+  const Pixel nominal = apply(then.frame_from_nominal.inverse(), seen.pixel);
+  if (!nominal.allFinite()) refuse_pixel(seen, "is on the horizon of the frame's homography");
+  const auto in_cam = through.lens->ray_from_pixel(nominal);
+  if (!in_cam) refuse_pixel(seen, "is beyond the lens's field");
+  const Rigid world_from_cam = then.cam_from_world.inverse();
+  ray.time_s = frame.time_s + dt_s;
+  ray.from_ned_m = world_from_cam.translation;
+  ray.direction_in_world = world_from_cam.rotation * *in_cam;
+  ray.range_m =
+      seen.range_m ? *seen.range_m : through.lens->focal_px() * kUsualLengthM / *seen.width_px;
+  return ray;
+}
+
+std::vector<Ray> rays_of(const scene::Intruder& intruder, const SeenThrough& through) {
+  std::vector<Ray> rays;
+  for (const scene::Seen& seen : intruder.seen) {
+    rays.push_back(ray_of(seen, through));
+    if (rays.size() > 1 && !(rays.back().frame_s > rays[rays.size() - 2].frame_s))
+      throw Error(fmt::format("time_s is {:.3f}, whose frame, at {:.3f} s, is that of the moment "
+                              "before; expected another frame",
+                              seen.time_s,
+                              rays.back().frame_s),
+                  seen.where);
+  }
+  return rays;
+}
+
+// The natural spline ends without curvature, so straight legs at both ends leave it as it is.
+void add_straight_legs(std::vector<Vector3>& points, std::vector<double>& times_s) {
+  const trajectory::Path inner = trajectory::spline_at_times(points, times_s);
+  const trajectory::State first = *inner.at(times_s.front());
+  const trajectory::State last = *inner.at(times_s.back());
+  points.insert(points.begin(), points.front() - kBeyond_s * first.velocity_in_world_mps);
+  times_s.insert(times_s.begin(), times_s.front() - kBeyond_s);
+  points.push_back(points.back() + kBeyond_s * last.velocity_in_world_mps);
+  times_s.push_back(times_s.back() + kBeyond_s);
+}
+
+scene::Intruder through_places(const scene::Intruder& intruder, const std::vector<Ray>& rays) {
+  scene::Intruder result = intruder;
+  result.seen.clear();
+  result.waypoints_ned_m.clear();
+  for (const Ray& ray : rays) {
+    result.waypoints_ned_m.push_back(ray.from_ned_m + ray.range_m * ray.direction_in_world);
+    result.times_s.push_back(ray.time_s);
+    const std::size_t n = result.times_s.size();
+    if (n < 2) continue;
+    const double step_m = (result.waypoints_ned_m[n - 1] - result.waypoints_ned_m[n - 2]).norm();
+    const double step_s = result.times_s[n - 1] - result.times_s[n - 2];
+    if (!(step_m <= kFastestMps * step_s))
+      throw Error(fmt::format("the place is {:.0f} m from the one before, {:.3f} s earlier, which "
+                              "needs {:.0f} m/s; expected less than {:.0f} m/s",
+                              step_m,
+                              step_s,
+                              step_m / step_s,
+                              kFastestMps),
+                  ray.seen->where);
+    if (!(step_m > 1e-6))
+      throw Error("the place is the same as the one before; expected one that moves",
+                  ray.seen->where);
+  }
+  add_straight_legs(result.waypoints_ned_m, result.times_s);
+  return result;
+}
+
+trajectory::Path flown(const scene::Intruder& placed) {
+  return trajectory::spline_at_times(
+      placed.waypoints_ned_m, placed.times_s, {placed.yaw_deg, placed.pitch_deg, placed.roll_deg});
+}
+
+// The width of the exact box over the stated one; empty where a part of the aircraft has no pixel.
+std::optional<double> width_share(const Ray& ray,
+                                  const trajectory::Path& path,
+                                  const SeenThrough& through,
+                                  const projection::SilhouettePoints& aircraft) {
+  const auto state = path.at(ray.frame_s);
+  check(state.has_value(), "the path reaches its own moments");
+  const auto exact = projection::exact_box(ray.sight,
+                                           aircraft,
+                                           state->world_from_body_rigid(),
+                                           ray.frame_s,
+                                           twist_of(path, *state, ray.frame_s, through.shutter));
+  if (!exact.box || exact.partly_unseen) return std::nullopt;
+  return exact.box->width / *ray.seen->width_px;
+}
+
+// Moves each place whose width is stated to the range that gives it. The attitudes follow from all
+// places, so that they are moved together until all widths are as stated.
+void settle_widths(const scene::Intruder& intruder,
+                   const SeenThrough& through,
+                   const projection::SilhouettePoints& aircraft,
+                   std::vector<Ray>& rays) {
+  constexpr int kMaxRounds = 200;
+  // From this round on the steps are halved, for attitudes that answer to the ranges.
+  constexpr int kDampedRound = 20;
+  const Ray* off = nullptr;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const trajectory::Path path = flown(through_places(intruder, rays));
+    off = nullptr;
+    for (Ray& ray : rays) {
+      if (!ray.seen->width_px) continue;
+      const double share = width_share(ray, path, through, aircraft).value_or(2);
+      if (std::abs(share - 1) > kWidthShare) off = &ray;
+      ray.range_m *= round < kDampedRound ? share : std::sqrt(share);
+      ray.range_m = std::min(ray.range_m, kFarthestM);
+    }
+    if (off == nullptr) return;
+  }
+  throw Error(
+      fmt::format("no range gives {} a width_px of {} at this pixel; expected another width, "
+                  "or range_m",
+                  intruder.aircraft,
+                  *off->seen->width_px),
+      off->seen->where);
+}
+
+}  // namespace
+
+FramePose steady_frame(const scene::Seen& seen) { return {seen.time_s, {}}; }
+
+scene::Intruder placed_as_seen(const scene::Intruder& intruder,
+                               const SeenThrough& through,
+                               const projection::SilhouettePoints* aircraft) {
+  check(intruder.seen.size() >= 2, "an intruder is seen at two moments or more");
+  std::vector<Ray> rays = rays_of(intruder, through);
+  if (aircraft != nullptr) settle_widths(intruder, through, *aircraft, rays);
+  return through_places(intruder, rays);
+}
+
+}  // namespace airtruth::sequence

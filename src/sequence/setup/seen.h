@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "camera/lens/lens.h"
+#include "sequence/setup/sight.h"
+#include "truth/projection/exact_box.h"
+#include "world/scene/scene.h"
+
+namespace airtruth::sequence {
+
+// A frame as far as the places in its picture are concerned: its time and how the camera shook.
+struct FramePose {
+  double time_s = 0;
+  Shake shake;
+};
+// The frame nearest to the moment; throws Error where the clip has none there.
+using FrameNear = std::function<FramePose(const scene::Seen&)>;
+// Before the motion is measured: a frame at that very time, without shake.
+FramePose steady_frame(const scene::Seen& seen);
+
+// How an intruder that is given by [[intruder.seen]] is placed.
+struct SeenThrough {
+  const lens::Lens* lens = nullptr;
+  const trajectory::Path* camera = nullptr;
+  Shutter shutter;
+  FrameNear frame_near;
+};
+
+// Returns the intruder with waypoints_ned_m and times_s in place of `seen`. The path passes each
+// stated pixel at the time of its frame (with a rolling shutter: of its row): the pixel's ray
+// through the lens, the measured motion of the frame and the nominal pose at that time, at the
+// stated range. Between the places it is the natural cubic spline, and it goes on straight for an
+// hour beyond both ends.
+//
+// Where a width is stated, the range is the one at which the exact box of `aircraft` in its
+// attitude there has this width, within kWidthShare of it; nullptr: the aircraft is
+// kUsualLengthM wide in any attitude.
+//
+// Throws Error at the moment's place: its pixel is beyond the lens's field, its frame is that of
+// the moment before, no range gives the width, the camera's path does not reach it, or the path
+// there is faster than kFastestMps.
+scene::Intruder placed_as_seen(const scene::Intruder& intruder,
+                               const SeenThrough& through,
+                               const projection::SilhouettePoints* aircraft);
+
+constexpr double kWidthShare = 1e-4;
+constexpr double kUsualLengthM = 15;
+constexpr double kFastestMps = 1e4;  // as scene::kSpeed
+
+}  // namespace airtruth::sequence
