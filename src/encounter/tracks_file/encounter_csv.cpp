@@ -42,6 +42,8 @@ const std::vector<std::string> kNames = {"encounter",
                                          "weight"};
 constexpr std::size_t kAbsent = ~std::size_t{0};
 constexpr double kMaxEncounters = 1e9;
+// Added to a number, it makes -0 a plain 0 and changes no other.
+constexpr double kPlainZero = 0;
 
 using Places = std::array<std::size_t, kColumns>;
 
@@ -187,12 +189,12 @@ std::string encounter_csv_rows(const Encounter& encounter, std::uint64_t number)
                      number,
                      track.name,
                      track.times_s[i],
-                     p.x(),
-                     p.y(),
-                     p.z(),
-                     v.x(),
-                     v.y(),
-                     v.z(),
+                     kPlainZero + p.x(),
+                     kPlainZero + p.y(),
+                     kPlainZero + p.z(),
+                     kPlainZero + v.x(),
+                     kPlainZero + v.y(),
+                     kPlainZero + v.z(),
                      encounter.weight);
     }
   }

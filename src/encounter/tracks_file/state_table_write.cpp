@@ -22,8 +22,8 @@ std::vector<Track> whole_tracks(const Encounter& encounter, const char* format) 
   return tracks;
 }
 
-// Numbers are written so that reading gives the same ones; -0 is 0.
-double plain(double number) { return number == 0 ? 0.0 : number; }
+// Numbers are written so that reading gives the same ones; -0 becomes 0.
+double plain(double number) { return number + 0.0; }
 
 }  // namespace
 
