@@ -38,6 +38,8 @@ void add_track(CLI::App& app, Context& context);
 void add_evaluate(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_judge(CLI::App& app, Context& context);
+void add_encounter(CLI::App& app, Context& context);
+void add_encounter_sample(CLI::App& group, Context& context);  // `encounter sample`
 void add_demo(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);
 

@@ -111,6 +111,7 @@ void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_log(app, context);
   cli::add_aircraft(app, context);
   cli::add_synth(app, context);
+  cli::add_encounter(app, context);
   cli::add_dataset(app, context);
   cli::add_track(app, context);
   cli::add_evaluate(app, context);

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/pairing/pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::encounter {
+namespace {
+
+constexpr int kMaxDraws = 100;
+// Of courses: the acceptance is at least one in 1.6 where the speeds are equal.
+constexpr int kMaxCourses = 1000;
+// Below it the direction of the relative velocity is not defined.
+constexpr double kMinRelativeSpeed_mps = 0.1;
+
+// North and east.
+using Vector2 = Eigen::Vector2d;
+
+double course_rad(const Vector3& velocity_ned) {
+  return std::atan2(velocity_ned.y(), velocity_ned.x());
+}
+
+TrackState state_of(const Track& track, double time_s) {
+  if (track.size() < 2)
+    throw Error(fmt::format("the track '{}' has one sample; expected two or more", track.name));
+  if (time_s < track.times_s.front() || time_s > track.times_s.back())
+    throw Error(fmt::format("the closest approach at {} s is outside of the track '{}', {} to {} s",
+                            time_s,
+                            track.name,
+                            track.times_s.front(),
+                            track.times_s.back()));
+  return state_at(track, time_s);
+}
+
+// Both ends of a segment on which both tracks are straight.
+double least_on_segment(const Vector2& from, const Vector2& to) {
+  const Vector2 step = to - from;
+  const double square = step.squaredNorm();
+  const double share = square > 0 ? std::clamp(-from.dot(step) / square, 0.0, 1.0) : 0.0;
+  return (from + share * step).norm();
+}
+
+Vector3 on_line(const Track& track, std::size_t& i, double time_s) {
+  while (i + 2 < track.size() && track.times_s[i + 1] <= time_s) ++i;
+  const double share = (time_s - track.times_s[i]) / (track.times_s[i + 1] - track.times_s[i]);
+  return track.positions_ned_m[i] +
+         share * (track.positions_ned_m[i + 1] - track.positions_ned_m[i]);
+}
+
+// Relative course in radians; empty where no draw is accepted.
+std::optional<double> drawn_course_rad(const Vector3& own,
+                                       const Vector3& intruder,
+                                       Random& random) {
+  const double a = own.head<2>().norm(), b = intruder.head<2>().norm();
+  const double climb = intruder.z() - own.z();
+  const double fastest = std::hypot(a + b, climb);
+  for (int i = 0; i < kMaxCourses; ++i) {
+    const double course = kPi * (2 * random.uniform() - 1);
+    const double along = b * std::cos(course) - a, across = b * std::sin(course);
+    const double relative = std::hypot(along, across, climb);
+    if (random.uniform() * fastest < relative && std::hypot(along, across) > kMinRelativeSpeed_mps)
+      return course;
+  }
+  return std::nullopt;
+}
+
+// How much denser uniform traffic is at a distance than the distribution that it was drawn from.
+double density_ratio(const Distribution& drawn, double distance_m) {
+  const double farthest = std::max(std::abs(drawn.low()), std::abs(drawn.high()));
+  return 1 / (2 * farthest) / drawn.density(distance_m);
+}
+
+}  // namespace
+
+void place(Track& intruder, const Track& own, const ClosestApproach& approach) {
+  const TrackState a = state_of(own, approach.time_s);
+  const TrackState b = state_of(intruder, approach.time_s);
+  const double own_course = course_rad(a.velocity_ned_mps);
+  const double course = own_course + radians(approach.course_deg);
+  const Vector2 velocity =
+      b.velocity_ned_mps.head<2>().norm() * Vector2(std::cos(course), std::sin(course));
+  Vector2 relative = velocity - a.velocity_ned_mps.head<2>();
+  if (relative.norm() < kMinRelativeSpeed_mps)
+    relative = -Vector2(std::cos(own_course), std::sin(own_course));
+  const Vector2 offset = approach.hmd_m * Vector2(relative.y(), -relative.x()).normalized();
+  const Vector3 to = a.position_ned_m + Vector3(offset.x(), offset.y(), -approach.vmd_m);
+  turn_and_move(
+      intruder, course - course_rad(b.velocity_ned_mps), b.position_ned_m, to - b.position_ned_m);
+}
+
+double least_distance_m(const Track& own, const Track& intruder) {
+  const double begin = std::max(own.times_s.front(), intruder.times_s.front());
+  const double end = std::min(own.times_s.back(), intruder.times_s.back());
+  if (own.size() < 2 || intruder.size() < 2 || begin > end) return HUGE_VAL;
+  std::size_t i = 0, j = 0;
+  double least = HUGE_VAL;
+  Vector2 from = (on_line(intruder, j, begin) - on_line(own, i, begin)).head<2>();
+  for (double time = begin; time < end;) {
+    // Each track is straight up to its next sample.
+    double next = end;
+    for (const auto& [track, at] : {std::pair(&own, i), std::pair(&intruder, j)})
+      for (std::size_t k = at + 1; k < track->size(); ++k)
+        if (track->times_s[k] > time) {
+          next = std::min(next, track->times_s[k]);
+          break;
+        }
+    const Vector2 to = (on_line(intruder, j, next) - on_line(own, i, next)).head<2>();
+    least = std::min(least, least_on_segment(from, to));
+    from = to;
+    time = next;
+  }
+  return std::min(least, from.norm());
+}
+
+double mean_relative_speed_mps(double a_mps, double b_mps, double climb_difference_mps) {
+  const double fastest = std::hypot(a_mps + b_mps, climb_difference_mps);
+  if (fastest == 0) return 0;
+  const double modulus = std::min(1.0, 2 * std::sqrt(a_mps * b_mps) / fastest);
+  return 2 * fastest / kPi * std::comp_ellint_2(modulus);
+}
+
+std::optional<Pairing> pair(const Track& own,
+                            Track& intruder,
+                            const PairingOptions& options,
+                            Random& random) {
+  if (!(options.hmd_m.low() < options.hmd_m.high() && options.vmd_m.low() < options.vmd_m.high()))
+    throw Error(
+        "a miss distance is a single value; expected a range, over which traffic is uniform");
+  const Vector3 a = state_of(own, options.cpa_time_s).velocity_ned_mps;
+  const Vector3 b = state_of(intruder, options.cpa_time_s).velocity_ned_mps;
+  const double mean_mps =
+      mean_relative_speed_mps(a.head<2>().norm(), b.head<2>().norm(), b.z() - a.z());
+  for (int i = 0; i < kMaxDraws; ++i) {
+    const auto course = drawn_course_rad(a, b, random);
+    if (!course) return std::nullopt;
+    Pairing pairing;
+    pairing.approach = {options.cpa_time_s,
+                        degrees(*course),
+                        options.hmd_m.quantile(random.uniform()),
+                        options.vmd_m.quantile(random.uniform())};
+    place(intruder, own, pairing.approach);
+    const double least_m = least_distance_m(own, intruder);
+    if (least_m < std::abs(pairing.approach.hmd_m) - options.max_miss_error_m) continue;
+    pairing.weight = mean_mps * density_ratio(options.hmd_m, pairing.approach.hmd_m) *
+                     density_ratio(options.vmd_m, pairing.approach.vmd_m);
+    return pairing;
+  }
+  return std::nullopt;
+}
+
+}  // namespace airtruth::encounter

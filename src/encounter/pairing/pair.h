@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "encounter/pairing/distribution.h"
+#include "encounter/track/track.h"
+#include "foundation/base/seed.h"
+
+// Two tracks that know nothing of each other, put together to an encounter: the intruder is turned
+// and moved so that it passes the own aircraft at a stated time and distance. The method is that of
+// MIT-LL's em-pairing-uncor-importancesampling (Kochenderfer, Espindle, Kuchar and Griffith 2010,
+// "Airspace encounter models for estimating collision risk", section on encounter generation).
+namespace airtruth::encounter {
+
+// Where an intruder is at the closest approach.
+struct ClosestApproach {
+  double time_s = 0;
+  // Its course relative to the own one: 180 head-on, 90 from the left, 0 in the same direction.
+  double course_deg = 0;
+  // Horizontal miss distance: the intruder is hmd_m (VR_e, -VR_n) / |VR| to the north and east of
+  // the own aircraft, where VR is its horizontal velocity less the own one. A positive one is to
+  // the right where the intruder is head-on.
+  double hmd_m = 0;
+  // Vertical miss distance: positive where the intruder is above.
+  double vmd_m = 0;
+};
+
+// The intruder turned and moved so that its horizontal distance is stationary, and |hmd_m|, at the
+// time of the closest approach. Both tracks must have velocities and samples before and after that
+// time; otherwise Error. Where both fly with the same horizontal velocity, hmd_m is to the right of
+// the own course.
+void place(Track& intruder, const Track& own, const ClosestApproach& approach);
+
+// The least horizontal distance of the two tracks while both fly, on straight lines between their
+// samples.
+double least_distance_m(const Track& own, const Track& intruder);
+
+// The mean of |v_a - v_b| over all courses of b, in m/s: horizontal speeds a and b, and the
+// difference of the climbs. With A^2 = (a + b)^2 + climb^2 it is (2 A / pi) E(k), where E is the
+// complete elliptic integral of the second kind and k^2 = 4 a b / A^2.
+double mean_relative_speed_mps(double a_mps, double b_mps, double climb_difference_mps);
+
+struct PairingOptions {
+  double cpa_time_s = 30;
+  // Drawn; neither may be a single value.
+  Distribution hmd_m{{-500, 500}, {}, "hmd_m"};
+  Distribution vmd_m{{-150, 150}, {}, "vmd_m"};
+  // An encounter whose tracks come closer than |hmd_m| by more than this, at another time, is drawn
+  // again: the public tool allows 500 ft.
+  double max_miss_error_m = 5;
+};
+
+struct Pairing {
+  ClosestApproach approach;
+  // Mean relative speed over all courses, in m/s; times the density of the distance in a uniform
+  // traffic over the density from which it was drawn, for both distances. Traffic is uniform up to
+  // the largest |hmd_m| and |vmd_m|, on both sides.
+  double weight = 1;
+};
+
+// Draws the approach and places the intruder. The course is uniform, accepted with a probability in
+// proportion to the relative speed that it makes: fast encounters are frequent in that proportion.
+// Empty where no draw of many passes, for example because the intruder circles.
+//
+// The weights sum to what they should: the mean of weight / mean relative speed is the share
+// (high - low) / (2 max(|low|, |high|)) of hmd_m, times that of vmd_m - 1 for symmetric ranges -
+// whatever the shares of the bins are; but for encounters that are drawn again.
+std::optional<Pairing> pair(const Track& own,
+                            Track& intruder,
+                            const PairingOptions& options,
+                            Random& random);
+
+}  // namespace airtruth::encounter

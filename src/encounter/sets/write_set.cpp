@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/sets/write_set.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "encounter/tracks_file/tracks_writer.h"
+#include "foundation/base/error.h"
+#include "foundation/base/in_parallel.h"
+
+namespace airtruth::encounter {
+namespace {
+
+// A thread draws a block at a time; a window of blocks stands in memory.
+constexpr std::uint64_t kBlock = 64;
+constexpr std::uint64_t kBlocksOfWindow = 32;
+// The number of encounters is 32 bits wide in a waypoint file.
+constexpr std::uint64_t kMaxCount = 0xffffffff;
+
+struct Block {
+  std::string bytes;
+  std::vector<Encounter> encounters;  // where the bytes are those of all of them at once
+  SetSummary summary;
+};
+
+void add(SetSummary& sum, const SetSummary& more) {
+  sum.encounters += more.encounters;
+  sum.draws += more.draws;
+  sum.weight_sum += more.weight_sum;
+  sum.weight_squares += more.weight_squares;
+}
+
+bool is_stream(TracksFormat format) {
+  return format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
+}
+
+Block drawn_block(const DrawEncounter& draw,
+                  std::uint64_t begin,
+                  std::uint64_t end,
+                  TracksFormat format) {
+  Block block;
+  for (std::uint64_t i = begin; i < end; ++i) {
+    DrawnEncounter drawn = draw(i);
+    const double weight = drawn.encounter.weight;
+    add(block.summary, {1, static_cast<std::uint64_t>(drawn.draws), weight, weight * weight});
+    const auto aircraft = static_cast<std::uint32_t>(drawn.encounter.aircraft.size());
+    if (is_stream(format))
+      block.bytes += bytes_of(drawn.encounter, format, i + 1, aircraft);
+    else
+      block.encounters.push_back(std::move(drawn.encounter));
+  }
+  return block;
+}
+
+// Calls take(block) for each block in order.
+template <typename Take>
+void for_each_block(const DrawEncounter& draw,
+                    const SetOptions& options,
+                    TracksFormat format,
+                    const Take& take) {
+  const std::uint64_t blocks = (options.count + kBlock - 1) / kBlock;
+  for (std::uint64_t first = 0; first < blocks; first += kBlocksOfWindow) {
+    std::vector<Block> window(std::min(kBlocksOfWindow, blocks - first));
+    const auto draw_one = [&](std::size_t k) {
+      const std::uint64_t begin = (first + k) * kBlock;
+      window[k] = drawn_block(draw, begin, std::min(begin + kBlock, options.count), format);
+    };
+    in_parallel(window.size(), options.jobs, draw_one, {}, options.stop);
+    for (Block& block : window) take(block);
+    if (options.progress)
+      options.progress(
+          static_cast<std::int64_t>(std::min((first + window.size()) * kBlock, options.count)),
+          static_cast<std::int64_t>(options.count));
+  }
+}
+
+}  // namespace
+
+SetSummary write_set(const std::filesystem::path& file,
+                     const DrawEncounter& draw,
+                     const SetOptions& options) {
+  if (options.count < 1 || options.count > kMaxCount)
+    throw Error(
+        fmt::format("{} encounters are asked for; expected 1 to {}", options.count, kMaxCount));
+  const TracksFormat format = tracks_format_of(file);
+  SetSummary summary;
+  if (!is_stream(format)) {
+    std::vector<Encounter> all;
+    for_each_block(draw, options, format, [&](Block& block) {
+      add(summary, block.summary);
+      std::move(block.encounters.begin(), block.encounters.end(), std::back_inserter(all));
+    });
+    write_encounters(file, fitted(std::move(all), format, file));
+    return summary;
+  }
+  const auto aircraft = static_cast<std::uint32_t>(draw(0).encounter.aircraft.size());
+  TracksWriter writer(file, static_cast<std::uint32_t>(options.count), aircraft);
+  for_each_block(draw, options, format, [&](const Block& block) {
+    add(summary, block.summary);
+    writer.append(block.bytes);
+  });
+  writer.finish();
+  return summary;
+}
+
+}  // namespace airtruth::encounter

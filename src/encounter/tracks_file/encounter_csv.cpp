@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/tracks_file/encounter_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "encounter/tracks_file/table_text.h"
+#include "encounter/tracks_file/track_builder.h"
+#include "foundation/base/suggest.h"
+
+namespace airtruth::encounter {
+namespace {
+
+enum Column {
+  kEncounter,
+  kAircraft,
+  kTime,
+  kNorth,
+  kEast,
+  kDown,
+  kNorthSpeed,
+  kEastSpeed,
+  kDownSpeed,
+  kWeight,
+  kColumns
+};
+const std::vector<std::string> kNames = {"encounter",
+                                         "aircraft",
+                                         "time_s",
+                                         "north_m",
+                                         "east_m",
+                                         "down_m",
+                                         "north_mps",
+                                         "east_mps",
+                                         "down_mps",
+                                         "weight"};
+constexpr std::size_t kAbsent = ~std::size_t{0};
+constexpr double kMaxEncounters = 1e9;
+// Added to a number, it makes -0 a plain 0 and changes no other.
+constexpr double kPlainZero = 0;
+
+using Places = std::array<std::size_t, kColumns>;
+
+Places places_of(const std::vector<std::string_view>& headings, const Where& where) {
+  Places places;
+  places.fill(kAbsent);
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    const std::string word(headings[i]);
+    const auto known = std::find(kNames.begin(), kNames.end(), word);
+    if (known == kNames.end()) {
+      const auto near = nearest_spelling(word, kNames);
+      throw Error(fmt::format("unknown column '{}'; {}",
+                              word.substr(0, 40),
+                              near ? "did you mean '" + *near + "'?"
+                                   : fmt::format("expected {}", fmt::join(kNames, ","))),
+                  where);
+    }
+    std::size_t& place = places[static_cast<std::size_t>(known - kNames.begin())];
+    if (place != kAbsent)
+      throw Error(fmt::format("the column '{}' is twice there; expected it once", word), where);
+    place = i;
+  }
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    const bool is_needed =
+        column <= kDown ||
+        (column <= kDownSpeed &&
+         places[kNorthSpeed] + places[kEastSpeed] + places[kDownSpeed] != 3 * kAbsent);
+    if (is_needed && places[column] == kAbsent)
+      throw Error(fmt::format("has no column '{}'; expected it in the header", kNames[column]),
+                  where);
+  }
+  return places;
+}
+
+// Puts rows together to encounters.
+class EncounterRows {
+ public:
+  explicit EncounterRows(const Places& places) : places_(places) {}
+
+  void add(const std::vector<std::string_view>& cells, const Where& where) {
+    const auto value = [&](Column column) {
+      return number_in(cells[places_[column]], kNames[column], where);
+    };
+    const double number = value(kEncounter);
+    if (number < 0 || number > kMaxEncounters || number != std::floor(number))
+      throw Error(fmt::format("encounter is {}; expected a whole number from 0", number), where);
+    if (builder_.is_empty() || number != number_) begin(number, where);
+    if (places_[kWeight] != kAbsent) set_weight(value(kWeight), where);
+    const std::string name = aircraft_name_in(cells[places_[kAircraft]], where);
+    const double time_s = value(kTime);
+    const Vector3 position(value(kNorth), value(kEast), value(kDown));
+    if (places_[kNorthSpeed] == kAbsent) {
+      builder_.add(name, time_s, position, nullptr, where);
+    } else {
+      const Vector3 velocity(value(kNorthSpeed), value(kEastSpeed), value(kDownSpeed));
+      builder_.add(name, time_s, position, &velocity, where);
+    }
+  }
+
+  std::vector<Encounter> take() {
+    end();
+    return std::move(encounters_);
+  }
+
+ private:
+  void begin(double number, const Where& where) {
+    end();
+    if (!seen_.insert(number).second)
+      throw Error(
+          fmt::format("encounter {} goes on after another; expected its rows together", number),
+          where);
+    number_ = number;
+    weight_ = 0;
+  }
+  void end() {
+    if (builder_.is_empty()) return;
+    encounters_.push_back(builder_.take());
+    if (places_[kWeight] != kAbsent) encounters_.back().weight = weight_;
+  }
+  void set_weight(double weight, const Where& where) {
+    if (!(weight > 0))
+      throw Error(fmt::format("weight is {}; expected a positive number", weight), where);
+    if (weight_ > 0 && weight != weight_)
+      throw Error(
+          fmt::format(
+              "weight is {} after {}; expected one weight for an encounter", weight, weight_),
+          where);
+    weight_ = weight;
+  }
+
+  const Places& places_;
+  TrackBuilder builder_;
+  std::set<double> seen_;
+  double number_ = 0;
+  double weight_ = 0;
+  std::vector<Encounter> encounters_;
+};
+
+}  // namespace
+
+bool is_encounter_csv(std::string_view text) {
+  Lines lines(text, "");
+  if (!lines.next()) return false;
+  std::vector<std::string_view> cells;
+  split_row(lines.line(), cells);
+  return std::find(cells.begin(), cells.end(), kNames[kEncounter]) != cells.end();
+}
+
+std::vector<Encounter> parse_encounter_csv(std::string_view text,
+                                           const std::filesystem::path& file) {
+  Lines lines(text, file.string());
+  std::vector<std::string_view> cells;
+  if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
+  split_row(lines.line(), cells);
+  const Places places = places_of(cells, lines.where());
+  const std::size_t columns = cells.size();
+  EncounterRows rows(places);
+  while (lines.next()) {
+    split_row(lines.line(), cells);
+    if (cells.size() != columns)
+      throw Error(
+          fmt::format("has {} cells for {} columns; expected one each", cells.size(), columns),
+          lines.where());
+    rows.add(cells, lines.where());
+  }
+  std::vector<Encounter> encounters = rows.take();
+  if (encounters.empty())
+    throw Error("has no rows; expected one for each aircraft and time", lines.where());
+  return encounters;
+}
+
+std::string encounter_csv_head() { return fmt::format("{}\n", fmt::join(kNames, ",")); }
+
+std::string encounter_csv_rows(const Encounter& encounter, std::uint64_t number) {
+  std::string text;
+  for (const Track& track : encounter.aircraft) {
+    const std::vector<Vector3> velocities = velocities_of(track);
+    for (std::size_t i = 0; i < track.size(); ++i) {
+      const Vector3& p = track.positions_ned_m[i];
+      const Vector3& v = velocities[i];
+      fmt::format_to(std::back_inserter(text),
+                     "{},{},{},{},{},{},{},{},{},{}\n",
+                     number,
+                     track.name,
+                     track.times_s[i],
+                     kPlainZero + p.x(),
+                     kPlainZero + p.y(),
+                     kPlainZero + p.z(),
+                     kPlainZero + v.x(),
+                     kPlainZero + v.y(),
+                     kPlainZero + v.z(),
+                     encounter.weight);
+    }
+  }
+  return text;
+}
+
+}  // namespace airtruth::encounter

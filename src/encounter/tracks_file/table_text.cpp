@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/tracks_file/table_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace airtruth::encounter {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+constexpr std::size_t kMaxNameBytes = 60;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace
+
+Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+  if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+}
+
+bool Lines::next() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_ = end == rest_.npos ? std::string_view() : rest_.substr(end + 1);
+    ++number_;
+    line_ = trimmed(line.substr(0, line.find('#')));
+    if (!line_.empty()) return true;
+  }
+  return false;
+}
+
+void split_row(std::string_view line, std::vector<std::string_view>& cells) {
+  cells.clear();
+  if (line.find(',') == line.npos) {
+    for (std::size_t at = line.find_first_not_of(kBlanks); at != line.npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+      cells.push_back(line.substr(at, end - at));
+      at = line.find_first_not_of(kBlanks, end);
+    }
+    return;
+  }
+  for (bool more = true; more;) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    more = comma != line.npos;
+    if (more) line.remove_prefix(comma + 1);
+  }
+  if (cells.back().empty()) cells.pop_back();
+}
+
+double number_in(std::string_view cell, std::string_view name, const Where& where) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
+  if (failed != std::errc() || rest != end || !(std::abs(value) <= kMaxNumber))
+    throw Error(
+        fmt::format("{} is '{}'; expected a number up to 1e9 in size", name, cell.substr(0, 40)),
+        where);
+  return value;
+}
+
+std::string aircraft_name_in(std::string_view cell, const Where& where) {
+  std::string name(cell);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  const bool is_plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return c > ' ' && c < 0x7f && c != '"' && c != '\'' && c != '=';
+  });
+  if (name.empty() || name.size() > kMaxNameBytes || !is_plain)
+    throw Error(
+        fmt::format("the aircraft is named '{}'; expected 1 to {} letters, digits and signs",
+                    is_plain ? name.substr(0, kMaxNameBytes) : "?",
+                    kMaxNameBytes),
+        where);
+  return name;
+}
+
+}  // namespace airtruth::encounter

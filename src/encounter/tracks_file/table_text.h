@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/base/error.h"
+
+// Text files of rows and cells, read line by line.
+namespace airtruth::encounter {
+
+// The lines of a text with content, each with its number. The mark of UTF-8 at the beginning,
+// carriage returns and everything from '#' on are left out.
+class Lines {
+ public:
+  Lines(std::string_view text, std::string file);
+
+  // Goes to the next line with content; false at the end of the text.
+  bool next();
+  std::string_view line() const { return line_; }
+  // The place of the present line.
+  Where where() const { return {file_, number_}; }
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  std::string file_;
+  int number_ = 0;
+};
+
+// Splits a line at its commas; a line without a comma at its blanks. Blanks around a cell are left
+// out. One empty cell at the end, after a last comma, is left out too.
+void split_row(std::string_view line, std::vector<std::string_view>& cells);
+
+// The largest number of a file of tracks, in its own units. Its square stays far from overflow.
+constexpr double kMaxNumber = 1e9;
+
+// The cell as a number. Throws Error where it is none, not finite or beyond kMaxNumber. `name` is
+// the column in messages.
+double number_in(std::string_view cell, std::string_view name, const Where& where);
+
+// The cell as the name of an aircraft: blanks become '_'. Throws Error where it is empty, longer
+// than 60 bytes, or holds quotes, '=', control characters or bytes beyond ASCII.
+std::string aircraft_name_in(std::string_view cell, const Where& where);
+
+}  // namespace airtruth::encounter
