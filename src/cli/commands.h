@@ -22,6 +22,8 @@ struct Context {
 using Action = std::function<void()>;
 
 void add_render(CLI::App& app, Context& context);
+void add_scene(CLI::App& app, Context& context);
+void add_preview(CLI::App& app, Context& context);
 void add_motion(CLI::App& app, Context& context);
 void add_calibrate(CLI::App& app, Context& context);
 void add_lens(CLI::App& app, Context& context);

@@ -102,6 +102,8 @@ int run(CLI::App& app,
 void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_demo(app, context);
   cli::add_render(app, context);
+  cli::add_scene(app, context);
+  cli::add_preview(app, context);
   cli::add_overlay(app, context);
   cli::add_inspect(app, context);
   cli::add_motion(app, context);

@@ -82,6 +82,8 @@ struct Reader::State {
   void open_codec();
   void describe_stream(const AVStream& stream);
   void describe(const AVFrame& first);
+  // Goes to the key frame at or before a time stamp; false where the file cannot.
+  bool seek(std::int64_t time_stamp);
   // Fills `packet`. Returns a negative number at the end, as libav does.
   int read_packet();
   // Fills `frame`; false at the end.
@@ -330,6 +332,23 @@ std::optional<Frame> Reader::State::next() {
   }
 }
 
+bool Reader::State::seek(std::int64_t pts) {
+  ahead.clear();
+  differences.clear();
+  finished = draining = broken = false;
+  avcodec_flush_buffers(codec.get());
+  last_pts = AV_NOPTS_VALUE;
+  if (!pictures.empty()) {
+    next_picture =
+        std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
+  } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
+    return false;
+  }
+  options.first_frame = 0;
+  options.frame_count.reset();
+  return true;
+}
+
 bool Reader::State::look_ahead() {
   auto one = next();
   if (!one) return false;
@@ -383,6 +402,26 @@ std::optional<Frame> Reader::next() {
   state.ahead.pop_front();
   if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
   return frame;
+}
+
+std::optional<Frame> Reader::at(double time_s) {
+  State& state = *state_;
+  const double step_s = static_cast<double>(state.pts_step) * state.info.time_base.value();
+  const auto wanted =
+      *state.first_pts +
+      static_cast<std::int64_t>(std::floor((time_s + 0.5 * step_s) / state.info.time_base.value()));
+  if (!state.seek(wanted)) return std::nullopt;
+  // The frame that is shown at a time is the last one that does not begin after it.
+  std::optional<Frame> shown;
+  while (auto frame = state.next()) {
+    if (shown && frame->pts > wanted) break;
+    shown = std::move(frame);
+    if (shown->pts >= wanted) break;
+  }
+  if (shown)
+    shown->index = std::llround(static_cast<double>(shown->pts - *state.first_pts) /
+                                static_cast<double>(state.pts_step));
+  return shown;
 }
 
 std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }

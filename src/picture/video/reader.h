@@ -92,6 +92,11 @@ class Reader {
   // frames that they affect are flagged `damaged`. Throws Error only where the rest of the file
   // cannot be read at all.
   std::optional<Frame> next();
+  // The frame that is shown at a time of the clip; the last one for a later time. It is decoded
+  // from the key frame before it, so that a long clip costs no more than a short one. Its index is
+  // that of a clip of constant rate. at() may be called for any times in any order, and next() no
+  // more after it. Empty where the file cannot be read there.
+  std::optional<Frame> at(double time_s);
   // After the end: the number of packets that could not be decoded, and whether the file ends early
   // (truncated).
   std::int64_t corrupt_packets() const;

@@ -16,16 +16,6 @@ namespace {
 
 lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
 
-video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
-  const std::int64_t left =
-      std::max<std::int64_t>(0, info.frame_count_estimate - background.first_frame);
-  info.frame_count_estimate = left;
-  if (background.frame_count)
-    info.frame_count_estimate =
-        left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
-  return info;
-}
-
 }  // namespace
 
 namespace {
@@ -52,6 +42,16 @@ FramePose frame_near(const MotionSource& motion,
 }
 
 }  // namespace
+
+video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
+  const std::int64_t left =
+      std::max<std::int64_t>(0, info.frame_count_estimate - background.first_frame);
+  info.frame_count_estimate = left;
+  if (background.frame_count)
+    info.frame_count_estimate =
+        left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
+  return info;
+}
 
 fs::path motion_cache(const Options& options) {
   if (!options.use_cache) return {};

@@ -104,6 +104,9 @@ class FrameMaker {
   std::optional<AmbientEstimator> ambient_;
 };
 
+// The stream with the number of frames that a scene makes of it.
+video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background);
+
 // The folder in which motion is kept; empty: motion is not kept.
 fs::path motion_cache(const Options& options);
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/preview/preview.h"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "foundation/base/error.h"
+#include "picture/video/still.h"
+#include "world/scene/scene.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct PreviewArguments {
+  std::string scene;
+  std::string out = "preview.png";
+  bool watch = false;
+};
+
+void draw(const PreviewArguments& arguments, Context& context) {
+  Console& console = context.console();
+  sequence::Options options;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  const auto made = sequence::preview(scene::read_scene(arguments.scene), options);
+  video::write_still(arguments.out, made.picture, Flush::kLater);
+  std::string text = sequence::table_text(made.rows);
+  for (const std::string& line : made.approaches) text += line + "\n";
+  console.result(text + arguments.out);
+}
+
+// The time of the last change; the epoch while an editor has the file replaced.
+std::filesystem::file_time_type changed(const std::string& file) {
+  std::error_code error;
+  const auto time = std::filesystem::last_write_time(file, error);
+  return error ? std::filesystem::file_time_type{} : time;
+}
+
+// Draws anew whenever the scene file is saved, until the user interrupts. A fault of the scene is
+// said, and the picture stays as it was.
+void watch(const PreviewArguments& arguments, Context& context) {
+  using namespace std::chrono_literals;
+  std::filesystem::file_time_type drawn{};
+  while (!context.stop.stop_requested()) {
+    const auto now = changed(arguments.scene);
+    if (now == drawn || now == std::filesystem::file_time_type{}) {
+      std::this_thread::sleep_for(100ms);
+      continue;
+    }
+    drawn = now;
+    try {
+      draw(arguments, context);
+    } catch (const Error& error) {
+      context.console().error(error.what());
+    }
+  }
+  throw Interrupted();
+}
+
+void preview(const PreviewArguments& arguments, Context& context) {
+  video::check_still_output(arguments.out, true);
+  arguments.watch ? watch(arguments, context) : draw(arguments, context);
+}
+
+}  // namespace
+
+void add_preview(CLI::App& app, Context& context) {
+  auto* command = app.add_subcommand(
+      "preview", "Show where a scene's intruders will be, without rendering the clip");
+  auto arguments = std::make_shared<PreviewArguments>();
+  command->add_option("SCENE", arguments->scene, "Scene file (.toml)")->required();
+  command->add_option(
+      "-o,--out",
+      arguments->out,
+      "The picture to write (.png or .jpg), replaced where it exists [preview.png]");
+  command->add_flag("--watch", arguments->watch, "Draw anew whenever the scene file is saved");
+  command->callback([arguments, &context] { preview(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

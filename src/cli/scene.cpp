@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/output_check.h"
+#include "sequence/new_scene/new_scene.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct NewArguments {
+  std::string video;
+  std::string out;
+  std::string lens;
+  bool overwrite = false;
+};
+
+void new_scene(const NewArguments& arguments, Context& context) {
+  const std::string out = !arguments.out.empty()
+                              ? arguments.out
+                              : std::filesystem::path(arguments.video).stem().string() + ".toml";
+  check_output_file(out, arguments.overwrite);
+  Console& console = context.console();
+  sequence::NewSceneOptions options;
+  if (!arguments.lens.empty()) options.lens = arguments.lens;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
+    console.progress("looking for the lens", done, total);
+  };
+  const std::string text = sequence::new_scene(arguments.video, options);
+  console.end_progress();
+  write_file(out, text);
+  console.result(fmt::format("{}\nnext: airtruth preview {}", out, out));
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app, Context& context) {
+  auto* group = app.add_subcommand("scene", "Scene files");
+  group->require_subcommand(1);
+  auto* command =
+      group->add_subcommand("new", "Write a commented scene for a video, with a first encounter");
+  auto arguments = std::make_shared<NewArguments>();
+  command->add_option("VIDEO", arguments->video, "The onboard video")->required();
+  command->add_option("-o,--out",
+                      arguments->out,
+                      "Scene file to write (default: the video's name with .toml, here)");
+  command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
+  command->callback([arguments, &context] { new_scene(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

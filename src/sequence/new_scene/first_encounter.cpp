@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/new_scene/first_encounter.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "encounter/placement/by_approach.h"
+#include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/sight.h"
+
+namespace airtruth::sequence {
+namespace {
+
+// The candidates, as a person would state them. A closest approach after the end of the clip keeps
+// the intruder in front of the camera.
+struct Candidate {
+  double cpa_share;  // of the clip's duration
+  double course_deg;
+  double speed_mps;
+  double right_m;
+};
+constexpr std::array<Candidate, 5> kCandidates = {{{1.1, 180, 60, 40},
+                                                   {1.1, 150, 60, -30},
+                                                   {1.2, 90, 50, -30},
+                                                   {1.2, 270, 50, 30},
+                                                   {1.3, 180, 45, 20}}};
+constexpr double kAboveM = 15;
+constexpr int kSteps = 40;  // moments at which the view is tested
+
+scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
+  scene::Encounter encounter;
+  encounter.cpa_time_s = candidate.cpa_share * std::max(duration_s, 1.0);
+  encounter.cpa_right_m = candidate.right_m;
+  encounter.cpa_above_m = kAboveM;
+  encounter.course_deg = candidate.course_deg;
+  encounter.speed_mps = candidate.speed_mps;
+  return encounter;
+}
+
+bool is_in_picture(const Pixel& pixel, lens::ImageSize size) {
+  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height;
+}
+
+// At how many of the moments the intruder's reference point is in the picture; -1 where no path has
+// that closest approach.
+int moments_in_view(const scene::Encounter& encounter,
+                    const lens::Lens& lens,
+                    const trajectory::Path& own,
+                    double duration_s) {
+  try {
+    const trajectory::Path path = encounter::path_to_approach(encounter, own);
+    int count = 0;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double time_s = duration_s * i / kSteps;
+      const auto camera = own.at(time_s), state = path.at(time_s);
+      if (!camera || !state) continue;
+      const auto sight = sight_of(lens, {}, own, *camera, time_s, {});
+      const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
+      if (pixel && is_in_picture(*pixel, lens.size())) ++count;
+    }
+    return count;
+  } catch (const Error&) {
+    return -1;
+  }
+}
+
+}  // namespace
+
+std::string first_encounter(const lens::Lens& lens,
+                            const scene::Camera& camera,
+                            double duration_s) {
+  const trajectory::Path own = camera_path(camera);
+  const Candidate* best = kCandidates.data();
+  int most = -2;
+  for (const Candidate& candidate : kCandidates) {
+    const int count = moments_in_view(encounter_of(candidate, duration_s), lens, own, duration_s);
+    if (count > most) best = &candidate, most = count;
+  }
+  const scene::Encounter encounter = encounter_of(*best, duration_s);
+  return fmt::format(
+      "[[intruder]]\n"
+      "aircraft = \"c172/g-boix\"                # airtruth aircraft list\n"
+      "[intruder.encounter]\n"
+      "cpa_time_s = {:<26.1f}# when the two are nearest; the clip lasts {:.1f} s\n"
+      "cpa_right_m = {:<25.0f}# where it passes then: right of\n"
+      "cpa_above_m = {:<25.0f}# and above the own aircraft\n"
+      "course_deg = {:<26.0f}# from the own course: 180 head-on, 90 from the left, 270 from the "
+      "right\n"
+      "speed_mps = {:<27.0f}\n",
+      encounter.cpa_time_s,
+      duration_s,
+      *encounter.cpa_right_m,
+      encounter.cpa_above_m,
+      encounter.course_deg,
+      encounter.speed_mps);
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "foundation/base/log.h"
+
+// A first scene for a video: what its files and its picture tell, and a first encounter.
+namespace airtruth::sequence {
+
+struct NewSceneOptions {
+  // Calibration of the camera; empty: the lens is looked for.
+  std::optional<std::filesystem::path> lens;
+  Warn warn;
+  std::stop_token stop;
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+
+// The text of a commented scene file for the video, which parses and renders as it is.
+//
+// The lens is, in this order, the stated calibration; the view that a GoPro's telemetry states; the
+// focal length in DJI's subtitles beside the video or in the video's tags; the result of
+// LensEstimator where it is certain; else a view of 60 degrees, marked as a guess. Pitch and roll
+// of the camera are those of the horizon in the first frame, where one is found. A log with
+// positions (DJI's subtitles, a GoPro's telemetry) gives the own path. The encounter is one of a
+// few common ones, the first that is in view for most of the clip.
+//
+// Throws Error where the video cannot be read, and Interrupted on stop.
+std::string new_scene(const std::filesystem::path& video, const NewSceneOptions& options);
+
+}  // namespace airtruth::sequence

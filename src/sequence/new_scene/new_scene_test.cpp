@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/new_scene/new_scene.h"
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/new_scene/lens_hint.h"
+#include "sequence/preview/preview.h"
+
+namespace airtruth::sequence {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(LensHint, TheSubtitlesFocalLengthIsInTenthsAboveAHundred) {
+  EXPECT_EQ(equivalent_mm_in_subtitles("[iso : 100] [focal_len : 280] [latitude: 1]"), 28);
+  EXPECT_EQ(equivalent_mm_in_subtitles("[focal_len: 24.00]"), 24);
+  EXPECT_EQ(equivalent_mm_in_subtitles("[fnum: 2.8]"), std::nullopt);
+  EXPECT_EQ(equivalent_mm_in_subtitles("[focal_len: none]"), std::nullopt);
+}
+
+TEST(LensHint, ADiagonalOfFilmBecomesTheDiagonalOfThePicture) {
+  // 43.27 mm of focal length see the diagonal at 2 atan(1/2).
+  const lens::Lens lens = pinhole_from_equivalent(43.27, {400, 300});
+  const auto ray = lens.ray_from_pixel({400, 300});
+  ASSERT_TRUE(ray);
+  EXPECT_NEAR(std::atan2(std::hypot(ray->x(), ray->y()), ray->z()), std::atan(0.5), 1e-9);
+  const lens::Lens wide = fisheye_from_diagonal(140, {400, 300});
+  const auto corner = wide.ray_from_pixel({400, 300});
+  ASSERT_TRUE(corner);
+  EXPECT_NEAR(degrees(std::atan2(std::hypot(corner->x(), corner->y()), corner->z())), 70, 1e-6);
+}
+
+TEST(LensHint, AGoProsViewIsReadFromItsTelemetry) {
+  const float view = 121.5F;
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &view, 4);
+  std::vector<std::uint8_t> element = {'Z', 'F', 'O', 'V', 'f', 4, 0, 1};
+  for (int i = 3; i >= 0; --i) element.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+  std::vector<std::uint8_t> stream = {
+      'S', 'T', 'R', 'M', 0, 1, 0, static_cast<std::uint8_t>(element.size())};
+  stream.insert(stream.end(), element.begin(), element.end());
+  std::vector<std::uint8_t> packet = {
+      'D', 'E', 'V', 'C', 0, 1, 0, static_cast<std::uint8_t>(stream.size())};
+  packet.insert(packet.end(), stream.begin(), stream.end());
+  EXPECT_NEAR(diagonal_view_deg(packet).value(), 121.5, 1e-4);
+  EXPECT_EQ(diagonal_view_deg(std::span(packet).first(20)), std::nullopt);
+}
+
+TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
+  const fs::path folder = fs::path(testing::TempDir()) / "new-scene";
+  fs::create_directories(folder);
+  const fs::path video = folder / "flight.mp4";
+  synthetic::FlightOptions flight;
+  flight.frame_count = 120;
+  flight.width = 640;
+  flight.height = 480;
+  write_flight(synthetic::Flight(flight), video, {});
+  std::ofstream(folder / "flight.srt")
+      << "1\n00:00:00,000 --> 00:00:01,000\n[focal_len: 240] [latitude: 47.0] [longitude: 8.0] "
+         "[rel_alt: 120 abs_alt: 500]\n\n"
+         "2\n00:00:02,000 --> 00:00:03,000\n[latitude: 47.0004] [longitude: 8.0] [rel_alt: 120 "
+         "abs_alt: 500]\n\n"
+         "3\n00:00:04,000 --> 00:00:05,000\n[latitude: 47.0008] [longitude: 8.0] [rel_alt: 120 "
+         "abs_alt: 500]\n";
+  const std::string text = new_scene(video, {});
+  EXPECT_THAT(text, testing::HasSubstr("flight.srt states 24 mm"));
+  EXPECT_THAT(text, testing::HasSubstr("log = "));
+  const scene::Scene scene = scene::parse_scene(text, folder / "flight.toml");
+  const Preview made = preview(scene, {});
+  const auto seen = std::count_if(made.rows.begin(), made.rows.end(), [](const PreviewRow& row) {
+    return row.box_px.has_value();
+  });
+  EXPECT_GE(2 * seen, std::ssize(made.rows));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace airtruth::sequence

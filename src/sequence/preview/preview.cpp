@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/preview/preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "sequence/frame/frame_truth.h"
+#include "sequence/frame/paint.h"
+#include "sequence/preview/rows.h"
+#include "sequence/sequence/frame_maker.h"
+#include "sequence/sequence/resolve.h"
+#include "sequence/setup/from_scene.h"
+#include "show/drawing/draw.h"
+#include "show/drawing/flight_views.h"
+#include "show/drawing/pictures.h"
+
+namespace airtruth::sequence {
+namespace {
+
+constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
+constexpr int kMainWidthPx = 1270;
+constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
+constexpr std::size_t kTiles = 3;
+constexpr double kPathStepS = 0.05;
+
+// What the pictures are made from.
+class Previewer {
+ public:
+  Previewer(const scene::Scene& scene, const Options& options)
+      : options_(options),
+        reader_(open_background(scene, options)),
+        scene_(plain(stated(scene, reader_.info()).scene)),
+        size_{reader_.info().width, reader_.info().height},
+        mask_(read_mask(scene_, size_)),
+        world_(load_world(scene_, size_, options.warn, options.stop)),
+        painter_(make_painter(scene_, world_, own_aircraft(), {{}, true, options.stop})),
+        rate_hz_(reader_.info().frame_rate.value()),
+        duration_s_(static_cast<double>(std::max<std::int64_t>(0, frame_count() - 1)) / rate_hz_) {
+    check_camera_path(world_.camera, used_stream(reader_.info(), scene_.background));
+  }
+
+  Preview make() {
+    Preview result;
+    const std::vector<double> times = whole_seconds(duration_s_);
+    result.rows = preview_rows(world_, times, rate_hz_);
+    result.approaches = approach_lines(world_, result.rows, duration_s_);
+    const auto seen = times_in_view(result.rows);
+    std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, seen)};
+    if (!seen.empty()) parts.push_back(moments(chosen(seen)));
+    parts.push_back(table(result.rows));
+    result.picture = stacked(parts);
+    return result;
+  }
+
+ private:
+  // A preview draws by the matte method, which needs no OpenGL, and without the clip's codec.
+  static scene::Scene plain(scene::Scene scene) {
+    scene.composite.method = scene::CompositeMethod::kMatte;
+    scene.camera_model.codec_step.reset();
+    return scene;
+  }
+  const image::Mask* own_aircraft() const { return mask_ ? &*mask_ : nullptr; }
+  std::int64_t frame_count() const {
+    return used_stream(reader_.info(), scene_.background).frame_count_estimate;
+  }
+  void stop_if_asked() const {
+    if (options_.stop.stop_requested()) throw Interrupted();
+  }
+
+  // The whole seconds at which an intruder is in view, each once, in order.
+  static std::vector<double> times_in_view(const std::vector<PreviewRow>& rows) {
+    std::vector<double> times;
+    for (const PreviewRow& row : rows)
+      if (row.box_px && (times.empty() || row.time_s > times.back())) times.push_back(row.time_s);
+    return times;
+  }
+
+  // As many of the times as there are tiles, evenly spread, with the first and the last.
+  static std::vector<double> chosen(const std::vector<double>& times) {
+    if (times.size() <= kTiles) return times;
+    std::vector<double> result;
+    for (std::size_t i = 0; i < kTiles; ++i)
+      result.push_back(times[i * (times.size() - 1) / (kTiles - 1)]);
+    return result;
+  }
+
+  // The light in a frame; each frame is looked at alone.
+  Ambient ambient_in(const image::Picture& picture, const Moment& moment) const {
+    return AmbientEstimator(scene_.light, tone_of(scene_.camera_model), own_aircraft())
+        .next(picture, moment.sight, search_bounds(moment));
+  }
+
+  video::Frame frame_at(double time_s) {
+    stop_if_asked();
+    auto frame = reader_.at(time_s);
+    if (!frame)
+      throw Error(fmt::format("holds no frame at {:.2f} s", time_s),
+                  {scene_.background.video.string()});
+    return std::move(*frame);
+  }
+
+  Moment moment(double time_s) const {
+    return moment_at(
+        world_, static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, {});
+  }
+
+  // The time whose frame stands behind the paths: that of the nearest intruder in view.
+  double main_time(const std::vector<PreviewRow>& rows) const {
+    const PreviewRow* nearest = nullptr;
+    for (const PreviewRow& row : rows)
+      if (row.box_px && (nearest == nullptr || row.range_m < nearest->range_m)) nearest = &row;
+    return nearest != nullptr ? nearest->time_s : 0;
+  }
+
+  // One frame with the intruders drawn at every second at which they are seen, the farthest first.
+  cv::Mat main_picture(const std::vector<PreviewRow>& rows, const std::vector<double>& seen) {
+    video::Frame frame = frame_at(main_time(rows));
+    const Ambient ambient = ambient_in(frame.picture, moment(main_time(rows)));
+    std::map<double, double> range_at;
+    for (const PreviewRow& row : rows)
+      if (row.box_px) range_at[row.time_s] = std::max(range_at[row.time_s], row.range_m);
+    std::vector<double> order = seen;
+    std::stable_sort(
+        order.begin(), order.end(), [&](double a, double b) { return range_at[a] > range_at[b]; });
+    for (const double time_s : order) {
+      stop_if_asked();
+      painter_->paint(frame.picture, moment(time_s), ambient);
+    }
+    image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
+    const double scale = static_cast<double>(kMainWidthPx) / rgb.width;
+    image::Rgb8 scaled = drawing::resized(rgb,
+                                          kMainWidthPx,
+                                          static_cast<int>(std::lround(rgb.height * scale)),
+                                          scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    cv::Mat canvas = drawing::view(scaled).clone();
+    for (std::size_t actor = 0; actor < world_.actors.size(); ++actor)
+      draw_path(canvas, actor, scale);
+    return canvas;
+  }
+
+  // The pixels of an intruder's centre, joined, with the seconds beside them.
+  void draw_path(cv::Mat& canvas, std::size_t actor, double scale) const {
+    const trajectory::Path& path = world_.actors[actor].path;
+    const cv::Scalar colour = drawing::intruder_colour(actor);
+    std::optional<cv::Point> before;
+    const auto steps = static_cast<int>(duration_s_ / kPathStepS);
+    for (int i = 0; i <= steps; ++i) {
+      const double time_s = kPathStepS * i;
+      const auto state = path.at(time_s);
+      const auto pixel =
+          state ? projection::pixel_from_world(moment(time_s).sight, state->position_in_world)
+                : std::nullopt;
+      const bool is_near = pixel && std::abs(pixel->x()) < 4 * size_.width &&
+                           std::abs(pixel->y()) < 4 * size_.height;
+      if (!is_near) {
+        before.reset();
+        continue;
+      }
+      const cv::Point here(static_cast<int>(std::lround(pixel->x() * scale)),
+                           static_cast<int>(std::lround(pixel->y() * scale)));
+      if (before) cv::line(canvas, *before, here, colour, 1, cv::LINE_AA);
+      if (i % static_cast<int>(std::lround(1 / kPathStepS)) == 0) {
+        cv::circle(canvas, here, 3, colour, 1, cv::LINE_AA);
+        drawing::text(canvas, fmt::format("{:.0f}", time_s), here.x + 6, here.y - 6, 11, colour);
+      }
+      before = here;
+    }
+  }
+
+  drawing::FlightLine flight_of(const std::string& name,
+                                const trajectory::Path& path,
+                                const cv::Scalar& colour) const {
+    drawing::FlightLine line{name, colour, {}, {}};
+    const double step_s = std::max(0.1, std::ceil(duration_s_ / 60) * 0.1);
+    for (int i = 0; step_s * i <= duration_s_ + 1e-9; ++i)
+      if (const auto state = path.at(step_s * i)) {
+        line.times_s.push_back(step_s * i);
+        line.positions_ned_m.push_back(state->position_in_world);
+      }
+    return line;
+  }
+
+  // The main picture with plan and height at its right.
+  cv::Mat top(const std::vector<PreviewRow>& rows, const std::vector<double>& seen) {
+    const cv::Mat main = main_picture(rows, seen);
+    std::vector<drawing::FlightLine> lines = {flight_of("own", world_.camera, drawing::kWhite)};
+    for (std::size_t actor = 0; actor < world_.actors.size(); ++actor)
+      lines.push_back(flight_of(
+          world_.actors[actor].id, world_.actors[actor].path, drawing::intruder_colour(actor)));
+    const int plan_px = main.rows * 2 / 3;
+    const auto camera = world_.camera.at(0);
+    image::Rgb8 plan = drawing::plan_view(
+        lines, yaw_pitch_roll(camera->world_from_body).yaw_deg, view_deg(), kSideWidthPx, plan_px);
+    image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, main.rows - plan_px);
+    cv::Mat canvas(main.rows, kWidthPx, CV_8UC3, drawing::kDarkPaper);
+    main.copyTo(canvas(cv::Rect(0, 0, main.cols, main.rows)));
+    drawing::view(plan).copyTo(canvas(cv::Rect(kWidthPx - kSideWidthPx, 0, kSideWidthPx, plan_px)));
+    drawing::view(height).copyTo(
+        canvas(cv::Rect(kWidthPx - kSideWidthPx, plan_px, kSideWidthPx, main.rows - plan_px)));
+    return canvas;
+  }
+
+  // The horizontal view between the middles of the left and the right edge.
+  double view_deg() const {
+    const auto ray = [&](double x) { return world_.lens.ray_from_pixel({x, size_.height / 2.0}); };
+    const auto left = ray(0.5), right = ray(size_.width - 0.5);
+    if (!left || !right) return 180;
+    return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
+  }
+
+  // Frames of single moments with the intruders enlarged.
+  cv::Mat moments(const std::vector<double>& times) {
+    drawing::ContactSheet sheet("", static_cast<std::int64_t>(times.size()), times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      video::Frame frame = frame_at(times[i]);
+      const Moment here = moment(times[i]);
+      const Painted painted = painter_->paint(frame.picture, here, ambient_in(frame.picture, here));
+      frame.index = here.frame;
+      annotation::Frame truth = frame_truth(world_, frame, {"none", {}}, here, painted);
+      sheet.add(frame.picture, truth);
+    }
+    image::Rgb8 picture = sheet.sheet();
+    return drawing::view(picture).clone();
+  }
+
+  cv::Mat table(const std::vector<PreviewRow>& rows) const {
+    std::vector<drawing::TableRow> shown;
+    for (const PreviewRow& row : rows) {
+      const auto actor = std::find_if(world_.actors.begin(),
+                                      world_.actors.end(),
+                                      [&](const Actor& a) { return a.id == row.intruder; });
+      shown.push_back(
+          {drawing::intruder_colour(static_cast<std::size_t>(actor - world_.actors.begin())),
+           table_cells(row)});
+    }
+    image::Rgb8 picture = drawing::table_picture(table_heading(), shown, kWidthPx);
+    return drawing::view(picture).clone();
+  }
+
+  cv::Mat title(const std::vector<std::string>& lines) const {
+    constexpr int kLinePx = 22;
+    cv::Mat canvas(
+        40 + kLinePx * static_cast<int>(lines.size()), kWidthPx, CV_8UC3, drawing::kDarkPaper);
+    drawing::text(
+        canvas,
+        drawing::fitted(
+            fmt::format("{}: {:.1f} s of {} at {:.4g} frames/s, the camera's shake not shown",
+                        scene_.name,
+                        duration_s_,
+                        scene_.background.video.filename().string(),
+                        rate_hz_),
+            16,
+            kWidthPx - 24),
+        12,
+        26,
+        16,
+        drawing::kWhite);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      drawing::text(canvas,
+                    drawing::fitted(lines[i], 13, kWidthPx - 24),
+                    12,
+                    48 + kLinePx * static_cast<int>(i),
+                    13,
+                    drawing::intruder_colour(i));
+    return canvas;
+  }
+
+  static image::Rgb8 stacked(const std::vector<cv::Mat>& parts) {
+    int height = 0;
+    for (const cv::Mat& part : parts) height += part.rows + 6;
+    cv::Mat canvas(height, kWidthPx, CV_8UC3, drawing::kDarkPaper);
+    int y = 0;
+    for (const cv::Mat& part : parts) {
+      const int width = std::min(part.cols, kWidthPx);
+      part(cv::Rect(0, 0, width, part.rows)).copyTo(canvas(cv::Rect(0, y, width, part.rows)));
+      y += part.rows + 6;
+    }
+    return drawing::from_mat(canvas);
+  }
+
+  const Options& options_;
+  video::Reader reader_;
+  scene::Scene scene_;
+  lens::ImageSize size_;
+  std::optional<image::Mask> mask_;
+  World world_;
+  std::unique_ptr<Painter> painter_;
+  double rate_hz_;
+  double duration_s_;
+};
+
+}  // namespace
+
+Preview preview(const scene::Scene& scene, const Options& options) {
+  return Previewer(scene, options).make();
+}
+
+}  // namespace airtruth::sequence

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/preview/preview.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/preview/rows.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::sequence {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(PreviewRows, ALongClipHasNoMoreThanSixtyTimes) {
+  EXPECT_THAT(whole_seconds(3.5), testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(whole_seconds(0.2), testing::ElementsAre(0));
+  EXPECT_LE(whole_seconds(3600).size(), 60u);
+  EXPECT_DOUBLE_EQ(whole_seconds(3600)[1], std::round(whole_seconds(3600)[1]));
+}
+
+// The own aircraft flies north at 25 m/s; the intruder comes from ahead at 50 m/s, 20 m to the
+// right and 10 m higher, and passes after 4 s.
+scene::Scene head_on(const fs::path& video) {
+  return scene::parse_scene(
+      "[background]\nvideo = \"" + video.string() +
+          "\"\n[lens]\nvertical_fov_deg = 60\n[camera]\nposition_ned_m = [0, 0, -150]\n"
+          "velocity_ned_mps = [25, 0, 0]\n[[intruder]]\nid = \"near\"\naircraft = \"c172/g-boix\"\n"
+          "[intruder.encounter]\ncpa_time_s = 4\ncpa_right_m = 20\ncpa_above_m = 10\ncourse_deg = "
+          "180\n"
+          "speed_mps = 50\n",
+      "head-on.toml");
+}
+
+TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
+  const World world = load_world(head_on("none.mp4"), {640, 480}, {});
+  const auto rows = preview_rows(world, whole_seconds(5), 30);
+  ASSERT_EQ(rows.size(), 6u);
+  const double focal_px = 240 / std::tan(radians(30));
+  EXPECT_NEAR(rows[0].range_m, std::sqrt(300.0 * 300 + 20 * 20 + 10 * 10), 1e-6);
+  EXPECT_NEAR(rows[0].bearing_deg.value(), degrees(std::atan2(20, 300)), 1e-6);
+  EXPECT_NEAR(rows[0].tcpa_s.value(), 4, 1e-6);
+  EXPECT_NEAR(rows[0].above_m, 10, 1e-9);
+  ASSERT_TRUE(rows[0].box_px);
+  EXPECT_NEAR(rows[0].box_px->x + rows[0].box_px->width / 2, 320 + focal_px * 20 / 300, 1);
+  // 11 m of span.
+  EXPECT_NEAR(rows[0].box_px->width, focal_px * 11 / 300, 1);
+  EXPECT_FALSE(rows[4].box_px);  // abeam
+  EXPECT_FALSE(rows[5].tcpa_s);  // diverging
+  const auto lines = approach_lines(world, rows, 5);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], testing::HasSubstr("near: closest 22.4 m at 4.00 s"));
+  EXPECT_THAT(table_text(rows), testing::HasSubstr("out of view"));
+}
+
+TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {
+  const fs::path video = fs::path(testing::TempDir()) / "preview-flight.mp4";
+  synthetic::FlightOptions flight;
+  flight.frame_count = 130;
+  flight.width = 640;
+  flight.height = 480;
+  write_flight(synthetic::Flight(flight), video, {});
+  const Preview made = preview(head_on(video), {});
+  EXPECT_GT(made.picture.width, 1900);
+  ASSERT_EQ(made.rows.size(), 5u);
+  fs::remove(video);
+}
+
+}  // namespace
+}  // namespace airtruth::sequence
