@@ -124,7 +124,7 @@ void Ground::meet(const Eye& eye, const Rays& rays, Points& points) const {
     const std::uint8_t peak = peaks_[static_cast<std::size_t>(points.cell[i])];
     peak_m[i] = static_cast<float>(peak) * (kHighest_m / 255);
     search.ray[search.count] = i;
-    search.count += (peak != 0) & (points.far_m[i] < kReliefEnd_m) ? 1 : 0;
+    search.count += ((peak != 0) & (points.far_m[i] < kReliefEnd_m)) ? 1 : 0;
   }
   if (search.count == 0) return;
   select_rays(rays, points.far_m, points.across, peak_m, search);

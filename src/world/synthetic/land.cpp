@@ -99,7 +99,7 @@ void add_tracks(const Integers& borders, Places& __restrict places) {
     const float wood = places.wood[i];
     const float floor = edge_m > half_m ? wood : 0.0F;
     blend(places.albedo, i, 0.16F, 0.14F, 0.075F, floor);
-    places.field[i] = (floor <= 0) | (wood < 0.3F) ? 1 : 0;
+    places.field[i] = ((floor <= 0) | (wood < 0.3F)) ? 1 : 0;
   }
 }
 
