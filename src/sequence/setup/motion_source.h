@@ -65,6 +65,7 @@ class MotionSource {
  private:
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
+  bool is_to_be_stored() const { return !cache_.empty() && !from_cache_; }
 
   motion::Estimator estimator(int width, int height) const;
 
@@ -82,7 +83,7 @@ class MotionSource {
   lens::ImageSize size_;
   motion::ReachGuard guard_;  // of motion against the first frame
   std::optional<motion::Estimator> estimator_;
-  std::vector<motion::FrameMotion> against_first_;
+  std::vector<motion::FrameMotion> against_first_;  // empty unless is_to_be_stored()
   std::vector<motion::FrameMotion> all_;
 };
 
