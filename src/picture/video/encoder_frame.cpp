@@ -4,7 +4,12 @@
 #include <new>
 #include <utility>
 
+#include "foundation/base/error.h"
 #include "picture/video/stored_colour.h"
+
+extern "C" {
+#include <libavutil/hwcontext.h>
+}
 
 namespace airtruth::video {
 namespace {
@@ -20,6 +25,15 @@ FramePtr blank_frame(const AVCodecContext& encoder) {
   return frame;
 }
 
+// The frame in the memory of the encoder's device.
+FramePtr on_device(const AVCodecContext& encoder, const AVFrame& frame) {
+  FramePtr result = blank_frame(encoder);
+  int done = av_hwframe_get_buffer(encoder.hw_frames_ctx, result.get(), 0);
+  if (done >= 0) done = av_hwframe_transfer_data(result.get(), &frame, 0);
+  if (done < 0) throw Error("the encoder's device takes no frame: " + reason(done));
+  return result;
+}
+
 }  // namespace
 
 FramePtr copied_frame(const AVCodecContext& encoder,
@@ -27,9 +41,11 @@ FramePtr copied_frame(const AVCodecContext& encoder,
                       const image::Colour& stored,
                       Format format) {
   FramePtr frame = blank_frame(encoder);
+  const bool is_on_device = encoder.hw_frames_ctx != nullptr;
+  if (is_on_device) frame->format = AV_PIX_FMT_NV12;
   if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
   fill_frame_as(*frame, picture, stored, format);
-  return frame;
+  return is_on_device ? on_device(encoder, *frame) : std::move(frame);
 }
 
 FramePtr lent_frame(const AVCodecContext& encoder, std::shared_ptr<const Frame> frame) {

@@ -11,7 +11,8 @@
 namespace airtruth::video {
 
 // A frame of the encoder's size and pixel format with a copy of the picture, converted to the
-// colour `stored`. Throws std::bad_alloc.
+// colour `stored`; in the memory of the encoder's device where it has one. Throws std::bad_alloc,
+// and Error where the device takes no frame.
 FramePtr copied_frame(const AVCodecContext& encoder,
                       const image::Picture& picture,
                       const image::Colour& stored,

@@ -47,7 +47,22 @@ Picture with_full_range(const Picture& picture, const Colour& to) {
   return result;
 }
 
+// Luma, and Cb and Cr as pairs.
+void fill_nv12(AVFrame& frame, const Picture& picture) {
+  const auto row = [&](int plane, int y) {
+    return frame.data[plane] + static_cast<std::ptrdiff_t>(y) * frame.linesize[plane];
+  };
+  for (int y = 0; y < picture.height; ++y)
+    std::memcpy(row(0, y), picture.luma().row(y), static_cast<std::size_t>(picture.width));
+  for (int y = 0; y < picture.planes[1].height; ++y)
+    for (int x = 0; x < picture.planes[1].width; ++x) {
+      row(1, y)[2 * x] = picture.planes[1].row(y)[x];
+      row(1, y)[2 * x + 1] = picture.planes[2].row(y)[x];
+    }
+}
+
 void fill_frame(AVFrame& frame, const Picture& picture) {
+  if (frame.format == AV_PIX_FMT_NV12) return fill_nv12(frame, picture);
   if (picture.colour.matrix == Matrix::kRgb) {
     for (int y = 0; y < picture.height; ++y) {
       std::uint8_t* row = frame.data[0] + static_cast<std::ptrdiff_t>(y) * frame.linesize[0];

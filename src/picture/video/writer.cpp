@@ -11,6 +11,7 @@
 #include "foundation/base/suggest.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
+#include "picture/video/encoder.h"
 #include "picture/video/encoder_frame.h"
 #include "picture/video/libav.h"
 #include "picture/video/still.h"
@@ -21,7 +22,6 @@ namespace {
 
 using image::Colour;
 using image::Picture;
-using image::Range;
 
 struct FreeOutput {
   void operator()(AVFormatContext* p) const {
@@ -40,6 +40,7 @@ struct Writer::State {
   Colour stored;
   std::unique_ptr<AVFormatContext, FreeOutput> output;
   CodecPtr codec;
+  std::string encoder_name = "png";
   AVStream* stream = nullptr;
   PacketPtr packet;
   std::int64_t count = 0;
@@ -55,63 +56,11 @@ struct Writer::State {
     if (result < 0) fail(std::string(what) + ": " + reason(result));
   }
   void open();
-  void open_codec();
-  void set_codec_options(AVDictionary** settings) const;
   bool takes_as_it_is(const Picture& picture) const;
   void write_frame(const Frame& frame, const std::shared_ptr<const Frame>& lent);
   void encode(const AVFrame* frame);
   void write_image(const Picture& picture) const;
 };
-
-void Writer::State::set_codec_options(AVDictionary** settings) const {
-  if (options.format == Format::kMp4) {
-    av_dict_set(settings, "preset", options.preset.c_str(), 0);
-    av_dict_set_int(settings, "crf", options.quality, 0);
-    // The setting gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
-    // mbtree) even gives different bytes from one encode to the next in the same process.
-    av_dict_set(settings, "x264-params", "cpu-independent=1", 0);
-  } else if (options.format == Format::kMkv) {
-    av_dict_set_int(settings, "level", 3, 0);
-    av_dict_set_int(settings, "slicecrc", 1, 0);
-  }
-}
-
-void Writer::State::open_codec() {
-  const char* name = options.format == Format::kMp4   ? "libx264"
-                     : options.format == Format::kMkv ? "ffv1"
-                                                      : "mjpeg";
-  const AVCodec* encoder = avcodec_find_encoder_by_name(name);
-  if (encoder == nullptr) fail(std::string("the encoder ") + name + " is missing from this FFmpeg");
-  codec.reset(avcodec_alloc_context3(encoder));
-  codec->width = info.width;
-  codec->height = info.height;
-  codec->pix_fmt = pixel_format(stored, options.format);
-  codec->time_base = {info.time_base.num, info.time_base.den};
-  codec->framerate = {info.frame_rate.num, info.frame_rate.den};
-  if (options.format == Format::kAvi) codec->time_base = {info.frame_rate.den, info.frame_rate.num};
-  codec->sample_aspect_ratio = {info.sample_aspect.num, info.sample_aspect.den};
-  codec->color_range = stored.range == Range::kFull ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-  codec->colorspace = space_of(stored.matrix);
-  codec->color_primaries = static_cast<AVColorPrimaries>(info.primaries_tag);
-  codec->color_trc = static_cast<AVColorTransferCharacteristic>(info.transfer_tag);
-  codec->chroma_sample_location = stored.siting == image::Siting::kCenter    ? AVCHROMA_LOC_CENTER
-                                  : stored.siting == image::Siting::kTopLeft ? AVCHROMA_LOC_TOPLEFT
-                                                                             : AVCHROMA_LOC_LEFT;
-  // 0: the encoder's default.
-  codec->thread_count = std::max(0, options.threads);
-  codec->flags |= AV_CODEC_FLAG_BITEXACT;
-  if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0)
-    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  if (options.format == Format::kAvi) {
-    codec->flags |= AV_CODEC_FLAG_QSCALE;
-    codec->global_quality = FF_QP2LAMBDA * std::clamp(1 + options.quality / 6, 1, 31);
-  }
-  AVDictionary* settings = nullptr;
-  set_codec_options(&settings);
-  const int opened = avcodec_open2(codec.get(), encoder, &settings);
-  av_dict_free(&settings);
-  if (opened < 0) fail(std::string("cannot encode as ") + name + ": " + reason(opened));
-}
 
 void Writer::State::open() {
   keep_libav_quiet();
@@ -122,7 +71,9 @@ void Writer::State::open() {
   check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, part.c_str()), "cannot create");
   output.reset(raw);
   output->flags |= AVFMT_FLAG_BITEXACT;
-  open_codec();
+  const bool has_global_header = (output->oformat->flags & AVFMT_GLOBALHEADER) != 0;
+  codec = open_encoder({info, stored, has_global_header}, options, path);
+  encoder_name = codec->codec->name;
   stream = avformat_new_stream(output.get(), nullptr);
   check(stream != nullptr, "a stream can be made");
   check_av(avcodec_parameters_from_context(stream->codecpar, codec.get()),
@@ -201,10 +152,11 @@ Writer::~Writer() {
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
-// libx264 and FFV1 only read what they take. MJPEG's encoder may use a frame as its own reference.
+// libx264 and FFV1 only read what they take. MJPEG's encoder may use a frame as its own reference,
+// and hardware has its own memory.
 bool Writer::State::takes_as_it_is(const Picture& picture) const {
-  return (options.format == Format::kMp4 || options.format == Format::kMkv) &&
-         picture.colour == stored && stored.matrix != image::Matrix::kRgb;
+  return (encoder_name == "libx264" || encoder_name == "ffv1") && picture.colour == stored &&
+         stored.matrix != image::Matrix::kRgb;
 }
 
 // `lent`: the same frame, where its memory may be read after the call; else null.
@@ -228,6 +180,8 @@ void Writer::State::write_frame(const Frame& frame, const std::shared_ptr<const 
   encode(out.get());
   ++count;
 }
+
+const std::string& Writer::encoder() const { return state_->encoder_name; }
 
 void Writer::write(const Frame& frame) { state_->write_frame(frame, nullptr); }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "foundation/base/error.h"
 #include "picture/video/frame.h"
 #include "picture/video/reader.h"
 
@@ -19,6 +20,10 @@ Format format_of_file(const std::filesystem::path& path);
 // For example ".mp4"; "" for png (a folder of 000000.png ...).
 const char* extension(Format format);
 
+// Who encodes H.264. libx264 gives the same bytes on every machine; the hardware of a machine gives
+// its own. kAuto is the first of NVENC, VAAPI and Quick Sync that can be opened, else libx264.
+enum class Encoder { kX264, kAuto, kNvenc, kVaapi, kQsv };
+
 struct WriterOptions {
   Format format = Format::kMp4;
   // H.264: CRF 0..51. MJPEG: its qscale 1..31 is derived from the same scale. Lossless formats
@@ -28,6 +33,10 @@ struct WriterOptions {
   std::string preset = "veryfast";
   // Number of encoder threads; 0: the encoder's default.
   int threads = 0;
+  // For mp4.
+  Encoder encoder = Encoder::kX264;
+  // The place that names the encoder, for the Error where it cannot be opened.
+  Where encoder_where;
 };
 
 // Writes pictures of one size and colour with their time stamps, tagged with their colour. The file
@@ -51,6 +60,8 @@ class Writer {
   // not change after the call.
   void write(const std::shared_ptr<const Frame>& frame);
   void finish();
+  // libav's name of the encoder, such as "libx264"; "png" for numbered png.
+  const std::string& encoder() const;
 
  private:
   struct State;

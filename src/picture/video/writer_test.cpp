@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
 
@@ -81,6 +83,44 @@ TEST_F(WriterFile, KeepsNoLentFrameAfterItsEnd) {
     writer.finish();
   }
   EXPECT_TRUE(last.expired());
+}
+
+fs::path written(const fs::path& file, const WriterOptions& options, std::string* encoder) {
+  Writer writer(file, stream_of({}), options);
+  for (std::int64_t k = 0; k < 20; ++k) writer.write(noise(k, {}));
+  writer.finish();
+  *encoder = writer.encoder();
+  return file;
+}
+
+TEST_F(WriterFile, AutoIsX264WithItsBytesWhereNoHardwareEncodes) {
+  std::string encoder;
+  const fs::path x264 = written(folder_ / "x264.mp4", {}, &encoder);
+  EXPECT_EQ(encoder, "libx264");
+  const fs::path any = written(folder_ / "auto.mp4", {.encoder = Encoder::kAuto}, &encoder);
+  EXPECT_GT(fs::file_size(any), 1000u);
+  if (encoder != "libx264") GTEST_SKIP() << "this machine encodes by " << encoder;
+  EXPECT_EQ(sha256_of_file(any), sha256_of_file(x264));
+}
+
+TEST_F(WriterFile, AMissingEncoderIsAnErrorAtItsPlace) {
+  image::Colour colour;
+  colour.chroma = image::Chroma::k444;  // none of them takes it, whatever the machine has
+  for (const auto& [encoder, name] : {std::pair(Encoder::kNvenc, "h264_nvenc"),
+                                      std::pair(Encoder::kVaapi, "h264_vaapi"),
+                                      std::pair(Encoder::kQsv, "h264_qsv")}) {
+    const WriterOptions options{.encoder = encoder, .encoder_where = {"s.toml", 12, 11}};
+    const fs::path file = folder_ / "hardware.mp4";
+    try {
+      const Writer writer(file, stream_of(colour), options);
+      ADD_FAILURE() << name << " took 4:4:4";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find("s.toml:12:11: encoder " + std::string(name)), 0u)
+          << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+    EXPECT_TRUE(fs::is_empty(folder_));
+  }
 }
 
 }  // namespace

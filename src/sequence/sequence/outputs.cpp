@@ -22,6 +22,8 @@ video::WriterOptions writer_options(const scene::Output& output, int threads) {
   options.format = format_of(output.video);
   options.quality = output.quality;
   options.threads = threads;
+  options.encoder = encoder_of(output.encoder);
+  options.encoder_where = output.encoder_where;
   return options;
 }
 
@@ -128,6 +130,7 @@ void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& s
   record["version"] = kVersion;
   record["name"] = scene_.name;
   record["seed"] = scene_.seed;
+  record["encoder"] = writer_.encoder();
   record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene_);
   record["inputs"] = json_of(inputs);

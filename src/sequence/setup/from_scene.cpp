@@ -101,6 +101,23 @@ video::Format format_of(scene::OutputVideo video) {
   return video::Format::kMp4;
 }
 
+video::Encoder encoder_of(scene::OutputEncoder encoder) {
+  switch (encoder) {
+    case scene::OutputEncoder::kX264:
+      return video::Encoder::kX264;
+    case scene::OutputEncoder::kAuto:
+      return video::Encoder::kAuto;
+    case scene::OutputEncoder::kNvenc:
+      return video::Encoder::kNvenc;
+    case scene::OutputEncoder::kVaapi:
+      return video::Encoder::kVaapi;
+    case scene::OutputEncoder::kQsv:
+      return video::Encoder::kQsv;
+  }
+  check(false, "an encoder is one of five");
+  return video::Encoder::kX264;
+}
+
 composite::Sensor sensor_of(const scene::CameraModel& model) {
   composite::Sensor sensor;
   sensor.sharpening = model.sharpening.value_or(0);

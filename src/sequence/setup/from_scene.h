@@ -39,6 +39,8 @@ image::ToneCurve tone_of(const scene::CameraModel& model);
 
 // [output] video: the format of the written file.
 video::Format format_of(scene::OutputVideo video);
+// [output] encoder: who encodes H.264.
+video::Encoder encoder_of(scene::OutputEncoder encoder);
 
 // [optics] and [sensor]: what the camera does to samples after the point spread. Quantities that
 // the model lacks are 0: no sharpening, no noise, no chroma spread.

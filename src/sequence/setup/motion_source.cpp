@@ -94,8 +94,8 @@ motion::Estimator MotionSource::estimator(int width, int height) const {
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
-  against_first_ = std::move(against_first);
-  std::vector<motion::FrameMotion> bridged = against_first_;
+  std::vector<motion::FrameMotion> bridged = against_first;
+  if (is_to_be_stored()) against_first_ = std::move(against_first);
   bridge_by_gyro(gyro_, bridged);
   all_ = smoothed_ ? motion::smoothed(bridged, options_)
                    : motion::within_reach(std::move(bridged), size_.width, size_.height);
@@ -149,12 +149,12 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
   motion::FrameMotion motion =
       estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
   motion.frame = frame.index;
-  against_first_.push_back(motion);
+  if (is_to_be_stored()) against_first_.push_back(motion);
   return motion;
 }
 
 void MotionSource::store() const {
-  if (cache_.empty() || from_cache_) return;
+  if (!is_to_be_stored()) return;
   try {
     motion::store(cache_, key_, against_first_);
   } catch (const std::exception&) {  // read-only home, full disk: the next run measures again

@@ -73,6 +73,7 @@ class MotionSource {
   motion::FrameMotion measured(const video::Frame& frame);
   // Frame k, where all are known.
   Measured known(std::size_t k) const;
+  bool is_to_be_stored() const { return !cache_.empty() && !from_cache_; }
 
   motion::Estimator estimator(int width, int height) const;
 
@@ -90,7 +91,7 @@ class MotionSource {
   lens::ImageSize size_;
   motion::ReachGuard guard_;  // of motion against the first frame
   std::optional<motion::Estimator> estimator_;
-  std::vector<motion::FrameMotion> against_first_;
+  std::vector<motion::FrameMotion> against_first_;  // empty unless is_to_be_stored()
   std::vector<motion::FrameMotion> all_;
 };
 

@@ -46,4 +46,16 @@ constexpr auto enum_names(OutputVideo) {
                                                {OutputVideo::kPng, "png"}});
 }
 
+// [output] encoder: who encodes H.264. kAuto is the machine's hardware where it has one of the
+// others, else kX264, which alone gives the same bytes on every machine.
+enum class OutputEncoder { kX264, kAuto, kNvenc, kVaapi, kQsv };
+
+constexpr auto enum_names(OutputEncoder) {
+  return std::to_array<EnumName<OutputEncoder>>({{OutputEncoder::kX264, "x264"},
+                                                 {OutputEncoder::kAuto, "auto"},
+                                                 {OutputEncoder::kNvenc, "nvenc"},
+                                                 {OutputEncoder::kVaapi, "vaapi"},
+                                                 {OutputEncoder::kQsv, "qsv"}});
+}
+
 }  // namespace airtruth::scene

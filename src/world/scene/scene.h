@@ -229,6 +229,9 @@ struct Composite {
 struct Output {
   OutputVideo video = OutputVideo::kMp4;
   int quality = 18;
+  // For kMp4.
+  OutputEncoder encoder = OutputEncoder::kX264;
+  Where encoder_where;
   // True: each intruder's alpha is written as well, frame by frame.
   bool masks = false;
 };

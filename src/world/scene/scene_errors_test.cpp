@@ -139,6 +139,12 @@ TEST(SceneErrors, OutOfRange) {
             "s.toml:11:19: position_ned_m[0] is nan; expected metres from -1e9 to 1e9");
   EXPECT_EQ(with_rest("[output]\nquality = 52"),
             "s.toml:11:11: quality is 52; expected a whole number from 0 to 51");
+  EXPECT_EQ(
+      with_rest("[output]\nencoder = 'x265'"),
+      "s.toml:11:11: encoder is 'x265'; expected x264, auto, nvenc, vaapi or qsv; did you mean "
+      "'x264'?");
+  EXPECT_EQ(with_rest("[output]\nvideo = 'mkv'\nencoder = 'nvenc'"),
+            "s.toml:12:11: encoder is nvenc, which writes H.264; expected video = \"mp4\"");
   EXPECT_EQ(with_rest("[render]\nquality = 0"),
             "s.toml:11:11: quality is 0; expected a whole number from 1 to 5");
   EXPECT_EQ(with_background("video = 'a'\nframe_count = 0"),

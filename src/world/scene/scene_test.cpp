@@ -79,6 +79,7 @@ TEST(Scene, WhatIsNotSaidHasItsDefault) {
   EXPECT_EQ(scene.composite.method, CompositeMethod::kMatte);
   EXPECT_EQ(scene.output.video, OutputVideo::kMp4);
   EXPECT_EQ(scene.output.quality, 18);
+  EXPECT_EQ(scene.output.encoder, OutputEncoder::kX264);
   EXPECT_EQ(scene.render.quality, 3);
   EXPECT_FALSE(scene.light.exposure);
   std::string unnamed = paper();
@@ -191,6 +192,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "roll_deg",
                                 "quality",
                                 "method",
+                                "encoder",
                                 "masks"}) {
     EXPECT_NE(manual.find(std::string("`") + key + "`"), std::string::npos) << key;
     EXPECT_NE(example.find(std::string(key) + " = "), std::string::npos) << key;

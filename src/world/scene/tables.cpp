@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/line_of.h"
 #include "world/scene/camera_keys.h"
@@ -221,11 +222,28 @@ Light light_in(const TableReader& parent) {
   return light;
 }
 
+namespace {
+
+void take_encoder(Output& output, const TableReader& table) {
+  if (!table.has("encoder")) return;
+  output.encoder = table.choice<OutputEncoder>("encoder").value_or(output.encoder);
+  output.encoder_where = table.where("encoder");
+  const bool is_hardware =
+      output.encoder != OutputEncoder::kX264 && output.encoder != OutputEncoder::kAuto;
+  if (is_hardware && output.video != OutputVideo::kMp4)
+    throw Error(std::string("encoder is ") + enum_name(output.encoder) +
+                    ", which writes H.264; expected video = \"mp4\"",
+                output.encoder_where);
+}
+
+}  // namespace
+
 Output output_in(const TableReader& parent) {
-  const TableReader table = parent.table("output", {"video", "quality", "masks"});
+  const TableReader table = parent.table("output", {"video", "quality", "encoder", "masks"});
   Output output;
   output.video = table.choice<OutputVideo>("video").value_or(output.video);
   output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
+  take_encoder(output, table);
   output.masks = table.truth("masks").value_or(output.masks);
   return output;
 }

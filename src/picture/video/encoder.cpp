@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/encoder.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "foundation/base/error.h"
+#include "picture/video/stored_colour.h"
+
+extern "C" {
+#include <libavutil/hwcontext.h>
+}
+
+namespace airtruth::video {
+namespace {
+
+using image::Range;
+
+struct FreeBuffer {
+  void operator()(AVBufferRef* p) const { av_buffer_unref(&p); }
+};
+using BufferPtr = std::unique_ptr<AVBufferRef, FreeBuffer>;
+
+// What each encoder of H.264 is called in libav, and the pixel format that it takes from memory.
+struct H264Encoder {
+  Encoder encoder;
+  const char* name;
+  AVPixelFormat pixel_format;
+};
+// In the order in which Encoder::kAuto tries them.
+constexpr std::array<H264Encoder, 3> kHardware = {
+    {{Encoder::kNvenc, "h264_nvenc", AV_PIX_FMT_YUV420P},
+     {Encoder::kVaapi, "h264_vaapi", AV_PIX_FMT_VAAPI},
+     {Encoder::kQsv, "h264_qsv", AV_PIX_FMT_NV12}}};
+
+struct Opened {
+  CodecPtr codec;
+  std::string fault;  // why `codec` is null
+};
+
+void describe(AVCodecContext& codec, const EncoderInput& input, const WriterOptions& options) {
+  const StreamInfo& info = input.info;
+  codec.width = info.width;
+  codec.height = info.height;
+  codec.time_base = {info.time_base.num, info.time_base.den};
+  codec.framerate = {info.frame_rate.num, info.frame_rate.den};
+  if (options.format == Format::kAvi) codec.time_base = {info.frame_rate.den, info.frame_rate.num};
+  codec.sample_aspect_ratio = {info.sample_aspect.num, info.sample_aspect.den};
+  codec.color_range = input.stored.range == Range::kFull ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+  codec.colorspace = space_of(input.stored.matrix);
+  codec.color_primaries = static_cast<AVColorPrimaries>(info.primaries_tag);
+  codec.color_trc = static_cast<AVColorTransferCharacteristic>(info.transfer_tag);
+  codec.chroma_sample_location = input.stored.siting == image::Siting::kCenter ? AVCHROMA_LOC_CENTER
+                                 : input.stored.siting == image::Siting::kTopLeft
+                                     ? AVCHROMA_LOC_TOPLEFT
+                                     : AVCHROMA_LOC_LEFT;
+  // 0: the encoder's default.
+  codec.thread_count = std::max(0, options.threads);
+  codec.flags |= AV_CODEC_FLAG_BITEXACT;
+  if (input.has_global_header) codec.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+}
+
+// The encoder that `make_ready` completes, opened with the settings.
+template <typename MakeReady>
+Opened opened(const char* name,
+              const EncoderInput& input,
+              const WriterOptions& options,
+              const MakeReady& make_ready) {
+  const AVCodec* encoder = avcodec_find_encoder_by_name(name);
+  if (encoder == nullptr) return {nullptr, "is missing from this FFmpeg"};
+  CodecPtr codec(avcodec_alloc_context3(encoder));
+  describe(*codec, input, options);
+  AVDictionary* settings = nullptr;
+  int result = make_ready(*codec, &settings);
+  if (result >= 0) result = avcodec_open2(codec.get(), encoder, &settings);
+  av_dict_free(&settings);
+  if (result < 0) return {nullptr, "cannot be opened: " + reason(result)};
+  return {std::move(codec), ""};
+}
+
+Opened open_own(const EncoderInput& input, const WriterOptions& options, const char* name) {
+  return opened(name, input, options, [&](AVCodecContext& codec, AVDictionary** settings) {
+    codec.pix_fmt = pixel_format(input.stored, options.format);
+    if (options.format == Format::kMp4) {
+      av_dict_set(settings, "preset", options.preset.c_str(), 0);
+      av_dict_set_int(settings, "crf", options.quality, 0);
+      // The setting gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
+      // mbtree) even gives different bytes from one encode to the next in the same process.
+      av_dict_set(settings, "x264-params", "cpu-independent=1", 0);
+    } else if (options.format == Format::kMkv) {
+      av_dict_set_int(settings, "level", 3, 0);
+      av_dict_set_int(settings, "slicecrc", 1, 0);
+    } else {
+      codec.flags |= AV_CODEC_FLAG_QSCALE;
+      codec.global_quality = FF_QP2LAMBDA * std::clamp(1 + options.quality / 6, 1, 31);
+    }
+    return 0;
+  });
+}
+
+// VAAPI takes frames in the memory of its device alone. Returns libav's error, or 0.
+int add_device_frames(AVCodecContext& codec) {
+  AVBufferRef* raw = nullptr;
+  if (const int made = av_hwdevice_ctx_create(&raw, AV_HWDEVICE_TYPE_VAAPI, nullptr, nullptr, 0);
+      made < 0)
+    return made;
+  const BufferPtr device(raw);
+  BufferPtr frames(av_hwframe_ctx_alloc(device.get()));
+  if (!frames) return AVERROR(ENOMEM);
+  auto* context = reinterpret_cast<AVHWFramesContext*>(frames->data);
+  context->format = AV_PIX_FMT_VAAPI;
+  context->sw_format = AV_PIX_FMT_NV12;
+  context->width = codec.width;
+  context->height = codec.height;
+  if (const int made = av_hwframe_ctx_init(frames.get()); made < 0) return made;
+  codec.hw_frames_ctx = frames.release();
+  return 0;
+}
+
+// The same quality scale as x264's: a constant quantiser of H.264 where the encoder has one.
+Opened open_hardware(const H264Encoder& which,
+                     const EncoderInput& input,
+                     const WriterOptions& options) {
+  if (input.stored.chroma != image::Chroma::k420) return {nullptr, "takes 4:2:0 alone"};
+  return opened(which.name, input, options, [&](AVCodecContext& codec, AVDictionary** settings) {
+    codec.pix_fmt = which.pixel_format;
+    if (which.encoder == Encoder::kQsv) {
+      codec.global_quality = std::max(1, options.quality);
+      return 0;
+    }
+    av_dict_set_int(settings, "qp", options.quality, 0);
+    if (which.encoder == Encoder::kNvenc) {
+      av_dict_set(settings, "rc", "constqp", 0);
+      return 0;
+    }
+    av_dict_set(settings, "rc_mode", "CQP", 0);
+    return add_device_frames(codec);
+  });
+}
+
+Opened open_h264(const EncoderInput& input, const WriterOptions& options) {
+  for (const H264Encoder& which : kHardware) {
+    if (options.encoder != which.encoder && options.encoder != Encoder::kAuto) continue;
+    Opened hardware = open_hardware(which, input, options);
+    if (hardware.codec) return hardware;
+    if (options.encoder != which.encoder) continue;
+    throw Error(std::string("encoder ") + which.name + " " + hardware.fault +
+                    "; expected a machine that has it, or \"x264\" or \"auto\"",
+                options.encoder_where);
+  }
+  return open_own(input, options, "libx264");
+}
+
+}  // namespace
+
+CodecPtr open_encoder(const EncoderInput& input,
+                      const WriterOptions& options,
+                      const std::filesystem::path& path) {
+  Opened result = options.format == Format::kMp4   ? open_h264(input, options)
+                  : options.format == Format::kMkv ? open_own(input, options, "ffv1")
+                                                   : open_own(input, options, "mjpeg");
+  if (!result.codec) throw Error("cannot be written: its encoder " + result.fault, {path.string()});
+  return std::move(result.codec);
+}
+
+}  // namespace airtruth::video
