@@ -32,9 +32,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxStills = 1500;
 constexpr std::size_t kMaxStillsOfOne = 60;
 constexpr std::size_t kMinStillsOfOne = 4;
-// Sequences that the page shows one by one; of a larger set, as many are spread over it. Each takes
-// some 75 kB, and a browser opens a page of 75 MB within seconds.
-constexpr std::size_t kMaxShown = 1000;
 
 template <typename T>
 Json json_of(const std::optional<T>& value) {
@@ -175,7 +172,7 @@ struct Gallery {
 Gallery gallery_of(const LabelledSet& labelled, const ReportOptions& options) {
   const std::size_t count = labelled.names().size();
   Gallery gallery{std::vector<Portrait>(count), std::vector<bool>(count, false), {}};
-  for (const std::size_t i : thinned(count, kMaxShown)) gallery.is_shown[i] = true;
+  for (const std::size_t i : thinned(count, options.max_shown)) gallery.is_shown[i] = true;
   const std::size_t stills =
       std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
   std::mutex mutex;

@@ -35,9 +35,9 @@ struct Type {
 
 class SharedInputs {
  public:
-  // Aircraft that no sequence is using are kept up to this size together: some ten airliners with
+  // Aircraft that no sequence is using are kept up to this size together: some three airliners with
   // textures of 2048x2048, or a hundred light aircraft.
-  static constexpr std::size_t kMaxKeptBytes = std::size_t{1} << 30;
+  static constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 
   explicit SharedInputs(std::size_t max_kept_bytes = kMaxKeptBytes)
       : max_kept_bytes_(max_kept_bytes) {}
