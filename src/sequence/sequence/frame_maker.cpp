@@ -22,6 +22,12 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   return info;
 }
 
+// The folder that keeps the openness of aircraft; empty: none.
+fs::path openness_cache(const Options& options) {
+  if (!options.use_cache) return {};
+  return (options.cache.empty() ? cache_folder() : options.cache) / "openness";
+}
+
 }  // namespace
 
 fs::path motion_cache(const Options& options) {
@@ -46,7 +52,7 @@ Setting::Setting(const StatedScene& stated,
     : scene(stated.scene),
       size(image_size),
       mask(read_mask(scene, size)),
-      world(load_world(scene, size, options.warn, options.stop)),
+      world(load_world(scene, size, options.warn, options.stop, openness_cache(options))),
       painter(make_painter(
           scene, world, own_aircraft(), {options.gpu, options.software_gl, options.stop})) {
   scene.motion.model = motion_model(scene);

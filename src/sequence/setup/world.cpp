@@ -64,6 +64,9 @@ std::string type_key(const scene::Intruder& intruder, const trajectory::Path& pa
 // at two cruising speeds, share it with its BVH.
 class LoadedTypes {
  public:
+  explicit LoadedTypes(std::filesystem::path openness_cache)
+      : openness_cache_(std::move(openness_cache)) {}
+
   const Type& type_of(const scene::Intruder& intruder,
                       const trajectory::Path& path,
                       const Warn& warn,
@@ -76,10 +79,13 @@ class LoadedTypes {
     for (const auto& [other_key, other] : types_)
       if (other.aircraft->name == loaded->name && other.aircraft->mesh == loaded->mesh)
         return types_[key] = other;
-    return types_[key] = {loaded, std::make_shared<const render::Model>(loaded->mesh)};
+    // The model shares the mesh within the aircraft.
+    const std::shared_ptr<const aircraft::Mesh> mesh(loaded, &loaded->mesh);
+    return types_[key] = {loaded, std::make_shared<const render::Model>(mesh, openness_cache_)};
   }
 
  private:
+  std::filesystem::path openness_cache_;
   std::map<std::string, Type> types_;
 };
 
@@ -137,12 +143,13 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
-                 const std::stop_token& stop) {
+                 const std::stop_token& stop,
+                 const std::filesystem::path& openness_cache) {
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
               shutter_of(scene.camera_model)};
-  LoadedTypes types;
+  LoadedTypes types(openness_cache);
   for (const scene::Intruder& intruder : scene.intruders) {
     const trajectory::Path path = path_of(intruder);
     const Type& type = at_place(

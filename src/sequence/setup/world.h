@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -45,11 +46,13 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop.
+// Loads a scene without "auto" keys (resolve.h). Throws Interrupted on stop. `openness_cache`: the
+// folder that keeps the openness of aircraft (picture/render/renderer.h); empty: none.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
-                 const std::stop_token& stop = {});
+                 const std::stop_token& stop = {},
+                 const std::filesystem::path& openness_cache = {});
 
 // Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
 // than the uncertainty of the clip's stated length.
