@@ -106,7 +106,9 @@ void add_render(CLI::App& app, Context& context) {
       "--gpu", arguments->gpu, "chroma-key's OpenGL device: a number, or none for llvmpipe");
   command->add_flag(
       "--timings", arguments->timings, "Also print the CPU and wall time of each stage");
-  command->add_flag("--no-cache", arguments->no_cache, "Measure the camera's motion anew");
+  command->add_flag("--no-cache",
+                    arguments->no_cache,
+                    "Measure the camera's motion and the aircraft's openness anew");
   command->callback([arguments, &context] { render(*arguments, context); });
 }
 

@@ -17,10 +17,13 @@ constexpr float kCabin = 0.05f;
 
 }  // namespace
 
+float roughness_of(const aircraft::Material& material) {
+  return material.finish == aircraft::Finish::kMetal ? kMetalRoughness : kCoatRoughness;
+}
+
 Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& texel) {
   using aircraft::Finish;
   Coat coat;
-  coat.roughness = material.finish == Finish::kMetal ? kMetalRoughness : kCoatRoughness;
   // A pane mirrors in full, however little it hides.
   coat.cover = texel[3] * (material.finish == Finish::kGlass ? 1 : material.opacity);
   coat.mirrors = material.finish != Finish::kMat;

@@ -3,7 +3,9 @@
 
 #include <array>
 
-#include "picture/render/shade.h"
+#include <Eigen/Core>
+
+#include "aircraft/model/mesh.h"
 
 // Specular reflection of a smooth surface: a clear coat, glass or metal.
 namespace airtruth::render {
@@ -12,7 +14,6 @@ namespace airtruth::render {
 struct Coat {
   // Mirrored share of the light that arrives along the normal.
   std::array<float, 3> at_normal{};
-  float roughness = 0.1f;  // GGX's alpha
   // True where the surface has a specular reflection.
   bool mirrors = true;
   // Share of the surface that mirrors, 0..1.
@@ -20,6 +21,8 @@ struct Coat {
   // Colour of the light that is scattered and not mirrored; premultiplied by opacity.
   std::array<float, 3> scattered{};
 };
+// GGX's alpha of the material's finish.
+float roughness_of(const aircraft::Material& material);
 // `texel`: the texture's value there, premultiplied; white for a material without a texture.
 Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& texel);
 

@@ -138,6 +138,67 @@ void side_values(
   }
 }
 
+// Tests `width` samples at a time: the strips that are the bits of `strips`.
+AIRTRUTH_VECTORS
+unsigned mark_straight(const Straight* sides,
+                       const float* px,
+                       const float* py,
+                       int width,
+                       unsigned strips,
+                       std::int32_t* covered) {
+  const Straight p = sides[0];
+  const Straight q = sides[1];
+  const Straight r = sides[2];
+  unsigned full = 0;
+  for (unsigned left = strips; left != 0; left &= left - 1) {
+    const int first = __builtin_ctz(left) * width;
+    const float* here_x = px + first;
+    const float* here_y = py + first;
+    const bool all = mark_where(width, covered + first, [=](int i) {
+      const float x = here_x[i];
+      const float y = here_y[i];
+      const float u = p.a + p.b * x + p.c * y;
+      const float v = q.a + q.b * x + q.c * y;
+      const float w = r.a + r.b * x + r.c * y;
+      return (u >= 0) & (v >= 0) & (w >= 0);
+    });
+    full |= static_cast<unsigned>(all) << __builtin_ctz(left);
+  }
+  return full;
+}
+
+// The same during an exposure.
+AIRTRUTH_VECTORS
+unsigned mark_straight_moving(const Straight* sides,
+                              const float* px,
+                              const float* py,
+                              const float* pt,
+                              int width,
+                              unsigned strips,
+                              std::int32_t* covered) {
+  const Straight p = sides[0];
+  const Straight q = sides[1];
+  const Straight r = sides[2];
+  unsigned full = 0;
+  for (unsigned left = strips; left != 0; left &= left - 1) {
+    const int first = __builtin_ctz(left) * width;
+    const float* here_x = px + first;
+    const float* here_y = py + first;
+    const float* here_t = pt + first;
+    const bool all = mark_where(width, covered + first, [=](int i) {
+      const float x = here_x[i];
+      const float y = here_y[i];
+      const float t = here_t[i];
+      const float u = (p.a + p.b * x) + (p.c * y + p.d * t);
+      const float v = (q.a + q.b * x) + (q.c * y + q.d * t);
+      const float w = (r.a + r.b * x) + (r.c * y + r.d * t);
+      return (u >= 0) & (v >= 0) & (w >= 0);
+    });
+    full |= static_cast<unsigned>(all) << __builtin_ctz(left);
+  }
+  return full;
+}
+
 bool mark_swept(const Swept* sides,
                 int count,
                 const float* px,
@@ -177,6 +238,20 @@ bool mark(const std::array<Bilinear, 3>& sides,
           std::int32_t* covered) {
   const auto mark_them = crossing == 1 ? mark_one : mark_all;
   return mark_them(sides.data(), places.x.data(), places.y.data(), samples, covered);
+}
+
+unsigned mark(const std::array<Straight, 3>& sides,
+              bool moves,
+              const Places& places,
+              int samples,
+              unsigned strips,
+              std::int32_t* covered) {
+  const float* t = places.t.data();
+  const int width = samples / PixelSamples::kStrips;
+  return moves ? mark_straight_moving(
+                     sides.data(), places.x.data(), places.y.data(), t, width, strips, covered)
+               : mark_straight(
+                     sides.data(), places.x.data(), places.y.data(), width, strips, covered);
 }
 
 // Chooses the cheapest method that is accurate enough.

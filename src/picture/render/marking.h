@@ -34,6 +34,22 @@ struct Swept {
 // `corner`: the products at the beginning, the middle and the end of the exposure.
 Swept swept_of(const Thrice<std::array<double, 4>>& corner);
 
+// The value of a straight side over a pixel and its exposure: a + b x + c y + d t.
+struct Straight {
+  float a = 1, b = 0, c = 0, d = 0;
+};
+// All strips of a pixel (samples.h), as bits.
+inline constexpr unsigned kAllStrips = (1U << PixelSamples::kStrips) - 1;
+// Marks the samples of some strips, which are the bits of `strips`. `covered` and `places` are in
+// the order of PixelSamples::fill(). Returns the bits of those in which every sample is then
+// covered.
+unsigned mark(const std::array<Straight, 3>& sides,
+              bool moves,
+              const Places& places,
+              int samples,
+              unsigned strips,
+              std::int32_t* covered);
+
 // `crossing`: how many of the sides cross the pixel, 1 to 3; they come first in `sides`.
 bool mark(const std::array<Bilinear, 3>& sides,
           int crossing,

@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "picture/render/openness.h"
+#include "picture/render/openness_cache.h"
 
 namespace airtruth::render {
 namespace {
@@ -14,14 +15,20 @@ namespace {
 // The settings omit "threads=1": with it Embree would limit all of oneTBB, and so the whole
 // pipeline, to one thread. All machines use one instruction set, so that a frame has the same bytes
 // on each: AVX2 (2013 and later), or SSE4.2 where AVX2 is missing.
-RTCDevice new_device() {
-  for (const char* settings : {"isa=avx2", "isa=sse4.2"}) {
+struct Device {
+  RTCDevice device = nullptr;
+  // Embree's version and its settings.
+  std::string name;
+};
+Device new_device() {
+  for (const char* settings : {"isa=avx2", "isa=sse4.2", ""}) {
     if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
-    if (RTCDevice device = rtcNewDevice(settings)) return device;
+    if (RTCDevice device = rtcNewDevice(settings))
+      return {device,
+              std::to_string(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION)) + ' ' +
+                  settings};
   }
-  RTCDevice device = rtcNewDevice(nullptr);
-  check(device != nullptr, "Embree has a device");
-  return device;
+  throw Error("Embree has no device");
 }
 
 RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::Part& part) {
@@ -190,38 +197,54 @@ std::optional<Hit> nearest_blocker(const Model::Impl& model,
   return best;
 }
 
-Model::Model(const aircraft::Mesh& mesh) : impl_(std::make_unique<Impl>()) {
-  impl_->mesh = mesh;
-  impl_->device.reset(new_device());
+Model::Model(const aircraft::Mesh& mesh) : Model(std::make_shared<const aircraft::Mesh>(mesh)) {}
+
+Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem::path& cache)
+    : impl_(std::make_unique<Impl>(std::move(shared))) {
+  const aircraft::Mesh& mesh = impl_->mesh;
+  const Device device = new_device();
+  impl_->device.reset(device.device);
   impl_->opaque = opaque_triangles(mesh);
-  Eigen::AlignedBox3f bounds;
   for (const aircraft::Part& part : mesh.parts) {
     impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
     std::vector<float> densities;
-    for (const aircraft::Triangle& triangle : part.triangles) {
+    for (const aircraft::Triangle& triangle : part.triangles)
       densities.push_back(density(mesh, triangle));
-      for (std::uint32_t v : triangle.vertex) bounds.extend(mesh.positions[v]);
-    }
     impl_->texels_per_m.push_back(std::move(densities));
   }
+  impl_->find_sphere();
+  const OpennessCache kept = openness_cache(cache, mesh, device.name);
+  if (auto openness = cached_openness(kept, mesh)) {
+    impl_->openness = std::move(*openness);
+    return;
+  }
+  impl_->openness = model_openness(*impl_);
+  keep_openness(kept, impl_->openness);
+}
+
+void Model::Impl::find_sphere() {
+  Eigen::AlignedBox3f bounds;
+  for (const aircraft::Part& part : mesh.parts)
+    for (const aircraft::Triangle& triangle : part.triangles)
+      for (std::uint32_t v : triangle.vertex) bounds.extend(mesh.positions[v]);
   if (bounds.isEmpty()) bounds.extend(Eigen::Vector3f::Zero());
-  impl_->centre_in_body = bounds.center().cast<double>();
+  centre_in_body = bounds.center().cast<double>();
   for (const aircraft::Part& part : mesh.parts) {
     for (const aircraft::Triangle& triangle : part.triangles) {
       for (std::uint32_t v : triangle.vertex) {
         const Eigen::Vector3d p = mesh.positions[v].cast<double>();
-        double reach = (p - impl_->centre_in_body).norm();
+        double reach = (p - centre_in_body).norm();
         if (part.spins) {
           const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
-          reach = (hub - impl_->centre_in_body).norm() + (p - hub).norm();
+          reach = (hub - centre_in_body).norm() + (p - hub).norm();
         }
-        impl_->radius_m = std::max(impl_->radius_m, reach);
+        radius_m = std::max(radius_m, reach);
       }
     }
   }
-  impl_->radius_m = impl_->radius_m * 1.01 + 0.01;
-  impl_->openness = model_openness(*impl_);
+  radius_m = radius_m * 1.01 + 0.01;
 }
+
 Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;
 

@@ -52,7 +52,11 @@ struct TriangleOpenness {
 };
 
 struct Model::Impl {
-  aircraft::Mesh mesh;
+  explicit Impl(std::shared_ptr<const aircraft::Mesh> shared)
+      : owned(std::move(shared)), mesh(*owned) {}
+
+  std::shared_ptr<const aircraft::Mesh> owned;
+  const aircraft::Mesh& mesh;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
   // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
@@ -64,6 +68,9 @@ struct Model::Impl {
   Eigen::Vector3d centre_in_body{0, 0, 0};
   // Radius of a sphere about the centre that contains every part at any angle.
   double radius_m = 0;
+
+  // Sets the centre and the radius.
+  void find_sphere();
 };
 
 // The point where a ray meets a part. `t` is the distance along the ray; u and v are barycentric

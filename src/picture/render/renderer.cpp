@@ -198,6 +198,8 @@ class Refiner {
     if (only == kNobody) return;
     if (only == kRays)
       sample_pixel(tracer_, canvas_, x, y, 0, counts_.base);
+    else if (counts_.at_once)
+      shade(x, y, only, &cover(x, y, only, counts_.outline));
     else
       cover(x, y, only, kRoughCover);
   }
@@ -210,8 +212,12 @@ class Refiner {
       if (edge) refine_by_rays(x, y, kind[canvas_.index(x, y)]);
       return;
     }
+    if (!counts_.at_once) shade(x, y, only, edge ? &cover(x, y, only, counts_.outline) : nullptr);
+  }
+
+  // `found`: of the pixel; null: every sample is covered, or none.
+  void shade(int x, int y, int only, const Cover* found) {
     static const std::vector<std::int32_t> kEverySample(kRoughCover, -1);
-    const Cover* found = edge ? &cover(x, y, only, counts_.outline) : nullptr;
     Sum& sum = canvas_.sums[canvas_.index(x, y)];
     if (sum.hits == 0 ||
         tracer_.shade_covered(x, y, only, found ? found->is_covered : kEverySample, sum))
@@ -310,8 +316,10 @@ image::Layer render(const View& view,
     actors.push_back(place(instances[i], view, light, search[i], grid.span()));
   SampleCounts counts = counts_for(options.quality, largest_px(actors));
   // The samples have a third dimension, time, and need a larger number for the same error.
-  if (view.shutter.exposure_s > 0)
+  if (view.shutter.exposure_s > 0) {
     counts.outline = std::min(2 * counts.outline, PixelSamples::kMost);
+    counts.at_once = false;
+  }
   const Tracer tracer(light, actors, grid, counts);
   image::Layer layer;
   if (patch) {

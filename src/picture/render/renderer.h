@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -69,7 +70,11 @@ struct View {
 // one type share one.
 class Model {
  public:
-  // Copies what it needs from the mesh.
+  // Shares the mesh. `openness_cache`: a folder that keeps the openness of models from one run to
+  // the next (openness_cache.h); empty: none.
+  explicit Model(std::shared_ptr<const aircraft::Mesh> mesh,
+                 const std::filesystem::path& openness_cache = {});
+  // Copies the mesh.
   explicit Model(const aircraft::Mesh& mesh);
   ~Model();
   Model(Model&&) noexcept;

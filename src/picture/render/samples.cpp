@@ -47,6 +47,21 @@ constexpr SobolPoints sobol_points() {
 
 constexpr SobolPoints kPoints = sobol_points();
 
+// The same points, ordered by the remainder of their index by kStrips.
+constexpr SobolPoints strip_points() {
+  SobolPoints sorted{};
+  std::size_t to = 0;
+  for (std::size_t remainder = 0; remainder < PixelSamples::kStrips; ++remainder)
+    for (std::size_t n = remainder; n < PixelSamples::kMost; n += PixelSamples::kStrips, ++to) {
+      sorted.x[to] = kPoints.x[n];
+      sorted.y[to] = kPoints.y[n];
+      sorted.t[to] = kPoints.t[n];
+    }
+  return sorted;
+}
+
+constexpr SobolPoints kStripPoints = strip_points();
+
 float unit(std::uint32_t bits) {
   return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
 }
@@ -69,13 +84,23 @@ double PixelSamples::time(int i) const {
 }
 
 void PixelSamples::fill_times(int n, float* t) const {
-  for (int i = 0; i < n; ++i) t[i] = unit(kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_);
+  fill_strips(n, kStripPoints.t, scramble_t_, t);
 }
 
 void PixelSamples::fill(int n, float* x, float* y) const {
-  for (int i = 0; i < n; ++i) {
-    x[i] = unit(kPoints.x[static_cast<std::size_t>(i)] ^ scramble_x_);
-    y[i] = unit(kPoints.y[static_cast<std::size_t>(i)] ^ scramble_y_);
+  fill_strips(n, kStripPoints.x, scramble_x_, x);
+  fill_strips(n, kStripPoints.y, scramble_y_, y);
+}
+
+void PixelSamples::fill_strips(int n,
+                               const std::array<std::uint32_t, kMost>& points,
+                               std::uint32_t scramble,
+                               float* to) const {
+  const int each = n / kStrips;
+  for (int remainder = 0; remainder < kStrips; ++remainder) {
+    const std::uint32_t* from = points.data() + remainder * (kMost / kStrips);
+    float* strip = to + strip_of(remainder) * each;
+    for (int j = 0; j < each; ++j) strip[j] = unit(from[j] ^ scramble);
   }
 }
 
@@ -88,8 +113,8 @@ SampleCounts counts_for(int quality, double size_px) {
     case 3:
       // In a smaller aircraft each pixel contains more of the livery, and fewer pixels need
       // samples.
-      if (size_px <= 24) return {64, 1024, 1024, 64, 64};
-      if (size_px <= 64) return {16, 512, 512, 32, 16};
+      if (size_px <= 24) return {64, 1024, 1024, 64, 64, true};
+      if (size_px <= 64) return {16, 512, 512, 32, 16, true};
       // A larger aircraft has more pixels on its outline, and with them a larger worst error.
       return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8};
     case 4:

@@ -17,13 +17,32 @@ class PixelSamples {
   PixelSamples(int x, int y);
   // i lies in [0, kMost); the coordinates lie in (0, 1).
   std::array<double, 2> at(int i) const;
-  // The first n points, accurate to 2^-23.
-  void fill(int n, float* x, float* y) const;
   // The time of a sample within the exposure, in (0, 1): the third dimension of the sequence.
   double time(int i) const;
+
+  // Vertical strips of one width, in which the points of a pixel are stored: strip s of kStrips
+  // holds the points with x from s / kStrips to (s + 1) / kStrips, which are one in kStrips of any
+  // first n points (n is a multiple of kStrips).
+  static constexpr int kStrips = 8;
+  // The first n points strip by strip, accurate to 2^-23.
+  void fill(int n, float* x, float* y) const;
   void fill_times(int n, float* t) const;
+  // The place of point i among the first n in that order.
+  int place(int i, int n) const { return strip_of(i % kStrips) * (n / kStrips) + i / kStrips; }
 
  private:
+  // The strip of the points i with that remainder of i / kStrips: x begins with the reversed last
+  // bits of i.
+  int strip_of(int remainder) const {
+    constexpr std::array<int, kStrips> kReversed = {0, 4, 2, 6, 1, 5, 3, 7};
+    return kReversed[static_cast<std::size_t>(remainder)] ^ static_cast<int>(scramble_x_ >> 29);
+  }
+
+  void fill_strips(int n,
+                   const std::array<std::uint32_t, kMost>& points,
+                   std::uint32_t scramble,
+                   float* to) const;
+
   std::uint32_t scramble_x_;
   std::uint32_t scramble_y_;
   std::uint32_t scramble_t_;
@@ -37,10 +56,13 @@ struct SampleCounts {
   int edge = 512;
   // For a pixel that an outline crosses, by Silhouette.
   int outline = 1024;
-  // Hits whose light is computed; the other hits only count as coverage. `shaded_alike` applies
-  // where the computed colours are nearly equal.
+  // Hits whose light is computed; the other hits only count as coverage. `shaded_alike` are
+  // computed before the first look at whether their mean is known well enough.
   int shaded = 16;
   int shaded_alike = 8;
+  // True where most pixels are on an outline: each then takes `outline` samples at once, rather
+  // than after a look at few samples of its neighbours.
+  bool at_once = false;
 };
 
 // quality: Options::quality (Error outside 1..5). size_px: the longest side of the largest

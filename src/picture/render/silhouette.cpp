@@ -2,21 +2,39 @@
 #include "picture/render/silhouette.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "picture/render/marking.h"
+#include "picture/render/pixel_rays.h"
 
 namespace airtruth::render {
 namespace {
 
 // Largest number of triangles over one pixel; with more, rays are faster.
-constexpr std::size_t kMaxTriangles = 192;
+constexpr std::size_t kMaxTriangles = 1024;
 // Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
 // and rays then do all the work.
 constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 25;
+
+// The triangles by the number of pixels that they reach, to a power of two: large ones cover a
+// pixel early.
+std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches) {
+  constexpr std::size_t kSizes = 65;
+  const auto size = [](const Reach& reach) {
+    return kSizes - 1 - static_cast<std::size_t>(std::bit_width(reach.pixels()));
+  };
+  std::array<std::uint32_t, kSizes + 1> first{};
+  for (const Reach& reach : reaches) ++first[size(reach) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> order(reaches.size());
+  for (std::size_t i = 0; i < reaches.size(); ++i)
+    order[first[size(reaches[i])]++] = static_cast<std::uint32_t>(i);
+  return order;
+}
 
 }  // namespace
 
@@ -29,12 +47,9 @@ struct Silhouette::Pencil {
   Thrice<std::array<Vector3, 4>> moment;
   bool exposes = false;
 
-  double product(const Triangle& triangle,
-                 std::size_t side,
-                 std::size_t k,
-                 std::size_t corner) const {
-    const double still = triangle.side[side].dot(direction[k][corner]);
-    return moves ? still + triangle.edge[side].dot(moment[k][corner]) : still;
+  double product(const Planes& planes, std::size_t side, std::size_t k, std::size_t corner) const {
+    const double still = planes.side[side].dot(direction[k][corner]);
+    return moves ? still + planes.edge[side].dot(moment[k][corner]) : still;
   }
 };
 
@@ -107,29 +122,29 @@ class Silhouette::Vertices {
   std::vector<Corners> corners_;
 };
 
-std::optional<Silhouette::Triangle> Silhouette::triangle_of(
-    const Vertices& vertices, const aircraft::Triangle& source) const {
+std::optional<Silhouette::Planes> Silhouette::planes_of(const Vertices& vertices,
+                                                        const aircraft::Triangle& source) const {
   const Vector3& a = vertices.middle()[0]->in_world;
   const Vector3& b = vertices.middle()[1]->in_world;
   const Vector3& c = vertices.middle()[2]->in_world;
-  Triangle triangle{{a.cross(b), b.cross(c), c.cross(a)}, {}, true};
-  const double turn = a.dot(triangle.side[1]);
+  Planes planes{{a.cross(b), b.cross(c), c.cross(a)}, {}};
+  const double turn = a.dot(planes.side[1]);
   if (turn == 0 && !actor_.moves) return std::nullopt;
   if (actor_.moves) {
     const std::array<Vector3, 3> p = {vertices.in_body(source.vertex[0]),
                                       vertices.in_body(source.vertex[1]),
                                       vertices.in_body(source.vertex[2])};
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle.side[k] = p[k].cross(p[(k + 1) % 3]);
-      triangle.edge[k] = p[(k + 1) % 3] - p[k];
+      planes.side[k] = p[k].cross(p[(k + 1) % 3]);
+      planes.edge[k] = p[(k + 1) % 3] - p[k];
     }
   }
   if (turn < 0)
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle.side[k] = -triangle.side[k];
-      triangle.edge[k] = -triangle.edge[k];
+      planes.side[k] = -planes.side[k];
+      planes.edge[k] = -planes.edge[k];
     }
-  return triangle;
+  return planes;
 }
 
 void Silhouette::add_part(const TracedIntruder& actor,
@@ -142,6 +157,8 @@ void Silhouette::add_part(const TracedIntruder& actor,
   const bool spins = actor.moves && mesh_part.spins;
   const std::optional<Reach> disc =
       spins ? std::optional(reach_of_disc(patch_, model.mesh, mesh_part, eyes)) : std::nullopt;
+  const Span& span = grid_.span();
+  const double exposure_share = actor.moves ? grid_.exposure_s() / (span.end_s - span.begin_s) : 0;
   Vertices vertices(actor, part, eyes);
   for (std::size_t i = 0; i < mesh_part.triangles.size(); ++i) {
     const std::vector<Corners>& corners = vertices.look_at(mesh_part.triangles[i]);
@@ -149,10 +166,18 @@ void Silhouette::add_part(const TracedIntruder& actor,
                         : eyes.size() > 1 ? reach_over_time(patch_, corners, eyes)
                                           : reach_of(patch_, corners[0], eyes[0]);
     if (reach.empty()) continue;
-    auto triangle = triangle_of(vertices, mesh_part.triangles[i]);
-    if (!triangle) continue;
-    triangle->opaque = model.opaque[part][i] != 0 && !spins;
-    triangles_.push_back(*triangle);
+    Triangle triangle{
+        model.opaque[part][i] != 0 && !spins, true, static_cast<std::uint32_t>(straight_.size())};
+    if (const auto straight = StraightTriangle::of(corners, eyes, exposure_share)) {
+      straight_.push_back(*straight);
+    } else if (const auto planes = planes_of(vertices, mesh_part.triangles[i])) {
+      triangle.is_straight = false;
+      triangle.index = static_cast<std::uint32_t>(planes_.size());
+      planes_.push_back(*planes);
+    } else {
+      continue;
+    }
+    triangles_.push_back(triangle);
     reaches.push_back(reach);
   }
 }
@@ -162,20 +187,19 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
       static_cast<std::size_t>(patch_.width) * static_cast<std::size_t>(patch_.height);
   first_.assign(pixels + 1, 0);
   std::uint64_t entries = 0;
-  for (const Reach& r : reaches)
-    entries += static_cast<std::uint64_t>(r.x1 - r.x0) * static_cast<std::uint64_t>(r.y1 - r.y0);
+  for (const Reach& r : reaches) entries += r.pixels();
   if (entries > kMaxEntries) {
     touch_.assign(pixels, Touch::kRays);
     return;
   }
   touch_.assign(pixels, Touch::kNone);
+  const std::vector<std::uint32_t> order = largest_first(reaches);
   const auto each = [&](const auto& body) {
-    for (std::size_t i = 0; i < reaches.size(); ++i) {
+    for (const std::uint32_t i : order) {
       const Reach& r = reaches[i];
       for (int y = r.y0; y < r.y1; ++y) {
         const std::size_t row = index(0, y);
-        for (int x = r.x0; x < r.x1; ++x)
-          body(row + static_cast<std::size_t>(x), static_cast<std::uint32_t>(i));
+        for (int x = r.x0; x < r.x1; ++x) body(row + static_cast<std::size_t>(x), i);
       }
     }
   };
@@ -204,119 +228,119 @@ Silhouette::Touch Silhouette::touch(int x, int y) const { return touch_[index(x,
 Silhouette::Pencil Silhouette::pencil_of(int x, int y) const {
   Pencil pencil;
   pencil.moves = actor_.moves;
-  Thrice<std::array<Vector3, 4>> in_world;
-  for (int k = actor_.moves ? 0 : 1; k < (actor_.moves ? 3 : 2); ++k) {
-    in_world[static_cast<std::size_t>(k)] = grid_.corners(x, y, k);
-    pencil.known = pencil.known && finite(in_world[static_cast<std::size_t>(k)]);
-  }
-  if (!pencil.known) return pencil;
   if (!actor_.moves) {
-    pencil.direction[1] = in_world[1];
+    pencil.direction[1] = grid_.corners(x, y);
+    pencil.known = finite(pencil.direction[1]);
     return pencil;
   }
-  const double exposure_s = grid_.exposure_s();
-  pencil.exposes = exposure_s > 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double dt_s = grid_.middle_s(x, y) + 0.5 * (static_cast<double>(k) - 1) * exposure_s;
-    const double u = grid_.span().u(dt_s);
-    const Matrix3 body_from_world = between(actor_.body_from_world_at, u);
-    const Vector3 eye = between(actor_.eye_in_body_at, u);
-    for (std::size_t c = 0; c < 4; ++c) {
-      const Thrice<Vector3> corner = {in_world[0][c], in_world[1][c], in_world[2][c]};
-      pencil.direction[k][c] = body_from_world * between(corner, u);
-      pencil.moment[k][c] = eye.cross(pencil.direction[k][c]);
-    }
-  }
+  const Beam beam = beam_of(actor_, grid_, x, y);
+  pencil.known = beam.known;
+  pencil.exposes = beam.exposes;
+  pencil.direction = beam.direction_in_body;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t c = 0; c < 4; ++c)
+      pencil.moment[k][c] = beam.eye_in_body[k].cross(pencil.direction[k][c]);
   return pencil;
 }
 
-// Side: a type of marking.h. side_of(triangle, side): the products at its four corners, at one
-// moment or three.
-template <typename Side, typename ProductsOf, typename SideOf, typename Place>
-void Silhouette::cover_by(int x,
-                          int y,
-                          int samples,
-                          const ProductsOf& products_of,
-                          const SideOf& side_of,
-                          const Place& place,
-                          Cover& result) const {
-  std::int32_t* covered = result.is_covered.data();
-  Places places;
-  bool placed = false;
-  bool full = false;
-  for (const std::uint32_t index : triangles_of(x, y)) {
+bool Silhouette::is_known(int x, int y) const {
+  for (int k = actor_.moves ? 0 : 1; k < (actor_.moves ? 3 : 2); ++k)
+    if (!finite(grid_.corners(x, y, k))) return false;
+  return true;
+}
+
+class Silhouette::PixelCover {
+ public:
+  PixelCover(const Silhouette& silhouette, int x, int y, int samples, Cover& result)
+      : silhouette_(silhouette), x_(x), y_(y), samples_(samples), result_(result) {
+    result.is_covered.assign(static_cast<std::size_t>(samples), 0);
+    result.covered = 0;
+    exposes_ = silhouette.actor_.moves && silhouette.grid_.exposure_s() > 0;
+    if (silhouette.actor_.moves) u_ = silhouette.grid_.span().u(silhouette.grid_.middle_s(x, y));
+  }
+
+  void mark_all() {
+    if (!silhouette_.is_known(x_, y_)) return;
+    std::int32_t* covered = result_.is_covered.data();
+    for (const std::uint32_t i : silhouette_.triangles_of(x_, y_)) {
+      const Triangle& triangle = silhouette_.triangles_[i];
+      const bool full = triangle.is_straight ? mark_straight(silhouette_.straight_[triangle.index])
+                                             : mark_planes(silhouette_.planes_[triangle.index]);
+      if (!full) continue;
+      std::fill_n(covered, samples_, -1);
+      break;
+    }
+    result_.covered = -std::accumulate(covered, covered + samples_, 0);
+  }
+
+ private:
+  // The functions return true where every sample is covered.
+  bool mark_straight(const StraightTriangle& triangle) {
+    const PixelSides sides = triangle.over(x_, y_, u_);
+    if (sides.is_outside) return false;
+    if (sides.crossing == 0) return true;
+    const unsigned strips = sides.strips & open_;
+    if (strips == 0) return false;
+    place();
+    open_ &= ~mark(sides.side, exposes_, places_, samples_, strips, result_.is_covered.data());
+    return open_ == 0;
+  }
+
+  bool mark_planes(const Planes& planes) {
+    if (!pencil_) pencil_ = silhouette_.pencil_of(x_, y_);
+    return exposes_ ? mark_planes_by<Swept, 3>(planes) : mark_planes_by<Bilinear, 1>(planes);
+  }
+
+  // Side: a type of marking.h. kMoments: the number of the moments that it is made from.
+  template <typename Side, std::size_t kMoments>
+  bool mark_planes_by(const Planes& planes) {
     std::array<Side, 3> sides;
     int crossing = 0;
-    bool outside = false;
-    for (std::size_t side = 0; side < 3 && !outside; ++side) {
-      const auto products = products_of(triangles_[index], side);
-      const std::ptrdiff_t inner =
-          std::count_if(products.begin(), products.end(), [](double p) { return p >= 0; });
-      if (inner == std::ssize(products)) continue;
-      outside = inner == 0;
-      if (!outside) sides[static_cast<std::size_t>(crossing++)] = side_of(products);
+    for (std::size_t side = 0; side < 3; ++side) {
+      std::array<std::array<double, 4>, kMoments> products;
+      int inner = 0;
+      for (std::size_t k = 0; k < kMoments; ++k)
+        for (std::size_t c = 0; c < 4; ++c) {
+          products[k][c] = pencil_->product(planes, side, kMoments == 1 ? 1 : k, c);
+          inner += products[k][c] >= 0;
+        }
+      if (inner == 4 * kMoments) continue;
+      if (inner == 0) return false;
+      if constexpr (kMoments == 1)
+        sides[static_cast<std::size_t>(crossing++)] = bilinear_of(products[0]);
+      else
+        sides[static_cast<std::size_t>(crossing++)] = swept_of(products);
     }
-    if (outside) continue;
-    if (!placed && crossing > 0) place(PixelSamples(x, y), places);
-    placed = placed || crossing > 0;
-    full = crossing == 0 || mark(sides, crossing, places, samples, covered);
-    if (full) break;
+    if (crossing == 0) return true;
+    place();
+    return mark(sides, crossing, places_, samples_, result_.is_covered.data());
   }
-  if (full) std::fill_n(covered, samples, -1);
-  result.covered = -std::accumulate(covered, covered + samples, 0);
-}
+
+  void place() {
+    if (is_placed_) return;
+    is_placed_ = true;
+    const PixelSamples here(x_, y_);
+    here.fill(samples_, places_.x.data(), places_.y.data());
+    if (exposes_) here.fill_times(samples_, places_.t.data());
+  }
+
+  const Silhouette& silhouette_;
+  int x_;
+  int y_;
+  int samples_;
+  Cover& result_;
+  bool exposes_ = false;
+  // The middle of the pixel's exposure in the span.
+  double u_ = 0;
+  std::optional<Pencil> pencil_;
+  Places places_;
+  bool is_placed_ = false;
+  // The strips with samples that are not covered yet.
+  unsigned open_ = kAllStrips;
+};
 
 void Silhouette::cover(int x, int y, int samples, Cover& result) const {
-  result.is_covered.assign(static_cast<std::size_t>(samples), 0);
-  result.covered = 0;
-  const Pencil pencil = pencil_of(x, y);
-  if (!pencil.known) return;
-  if (pencil.exposes)
-    cover_moving(x, y, pencil, samples, result);
-  else
-    cover_still(x, y, pencil, samples, result);
-}
-
-void Silhouette::cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const {
-  using Products = std::array<double, 4>;
-  cover_by<Bilinear>(
-      x,
-      y,
-      samples,
-      [&](const Triangle& triangle, std::size_t side) {
-        Products at;
-        for (std::size_t c = 0; c < 4; ++c) at[c] = pencil.product(triangle, side, 1, c);
-        return at;
-      },
-      bilinear_of,
-      [&](const PixelSamples& here, Places& places) {
-        here.fill(samples, places.x.data(), places.y.data());
-      },
-      result);
-}
-
-void Silhouette::cover_moving(
-    int x, int y, const Pencil& pencil, int samples, Cover& result) const {
-  // Four products for each moment.
-  using Products = std::array<double, 12>;
-  cover_by<Swept>(
-      x,
-      y,
-      samples,
-      [&](const Triangle& triangle, std::size_t side) {
-        Products at;
-        for (std::size_t i = 0; i < 12; ++i) at[i] = pencil.product(triangle, side, i / 4, i % 4);
-        return at;
-      },
-      [](const Products& p) {
-        return swept_of(
-            {{{p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, {p[8], p[9], p[10], p[11]}}});
-      },
-      [&](const PixelSamples& here, Places& places) {
-        here.fill(samples, places.x.data(), places.y.data());
-        here.fill_times(samples, places.t.data());
-      },
-      result);
+  PixelCover(*this, x, y, samples, result).mark_all();
 }
 
 }  // namespace airtruth::render

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "picture/render/reach.h"
+#include "picture/render/straight.h"
 #include "picture/render/tracer.h"
 
 // Finds the outline of an opaque aircraft without rays. Seen from the eye, a direction d lies
@@ -34,7 +35,7 @@ namespace airtruth::render {
 // The samples, among a pixel's first n, that an aircraft covers.
 struct Cover {
   int covered = 0;
-  // 0 or -1 for each sample.
+  // 0 or -1 for each sample, in the order of PixelSamples::fill().
   std::vector<std::int32_t> is_covered;
 };
 
@@ -54,40 +55,38 @@ class Silhouette {
   Touch touch(int x, int y) const;
 
   // Covers the samples of a pixel of the kind kOpaque. No sample is covered where the lens lacks a
-  // direction for some part of the pixel. samples: 1 to PixelSamples::kMost.
+  // direction for some part of the pixel. samples: a multiple of PixelSamples::kStrips, up to
+  // PixelSamples::kMost.
   void cover(int x, int y, int samples, Cover& result) const;
 
  private:
-  struct Triangle {
-    // At an instant `side` holds the inward normals, in world, of the planes through the eye and a
-    // side. During a motion `side` holds a x b and `edge` holds b - a for each side, in body.
+  // The planes of a triangle through the eye. At an instant `side` holds their inward normals, in
+  // world. During a motion `side` holds a x b and `edge` holds b - a for each side, in body.
+  struct Planes {
     std::array<Vector3, 3> side;
     std::array<Vector3, 3> edge;
+  };
+  struct Triangle {
     bool opaque = true;
+    // Where the triangle is in straight_, or else in planes_.
+    bool is_straight = false;
+    std::uint32_t index = 0;
   };
 
   // The vertices of one part at the moments of the eyes.
   class Vertices;
-  // The rays of a pixel, as the sides use them.
+  // The rays of a pixel, as the planes use them.
   struct Pencil;
+  // Marks one pixel's samples.
+  class PixelCover;
   void add_part(const TracedIntruder& actor,
                 std::size_t part,
                 const std::vector<Eye>& eyes,
                 std::vector<Reach>& reaches);
   // Empty where the triangle is seen edge-on.
-  std::optional<Triangle> triangle_of(const Vertices& vertices,
-                                      const aircraft::Triangle& source) const;
+  std::optional<Planes> planes_of(const Vertices& vertices, const aircraft::Triangle& source) const;
   Pencil pencil_of(int x, int y) const;
-  template <typename Side, typename ProductsOf, typename SideOf, typename Place>
-  void cover_by(int x,
-                int y,
-                int samples,
-                const ProductsOf& products_of,
-                const SideOf& side_of,
-                const Place& place,
-                Cover& result) const;
-  void cover_moving(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
-  void cover_still(int x, int y, const Pencil& pencil, int samples, Cover& result) const;
+  bool is_known(int x, int y) const;
   void sort_by_pixel(const std::vector<Reach>& reaches);
   std::span<const std::uint32_t> triangles_of(int x, int y) const;
   std::size_t index(int x, int y) const {
@@ -99,6 +98,8 @@ class Silhouette {
   const RayGrid& grid_;
   const TracedIntruder& actor_;
   std::vector<Triangle> triangles_;
+  std::vector<StraightTriangle> straight_;
+  std::vector<Planes> planes_;
   // The index in by_pixel_ of each pixel's first triangle; one more entry at the end.
   std::vector<std::uint32_t> first_;
   std::vector<std::uint32_t> by_pixel_;

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "picture/render/packets.h"
+#include "picture/render/pixel_light.h"
+#include "picture/render/pixel_rays.h"
+
 namespace airtruth::render {
 namespace {
 
@@ -28,13 +32,6 @@ BodyRay body_ray(const TracedIntruder& actor, const Shot& shot) {
           ? Vector3((between(actor.body_from_world_at, shot.u) * shot.direction).normalized())
           : Vector3(actor.body_from_world * shot.direction);
   return {(eye + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
-}
-
-// The pose of a spinning part differs at every moment of the exposure.
-Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt_s) {
-  if (dt_s == 0) return placed.part_from_body[part];
-  return aircraft::body_from_part(placed.model->mesh.parts[part], placed.time_s + dt_s)
-      .inverse(Eigen::Isometry);
 }
 
 std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from, double dt_s) {
@@ -63,14 +60,6 @@ std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float f
       best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
   }
   return best;
-}
-
-// True where the colours differ by only a few code values of a video.
-bool alike(const std::array<float, 3>& low, const std::array<float, 3>& high) {
-  constexpr float kSpread = 0.12f;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (high[c] - low[c] > kSpread * high[c] + 0.004f) return false;
-  return true;
 }
 
 }  // namespace
@@ -186,32 +175,27 @@ double Tracer::collect(int actor_index,
 bool Tracer::shade_covered(
     int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
   const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
-  const PixelShots shots(grid_, x, y);
-  const double pixel_rad = shots.pixel_rad();
-  double distance_sum = 0;
-  std::array<float, 3> low;
-  low.fill(INFINITY);
-  std::array<float, 3> high{};
-  for (std::size_t i = 0; i < is_covered.size() && sum.opaque_shaded < counts_.shaded; ++i) {
-    if (is_covered[i] == 0) continue;
-    if (sum.opaque_shaded > 0 && sum.opaque_shaded % counts_.shaded_alike == 0 && alike(low, high))
-      break;
-    const Shot shot = shots(static_cast<int>(i));
-    const auto hit = nearest_hit(actor.placed, body_ray(actor, shot), 0, shot.dt_s);
-    // So close to an edge the float and the double computation disagree.
-    if (!hit) continue;
-    const Fragment fragment{actor.start_m + hit->t, actor_index, 1, *hit};
-    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum.opaque_rgb[c] += rgb[c];
-      low[c] = std::min(low[c], rgb[c]);
-      high[c] = std::max(high[c], rgb[c]);
-    }
-    distance_sum += fragment.distance_m;
-    ++sum.opaque_shaded;
+  const PixelRays rays(actor, grid_, x, y);
+  PixelLight light(actor.placed, rays, light_, actor.start_m, footprint(1, rays.pixel_rad()));
+  const PixelSamples order(x, y);
+  const auto all = static_cast<int>(is_covered.size());
+  int next = 0;
+  const double share = sum.alpha / sum.count;
+  while (light.count() < counts_.shaded) {
+    std::array<int, PixelLight::kMostAtOnce> samples;
+    std::size_t n = 0;
+    const auto wanted =
+        static_cast<std::size_t>(std::min(counts_.shaded_alike, counts_.shaded - light.count()));
+    for (; next < all && n < wanted; ++next)
+      if (is_covered[static_cast<std::size_t>(order.place(next, all))] != 0) samples[n++] = next;
+    if (n == 0) break;
+    light.add({samples.data(), n});
+    if (light.is_known(share)) break;
   }
-  if (sum.opaque_shaded == 0) return false;
-  sum.depth = distance_sum / sum.opaque_shaded * sum.alpha;
+  if (light.count() == 0) return false;
+  sum.opaque_rgb = light.rgb_sum();
+  sum.opaque_shaded = light.count();
+  sum.depth = light.distance_sum_m() / light.count() * sum.alpha;
   return true;
 }
 

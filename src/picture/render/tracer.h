@@ -116,8 +116,8 @@ class Tracer {
                  std::vector<Fragment>& fragments) const;
 
   // Computes the light and the distance of a pixel from the samples that are known to meet one
-  // opaque actor (`is_covered` is not 0), by tracing rays through some of them. Returns false where
-  // none of those rays hits.
+  // opaque actor (`is_covered` is not 0, in the order of PixelSamples::fill()), by tracing rays
+  // through some of them. Returns false where none of those rays hits.
   bool shade_covered(
       int x, int y, int actor, const std::vector<std::int32_t>& is_covered, Sum& sum) const;
 

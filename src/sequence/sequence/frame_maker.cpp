@@ -53,6 +53,12 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   return info;
 }
 
+// The folder that keeps the openness of aircraft; empty: none.
+fs::path openness_cache(const Options& options) {
+  if (!options.use_cache) return {};
+  return (options.cache.empty() ? cache_folder() : options.cache) / "openness";
+}
+
 fs::path motion_cache(const Options& options) {
   if (!options.use_cache) return {};
   return options.cache.empty() ? cache_folder() / "motion" : options.cache;
@@ -75,7 +81,9 @@ Setting::Setting(const StatedScene& stated,
     : scene(stated.scene),
       size(image_size),
       mask(read_mask(scene, size)),
-      world(load_world(scene, size, options.warn, options.stop, options.shared.get())),
+      inputs(options.shared ? options.shared
+                            : std::make_shared<SharedInputs>(openness_cache(options))),
+      world(load_world(scene, size, options.warn, options.stop, inputs.get())),
       painter(make_painter(
           scene, world, own_aircraft(), {options.gpu, options.software_gl, options.stop})) {
   scene.motion.model = motion_model(scene);
@@ -101,7 +109,7 @@ void FrameMaker::measure() {
   check_codec(setting_.scene, reader_.info().colour);
   setting_.world.shutter = shutter_of(setting_.scene.camera_model);
 
-  video_sha256_ = sha256_of_video(setting_.scene.background.video, options_.shared.get());
+  video_sha256_ = sha256_of_video(setting_.scene.background.video, setting_.inputs.get());
   motion_.emplace(setting_.scene,
                   setting_.world.lens,
                   !setting_.world.shutter.is_instant(),
@@ -119,7 +127,7 @@ void FrameMaker::measure() {
         setting_.world,
         [&](const scene::Seen& seen) { return frame_near(*motion_, info_, seen); },
         options_.stop,
-        options_.shared.get());
+        setting_.inputs.get());
   ambient_.emplace(
       setting_.scene.light, tone_of(setting_.scene.camera_model), setting_.own_aircraft());
 }

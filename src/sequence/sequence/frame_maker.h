@@ -12,6 +12,7 @@
 #include "sequence/sequence/resolve.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/motion_source.h"
+#include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
 #include "truth/annotation/truth.h"
@@ -33,6 +34,7 @@ struct Setting {
   scene::Scene scene;  // complete once measure() has run: what sequence.json records
   lens::ImageSize size;
   std::optional<image::Mask> mask;
+  std::shared_ptr<SharedInputs> inputs;  // of the process, else of this run
   World world;
   std::unique_ptr<Painter> painter;
 };

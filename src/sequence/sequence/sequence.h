@@ -35,7 +35,7 @@ struct Options {
   // Number of threads; 0 means one per core. The annotation's bytes do not depend on it.
   int threads = 0;
   bool use_cache = true;
-  // Folder of the cache for motion and calibrations; empty: the user's own
+  // Folder of the cache for motion, calibrations and openness; empty: the user's own
   // (foundation/base/files.h).
   fs::path cache;
   // Inputs that runs of one process have in common (sequence/setup/shared_inputs.h); nullptr: this

@@ -73,6 +73,7 @@ class Sweep {
       }
       at[k] = *pixel;
     }
+    if (is_within(at, bounds)) return;
     // Number of steps of the exposure.
     constexpr int kSteps = 4;
     for (int step = 0; step <= kSteps; ++step) {
@@ -83,6 +84,18 @@ class Sweep {
   }
 
  private:
+  // True where the path, at any time of the exposure and of the readout, lies inside the bounds: it
+  // does where the control points of its Bezier form do.
+  static bool is_within(const std::array<Pixel, 3>& at, const BoxBounds& bounds) {
+    constexpr double kRoundingPx = 1e-6;
+    const Pixel control = 2 * at[1] - 0.5 * (at[0] + at[2]);
+    const Pixel low = at[0].cwiseMin(at[2]).cwiseMin(control) - Pixel::Constant(kRoundingPx);
+    const Pixel high = at[0].cwiseMax(at[2]).cwiseMax(control) + Pixel::Constant(kRoundingPx);
+    const auto box = bounds.box();
+    return box && low.x() >= box->x && low.y() >= box->y && high.x() <= box->right() &&
+           high.y() <= box->bottom();
+  }
+
   Pixel along(const std::array<Pixel, 3>& at, double dt_s) const {
     // From -1 to 1.
     const double u = half_s_ > 0 ? dt_s / half_s_ : 0;
