@@ -35,8 +35,9 @@ struct Type {
 
 class SharedInputs {
  public:
-  // Aircraft that no sequence is using are kept up to this size together: some three airliners with
-  // textures of 2048x2048, or a hundred light aircraft.
+  // Aircraft that no sequence is using are kept up to this size together: ten airliners with a
+  // texture of 1024x1024, the usual size. A larger one (4096x4096: 700 MiB) is kept until another
+  // is loaded.
   static constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 
   explicit SharedInputs(std::size_t max_kept_bytes = kMaxKeptBytes)
