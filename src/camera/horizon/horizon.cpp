@@ -34,24 +34,38 @@ Vector3 up_of(double pitch_rad, double roll_rad) {
   return cam_from_body() * (body_from_world * Vector3(0, 0, -1));
 }
 
+// The sums over all samples, which are the same for every plane.
+struct Totals {
+  Feature sum = Feature::Zero();
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+};
+
+Totals totals_of(const std::vector<Sample>& samples) {
+  Totals totals;
+  for (const Sample& s : samples) {
+    totals.sum += s.feature;
+    totals.squares += s.feature * s.feature.transpose();
+  }
+  return totals;
+}
+
 // The squared distance between the mean features of the two sides, in their common covariance; 0
 // where one side has too few blocks.
-double parted(const std::vector<Sample>& samples, const Vector3& up) {
-  Feature sum[2] = {Feature::Zero(), Feature::Zero()};
-  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+double parted(const std::vector<Sample>& samples, const Totals& totals, const Vector3& up) {
+  Feature above = Feature::Zero();
   double count[2] = {0, 0};
   for (const Sample& s : samples) {
-    const int side = s.ray.dot(up) > 0 ? 1 : 0;
-    sum[side] += s.feature;
-    count[side] += 1;
-    squares += s.feature * s.feature.transpose();
+    const double side = s.ray.dot(up) > 0 ? 1 : 0;
+    above += side * s.feature;
+    count[1] += side;
   }
-  const double n = count[0] + count[1];
+  const auto n = static_cast<double>(samples.size());
+  count[0] = n - count[1];
   if (std::min(count[0], count[1]) < kMinSideShare * n) return 0;
-  const Feature low = sum[0] / count[0];
-  const Feature high = sum[1] / count[1];
-  Eigen::Matrix4d within =
-      squares / n - count[0] / n * low * low.transpose() - count[1] / n * high * high.transpose();
+  const Feature low = (totals.sum - above) / count[0];
+  const Feature high = above / count[1];
+  Eigen::Matrix4d within = totals.squares / n - count[0] / n * low * low.transpose() -
+                           count[1] / n * high * high.transpose();
   within.diagonal().array() += 1.0;  // a variance of one code value keeps it invertible
   const Feature apart = high - low;
   // Fisher's criterion (1936), weighted so that an even split has the weight 1.
@@ -101,9 +115,10 @@ struct Parting {
 // The plane that parts the picture best: a grid over all attitudes, and a refinement of its best
 // point down to 0.02 degrees.
 Parting best_parting(const std::vector<Sample>& samples) {
+  const Totals totals = totals_of(samples);
   Parting best;
   const auto look = [&](double pitch, double roll) {
-    const double value = parted(samples, up_of(pitch, roll));
+    const double value = parted(samples, totals, up_of(pitch, roll));
     if (value > best.value) best = {value, pitch, roll};
   };
   for (double p = -48; p <= 48; p += 4)

@@ -57,7 +57,7 @@ float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, co
 // The step of luma from below to above, by azimuth and elevation, and the step that the slope of
 // the sky above makes over the same angle. The latter is 0 where that sky is outside the picture.
 struct Unrolled {
-  std::vector<double> azimuth_rad;
+  std::vector<double> cos_azimuth, sin_azimuth;
   std::vector<float> step, sky;  // [column][row]
   int rows = 0;
   std::size_t at(std::size_t column, int row) const {
@@ -77,13 +77,14 @@ struct Rows {
   int across, sky_from, sky_to;
 };
 
-float sky_at(const std::vector<float>& luma, int row, const Rows& rows) {
+// The mean of the steps in the band of sky above a row; 0 where none of them is in the picture.
+float sky_at(const std::vector<float>& step, int row, const Rows& rows) {
   float sum = 0;
   int seen = 0;
   for (int r = row + rows.sky_from; r <= row + rows.sky_to; ++r) {
-    const float step = step_at(luma, r, rows.across);
-    if (std::isnan(step)) continue;
-    sum += step;
+    const float s = step[static_cast<std::size_t>(r)];
+    if (std::isnan(s)) continue;
+    sum += s;
     ++seen;
   }
   return seen > 0 ? sum / static_cast<float>(seen) : 0;
@@ -108,24 +109,34 @@ Unrolled unroll(const image::Picture& picture,
       static_cast<int>(std::lround((sweep.high_deg - sweep.low_deg) / sweep.step_deg)) + 1;
   const double half_rad = std::min(
       kPi, radians(std::max(lens.horizontal_fov_deg(), lens.vertical_fov_deg())) / 2 * 1.1);
+  const Matrix3 cam_from_level_axes = cam_from_level.toRotationMatrix();
   std::vector<float> luma(static_cast<std::size_t>(result.rows + 2 * rows.across + rows.sky_to));
+  std::vector<float> step(luma.size(), kNothing);
+  std::vector<Eigen::Vector2d> elevation;  // cosine and sine
+  for (std::size_t r = 0; r < luma.size(); ++r) {
+    const double e = radians(sweep.low_deg + (static_cast<int>(r) - rows.across) * sweep.step_deg);
+    elevation.emplace_back(std::cos(e), std::sin(e));
+  }
+  const int last_step = static_cast<int>(luma.size()) - rows.across;
   for (int i = 0; i < kColumns; ++i) {
     const double azimuth = half_rad * (2.0 * (i + 0.5) / kColumns - 1);
+    const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
     bool any = false;
     for (std::size_t r = 0; r < luma.size(); ++r) {
-      const double e =
-          radians(sweep.low_deg + (static_cast<int>(r) - rows.across) * sweep.step_deg);
       const Vector3 direction(
-          std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), -std::sin(e));
-      const auto pixel = lens.pixel_from_cam(cam_from_level * direction);
+          elevation[r].x() * cosine, elevation[r].x() * sine, -elevation[r].y());
+      const auto pixel = lens.pixel_from_cam(cam_from_level_axes * direction);
       luma[r] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
       any = any || !std::isnan(luma[r]);
     }
     if (!any) continue;
-    result.azimuth_rad.push_back(azimuth);
+    for (int r = rows.across; r < last_step; ++r)
+      step[static_cast<std::size_t>(r)] = step_at(luma, r, rows.across);
+    result.cos_azimuth.push_back(cosine);
+    result.sin_azimuth.push_back(sine);
     for (int r = rows.across; r < rows.across + result.rows; ++r) {
-      result.step.push_back(step_at(luma, r, rows.across));
-      result.sky.push_back(sky_at(luma, r, rows));
+      result.step.push_back(step[static_cast<std::size_t>(r)]);
+      result.sky.push_back(sky_at(step, r, rows));
     }
   }
   return result;
@@ -152,16 +163,17 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
   std::vector<float> edges;
   for (std::size_t i = 0; i < picture.step.size(); ++i)
     edges.push_back(edge_of(picture.step[i], picture.sky[i]));
-  const std::size_t columns = picture.azimuth_rad.size();
+  const std::size_t columns = picture.cos_azimuth.size();
   for (double pitch = sweep.low_deg; pitch <= sweep.high_deg; pitch += sweep.step_deg)
     for (double roll = -sweep.most_tilt_deg; roll <= sweep.most_tilt_deg; roll += sweep.step_deg) {
       float sum = 0;
       int seen = 0;
       for (std::size_t i = 0; i < columns; ++i) {
-        const double e =
-            pitch * std::cos(picture.azimuth_rad[i]) + roll * std::sin(picture.azimuth_rad[i]);
-        const int row = static_cast<int>(std::lround((e - sweep.low_deg) / sweep.step_deg));
-        if (row < 0 || row >= picture.rows) continue;
+        const double e = pitch * picture.cos_azimuth[i] + roll * picture.sin_azimuth[i];
+        const double position = (e - sweep.low_deg) / sweep.step_deg;
+        if (position <= -0.5) continue;
+        const int row = static_cast<int>(position + 0.5);
+        if (row >= picture.rows) continue;
         const float edge = edges[picture.at(i, row)];
         if (std::isnan(edge)) continue;
         sum += edge;
@@ -175,7 +187,7 @@ Line best_line(const Unrolled& picture, const Sweep& sweep) {
 
 double sharpness_of(const Unrolled& line) {
   int seen = 0, up = 0, down = 0;
-  for (std::size_t i = 0; i < line.azimuth_rad.size(); ++i) {
+  for (std::size_t i = 0; i < line.cos_azimuth.size(); ++i) {
     if (std::isnan(line.step[i])) continue;
     const float least = std::abs(line.sky[i]) + kMinStepCodes;
     ++seen;
