@@ -115,11 +115,11 @@ Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th)
       static_assert(kWeightSum >> kShift == kLumaSteps);
       more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
     }
-    const std::int16_t* weight = &kWeight[first];
+    const std::int16_t* sample_weight = &kWeight[first];
     for (int i = 0; i < kPatchPx; ++i) {
       all.times_slope_x += more[i] * slope_x[i];
       all.times_slope_y += more[i] * slope_y[i];
-      all.weighted += more[i] * weight[i];
+      all.weighted += more[i] * sample_weight[i];
       all.sum += more[i];
       all.squares += more[i] * more[i];
     }
