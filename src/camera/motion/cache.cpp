@@ -12,7 +12,7 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kEstimatorVersion = 8;  // increase it when the estimator's results change
+constexpr int kEstimatorVersion = 9;  // increase it when the estimator's results change
 
 }  // namespace
 

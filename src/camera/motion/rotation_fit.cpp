@@ -11,7 +11,8 @@
 namespace airtruth::motion {
 namespace {
 
-constexpr int kTrials = 300;
+constexpr int kMaxTrials = 300;
+constexpr double kConfidence = 0.9999;
 constexpr int kRefinements = 12;
 constexpr double kMinTurnShare = 0.15;
 constexpr double kMinSpreadRad = 0.02;  // rms distance of the inliers from their mean direction
@@ -40,10 +41,23 @@ double miss(const Matrix3& r, const Bearings& b) {
   return (b.in_cam - r * b.in_reference).squaredNorm();
 }
 
-int count_within(const std::vector<Bearings>& bearings, const Matrix3& r, double limit_rad) {
-  int count = 0;
-  for (const Bearings& b : bearings) count += miss(r, b) <= limit_rad * limit_rad ? 1 : 0;
-  return count;
+// How well a rotation agrees with bearings. The score counts an inlier the more, the smaller its
+// residual is (Torr and Zisserman 2000, "MLESAC", equation 15), so that many points which agree
+// loosely do not outvote those that agree.
+struct Agreement {
+  double score = 0;
+  int inliers = 0;
+};
+
+Agreement agreement(const std::vector<Bearings>& bearings, const Matrix3& r, double limit_rad) {
+  Agreement all;
+  for (const Bearings& b : bearings) {
+    const double share = miss(r, b) / (limit_rad * limit_rad);
+    if (share > 1) continue;
+    all.score += 1 - share;
+    ++all.inliers;
+  }
+  return all;
 }
 
 std::vector<Bearings> far_of(const std::vector<Bearings>& bearings) {
@@ -53,8 +67,17 @@ std::vector<Bearings> far_of(const std::vector<Bearings>& bearings) {
   return result;
 }
 
-// The best rotation of kTrials pairs. It is empty where fewer than min_inliers points or fewer than
-// kMinTurnShare of all points agree with it.
+// The number of pairs after which one of two inliers was among them with a probability of
+// kConfidence, where this share of the points are inliers (Fischler and Bolles 1981, equation 4).
+int trials_for(double inlier_share) {
+  const double pair_share = inlier_share * inlier_share;
+  if (pair_share >= 1) return 1;
+  const double trials = std::log(1 - kConfidence) / std::log1p(-pair_share);
+  return static_cast<int>(std::min<double>(kMaxTrials, std::ceil(trials)));
+}
+
+// The best rotation of as many pairs as the share of inliers requires. It is empty where fewer than
+// min_inliers points or fewer than kMinTurnShare of all points agree with it.
 std::optional<Matrix3> consensus(const std::vector<Bearings>& bearings,
                                  double limit_rad,
                                  int min_inliers,
@@ -62,18 +85,22 @@ std::optional<Matrix3> consensus(const std::vector<Bearings>& bearings,
   const std::size_t n = bearings.size();
   if (n < 2 || static_cast<int>(n) < min_inliers) return std::nullopt;
   Random random(seed);
-  int most = 0;
+  Agreement most;
   Matrix3 best = Matrix3::Identity();
-  for (int trial = 0; trial < kTrials; ++trial) {
+  int enough = kMaxTrials;
+  for (int trial = 0; trial < enough; ++trial) {
     const auto one = static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
     const auto other = static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
     const auto rotation = from_pair(bearings[one], bearings[other]);
     if (!rotation) continue;
     const Matrix3 r = rotation->toRotationMatrix();
-    const int count = count_within(bearings, r, limit_rad);
-    if (count > most) most = count, best = r;
+    const Agreement found = agreement(bearings, r, limit_rad);
+    if (found.score <= most.score) continue;
+    most = found, best = r;
+    enough = trials_for(static_cast<double>(most.inliers) / static_cast<double>(n));
   }
-  if (most < min_inliers || most < kMinTurnShare * static_cast<double>(n)) return std::nullopt;
+  if (most.inliers < min_inliers || most.inliers < kMinTurnShare * static_cast<double>(n))
+    return std::nullopt;
   return best;
 }
 

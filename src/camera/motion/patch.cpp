@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::motion {
+namespace {
+
+constexpr int kLumaSteps = 8;  // of Patch::luma_ in a code value
+// Sampling positions are sixteenths of a sample, so that bilinear weights are integers that sum to
+// 256. The result is not rounded: a search linearises about such a position.
+constexpr int kPositionSteps = 16;
+constexpr int kWeightSum = kPositionSteps * kPositionSteps;
+// The weight of a sample is that of its column times that of its row.
+constexpr std::array<int, kPatchPx> kWeights = {1, 2, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 3, 2, 1};
+constexpr std::array<std::int16_t, kPatchPx * kPatchPx> weights() {
+  std::array<std::int16_t, kPatchPx * kPatchPx> all{};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = static_cast<std::int16_t>(kWeights[i / kPatchPx] * kWeights[i % kPatchPx]);
+  return all;
+}
+constexpr std::array<std::int16_t, kPatchPx* kPatchPx> kWeight = weights();
+constexpr double kWeightOfAll = 52.0 * 52.0;
+// The least eigenvalue of the normal matrix, per sample, in squared code values per sample.
+constexpr double kMinEigenvalue = 0.2;
+// The variance of the difference of two pictures by noise alone, in squared code values: that of a
+// cheap camera.
+constexpr double kNoiseVariance = 4;
+constexpr int kMaxRounds = 8;
+// A search ends after a step of less than this many samples: the next step would be shorter by an
+// order of magnitude.
+constexpr double kSettledPx = 0.06;
+// The longest way from the guess, in samples.
+constexpr double kMaxWayPx = 5;
+
+}  // namespace
+
+std::optional<Patch> Patch::at(const cv::Mat& grey, int x, int y) {
+  if (x < 1 || y < 1 || x + kPatchPx >= grey.cols || y + kPatchPx >= grey.rows) return std::nullopt;
+  Patch patch;
+  int sum = 0, squares = 0, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+  for (int row = 0; row < kPatchPx; ++row) {
+    const std::uint8_t* above = grey.ptr<std::uint8_t>(y + row - 1) + x;
+    const std::uint8_t* here = grey.ptr<std::uint8_t>(y + row) + x;
+    const std::uint8_t* below = grey.ptr<std::uint8_t>(y + row + 1) + x;
+    const auto first = static_cast<std::size_t>(row * kPatchPx);
+    std::int16_t* luma = &patch.luma_[first];
+    std::int16_t* slope_x = &patch.slope_x_[first];
+    std::int16_t* slope_y = &patch.slope_y_[first];
+    const std::int16_t* weight = &kWeight[first];
+    for (int i = 0; i < kPatchPx; ++i) {
+      const auto x_difference = static_cast<std::int16_t>(here[i + 1] - here[i - 1]);
+      const auto y_difference = static_cast<std::int16_t>(below[i] - above[i]);
+      luma[i] = static_cast<std::int16_t>(here[i] * kLumaSteps);
+      slope_x[i] = static_cast<std::int16_t>(x_difference * weight[i]);
+      slope_y[i] = static_cast<std::int16_t>(y_difference * weight[i]);
+      sum += here[i];
+      squares += here[i] * here[i];
+      sum_x += slope_x[i];
+      sum_y += slope_y[i];
+      xx += slope_x[i] * x_difference;
+      xy += slope_x[i] * y_difference;
+      yy += slope_y[i] * y_difference;
+    }
+  }
+  patch.mean_slope_x_ = double(sum_x) / kWeightOfAll;
+  patch.mean_slope_y_ = double(sum_y) / kWeightOfAll;
+  // Per sample, of the slopes about their mean; a slope is half the difference of the neighbours.
+  const auto moment = [](int sum_of_products, double mean_1, double mean_2) {
+    return (double(sum_of_products) / kWeightOfAll - mean_1 * mean_2) / 4;
+  };
+  const double a = moment(xx, patch.mean_slope_x_, patch.mean_slope_x_);
+  const double b = moment(xy, patch.mean_slope_x_, patch.mean_slope_y_);
+  const double c = moment(yy, patch.mean_slope_y_, patch.mean_slope_y_);
+  if ((a + c) / 2 - std::sqrt((a - c) * (a - c) / 4 + b * b) < kMinEigenvalue) return std::nullopt;
+  const double determinant = a * c - b * b;
+  patch.inverse_xx_ = c / determinant;
+  patch.inverse_xy_ = -b / determinant;
+  patch.inverse_yy_ = a / determinant;
+  const double mean = double(sum) / kSamples;
+  patch.contrast_ = std::sqrt(std::max(0.0, double(squares) / kSamples - mean * mean));
+  return patch;
+}
+
+// The sums over a patch of what a picture has more than the patch, in kLumaSteps a code value. They
+// keep within 32 bits: the largest is 255 x 2,040 x kWeightOfAll = 1.4e9.
+struct Patch::Difference {
+  int times_slope_x = 0, times_slope_y = 0;
+  int weighted = 0;
+  int sum = 0, squares = 0;
+};
+
+Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th) const {
+  const int x = x_16th / kPositionSteps, y = y_16th / kPositionSteps;
+  const int right = x_16th % kPositionSteps, down = y_16th % kPositionSteps;
+  const auto weight = [](int a, int b) { return static_cast<std::uint16_t>(a * b); };
+  const std::uint16_t w00 = weight(kPositionSteps - right, kPositionSteps - down);
+  const std::uint16_t w01 = weight(right, kPositionSteps - down);
+  const std::uint16_t w10 = weight(kPositionSteps - right, down);
+  const std::uint16_t w11 = weight(right, down);
+  Difference all;
+  for (int row = 0; row < kPatchPx; ++row) {
+    const std::uint8_t* upper = grey.ptr<std::uint8_t>(y + row) + x;
+    const std::uint8_t* lower = grey.ptr<std::uint8_t>(y + row + 1) + x;
+    const auto first = static_cast<std::size_t>(row * kPatchPx);
+    const std::int16_t* luma = &luma_[first];
+    const std::int16_t* slope_x = &slope_x_[first];
+    const std::int16_t* slope_y = &slope_y_[first];
+    std::int16_t more[kPatchPx];
+    for (int i = 0; i < kPatchPx; ++i) {
+      const auto sample = static_cast<std::uint16_t>(upper[i] * w00 + upper[i + 1] * w01 +
+                                                     lower[i] * w10 + lower[i + 1] * w11);
+      constexpr int kShift = 5;
+      static_assert(kWeightSum >> kShift == kLumaSteps);
+      more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
+    }
+    const std::int16_t* sample_weight = &kWeight[first];
+    for (int i = 0; i < kPatchPx; ++i) {
+      all.times_slope_x += more[i] * slope_x[i];
+      all.times_slope_y += more[i] * slope_y[i];
+      all.weighted += more[i] * sample_weight[i];
+      all.sum += more[i];
+      all.squares += more[i] * more[i];
+    }
+  }
+  return all;
+}
+
+std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, double guess_y) const {
+  double x = guess_x, y = guess_y;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const int x_16th = static_cast<int>(std::lround(x * kPositionSteps));
+    const int y_16th = static_cast<int>(std::lround(y * kPositionSteps));
+    if (x_16th < 0 || y_16th < 0 || x_16th / kPositionSteps + kPatchPx >= grey.cols ||
+        y_16th / kPositionSteps + kPatchPx >= grey.rows)
+      return std::nullopt;
+    const Difference more = difference(grey, x_16th, y_16th);
+    const double mean = double(more.weighted) / kWeightOfAll;
+    constexpr double kScale = 1.0 / (2 * kLumaSteps);  // half the neighbours' difference is a slope
+    const double bx = kScale * (double(more.times_slope_x) / kWeightOfAll - mean * mean_slope_x_);
+    const double by = kScale * (double(more.times_slope_y) / kWeightOfAll - mean * mean_slope_y_);
+    const double step_x = -(inverse_xx_ * bx + inverse_xy_ * by);
+    const double step_y = -(inverse_xy_ * bx + inverse_yy_ * by);
+    const double from_x = double(x_16th) / kPositionSteps;
+    const double from_y = double(y_16th) / kPositionSteps;
+    const double settled = std::hypot(from_x + step_x - x, from_y + step_y - y);
+    x = from_x + step_x, y = from_y + step_y;
+    if (std::hypot(x - guess_x, y - guess_y) > kMaxWayPx) return std::nullopt;
+    if (settled > kSettledPx && round + 1 < kMaxRounds) continue;
+    if (settled > 0.5) return std::nullopt;
+    const double m = double(more.sum) / kSamples;
+    const double variance = (double(more.squares) / kSamples - m * m) / (kLumaSteps * kLumaSteps);
+    return Found{x, y, std::sqrt(std::max(0.0, variance - kNoiseVariance)) / contrast_};
+  }
+  return std::nullopt;
+}
+
+}  // namespace airtruth::motion
