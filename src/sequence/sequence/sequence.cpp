@@ -155,7 +155,10 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   maker.store_motion();
   warn_of_run(tally, maker.scene(), maker.world(), maker.reader(), options.warn);
   Summary summary = summary_of(tally, clocks, maker.motion_is_from_cache());
-  outputs->finish(maker.scene(), input_files(scene, maker.world(), maker.video_sha256()), summary);
+  outputs->finish(maker.scene(),
+                  input_files(scene, maker.world(), maker.video_sha256()),
+                  encounter_records(maker.world(), tally.first_seen, tally.last_time_s),
+                  summary);
   outputs.reset();
   staged.commit();
   summary.seconds = running.seconds();

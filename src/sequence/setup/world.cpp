@@ -160,7 +160,9 @@ World load_world(const scene::Scene& scene,
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
-              shutter_of(scene.camera_model)};
+              shutter_of(scene.camera_model),
+              volumes_of(scene.truth),
+              scene.truth.lookahead_s};
   LoadedTypes types;
   for (const scene::Intruder& intruder : scene.intruders)
     world.actors.push_back(load_actor(intruder, world, steady_frame, types, warn, stop).actor);
@@ -203,6 +205,7 @@ void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   const trajectory::Path camera =
       at_place(scene.camera.where, [&] { return camera_path(scene.camera); });
   check_camera_path(camera, info);
+  volumes_of(scene.truth);
   const lens::Lens lens = lens_of(scene.lens, {info.width, info.height});
   const SeenThrough through{&lens, &camera, shutter_of(scene.camera_model), steady_frame};
   for (const scene::Intruder& intruder : scene.intruders) {

@@ -10,6 +10,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "camera/lens/lens.h"
+#include "encounter/separation/volumes.h"
 #include "foundation/base/log.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
@@ -37,6 +38,9 @@ struct World {
   trajectory::Path camera;
   std::vector<Actor> actors;
   Shutter shutter;
+  // What the truth says of encounters ([truth]).
+  std::vector<encounter::AskedVolume> volumes;
+  double lookahead_s = 180;
 };
 
 // Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
