@@ -199,7 +199,8 @@ class Work {
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
-  std::shared_ptr<sequence::SharedInputs> shared_ = std::make_shared<sequence::SharedInputs>();
+  std::shared_ptr<sequence::SharedInputs> shared_ =
+      std::make_shared<sequence::SharedInputs>(folder_.cache() / "openness");
   std::mutex mutex_;
   BuildSummary summary_;
 };

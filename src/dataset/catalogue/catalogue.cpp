@@ -208,6 +208,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
                           "sequence",
                           "product",
                           "random",
+                          "truth",
                           "render",
                           "composite",
                           "output",
@@ -218,6 +219,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.name = root.file_name("name").value_or(file.stem().string());
   catalogue.seed = static_cast<std::uint64_t>(
       root.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+  catalogue.truth = scene::truth_in(root);
   catalogue.render = scene::render_in(root);
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);

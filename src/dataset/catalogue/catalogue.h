@@ -156,6 +156,7 @@ struct Catalogue {
   std::vector<Aircraft> aircraft;
   std::vector<Trajectory> trajectories;
   std::vector<Rule> rules;
+  scene::Truth truth;
   scene::Render render;
   scene::Composite composite;
   scene::Output output;

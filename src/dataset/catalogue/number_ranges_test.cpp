@@ -334,7 +334,11 @@ std::vector<std::string> scenes() {
           "cpa_right_m = 5\ncpa_above_m = 2\ncourse_deg = 180\nspeed_mps = 40\nclimb_mps = 1\n"
           "turn_rate_dps = 0\n[[intruder]]\naircraft = 'box.obj'\n[intruder.encounter]\n"
           "cpa_time_s = 1\ncpa_ahead_m = 50\ncourse_deg = 90\nspeed_mps = 40\n",
-      head + "[lens]\nvertical_fov_deg = 60\n" + light +
+      head +
+          "[truth]\nvolumes = ['nmac']\nlookahead_s = 60\n[[truth.volume]]\nname = 'own'\n"
+          "horizontal_m = 300\nvertical_m = 50\ntau_s = 10\ncoaltitude_s = 5\n"
+          "[lens]\nvertical_fov_deg = 60\n" +
+          light +
           "[[intruder]]\naircraft = 'box.obj'\n[[intruder.seen]]\ntime_s = 0\npixel = [30, 30]\n"
           "range_m = 60\n[[intruder.seen]]\ntime_s = 0.0333\npixel = [32, 30]\nwidth_px = 4\n"};
 }
@@ -361,7 +365,9 @@ TEST_F(NumberRanges, OfACameraFile) {
 }
 
 const std::string kTables =
-    "seed = 1\n[[background]]\nname = 'sky'\nlens = { vertical_fov_deg = 60 }\n"
+    "seed = 1\n[truth]\nvolumes = ['nmac']\nlookahead_s = 60\n[[truth.volume]]\nname = 'own'\n"
+    "horizontal_m = 300\nvertical_m = 50\ntau_s = 10\ncoaltitude_s = 5\n"
+    "[[background]]\nname = 'sky'\nlens = { vertical_fov_deg = 60 }\n"
     "flight = { seed = 1, frame_count = 2, width = 64, height = 64, cloud_cover = 0.3, speed_mps = "
     "30, "
     "altitude_m = 200 }\n"

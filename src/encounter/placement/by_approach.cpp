@@ -84,6 +84,22 @@ double following_part(const scene::Encounter& encounter,
   return part_m;
 }
 
+// In ahead, right, above.
+Vector3 velocity_of(const scene::Encounter& encounter) {
+  const double speed_mps = encounter.speed_mps;
+  const double climb_mps = encounter.climb_mps;
+  if (!(std::abs(climb_mps) <= speed_mps))
+    throw Error(fmt::format("climb_mps is {} at a speed_mps of {:.1f}; expected no more than the "
+                            "speed",
+                            climb_mps,
+                            speed_mps),
+                encounter.where);
+  const double ground_speed_mps = std::sqrt((speed_mps - climb_mps) * (speed_mps + climb_mps));
+  const double turned_rad = radians(encounter.course_deg);
+  return {
+      ground_speed_mps * std::cos(turned_rad), ground_speed_mps * std::sin(turned_rad), climb_mps};
+}
+
 // How far the stated place lies from the closest approach, along the relative path.
 void refuse_contradiction(const scene::Encounter& encounter,
                           const Vector3& offset,
@@ -148,20 +164,9 @@ void refuse_farthest(const scene::Encounter& encounter,
 trajectory::Path path_to_approach(const scene::Encounter& encounter,
                                   const trajectory::Path& own,
                                   const trajectory::AttitudeOverride& attitude) {
-  if (!(std::abs(encounter.climb_mps) <= encounter.speed_mps))
-    throw Error(fmt::format("climb_mps is {} at a speed_mps of {:.1f}; expected no more than the "
-                            "speed",
-                            encounter.climb_mps,
-                            encounter.speed_mps),
-                encounter.where);
   const trajectory::State own_then = own_at_approach(encounter, own);
   const CourseFrame frame{course_rad(own_then)};
-  const double ground_speed_mps = std::sqrt((encounter.speed_mps - encounter.climb_mps) *
-                                            (encounter.speed_mps + encounter.climb_mps));
-  const double turned_rad = radians(encounter.course_deg);
-  const Vector3 velocity(ground_speed_mps * std::cos(turned_rad),
-                         ground_speed_mps * std::sin(turned_rad),
-                         encounter.climb_mps);
+  const Vector3 velocity = velocity_of(encounter);
   const Vector3 relative = velocity - frame.from_world(own_then.velocity_in_world_mps);
   if (!(relative.norm() > kSameVelocityMps))
     throw Error(
@@ -173,7 +178,7 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
       trajectory::steady({.position_ned_m = own_then.position_in_world + frame.world_from(offset),
                           .time_s = encounter.cpa_time_s,
                           .course_deg = degrees(frame.course_rad) + encounter.course_deg,
-                          .ground_speed_mps = ground_speed_mps,
+                          .ground_speed_mps = std::hypot(velocity.x(), velocity.y()),
                           .climb_mps = encounter.climb_mps,
                           .turn_rate_dps = encounter.turn_rate_dps},
                          attitude);

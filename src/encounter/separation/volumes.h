@@ -31,6 +31,12 @@ struct NamedVolume {
   std::string_view source;
 };
 
+// A volume whose violation is asked for, under its name.
+struct AskedVolume {
+  std::string name;
+  Volume volume;
+};
+
 // All named volumes.
 std::span<const NamedVolume> named_volumes();
 // The volume of that name; nullptr where there is none.

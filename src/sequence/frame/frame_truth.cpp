@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "encounter/passage/passage.h"
+#include "encounter/separation/violation.h"
 #include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
@@ -37,6 +39,28 @@ void add_bearings(annotation::Intruder& truth,
   if (!seen) return;
   truth.azimuth_deg = seen->azimuth_deg;
   truth.elevation_deg = seen->elevation_deg;
+}
+
+annotation::EncounterTruth encounter_of(const World& world,
+                                        const trajectory::State& own_state,
+                                        const trajectory::State& state) {
+  const encounter::Mover own = encounter::mover_of(own_state);
+  const encounter::Mover intruder = encounter::mover_of(state);
+  annotation::EncounterTruth truth;
+  truth.measures = encounter::measures(own, intruder, {.lookahead_s = world.lookahead_s});
+  for (const auto& [name, volume] : world.volumes) {
+    const bool inside = encounter::is_inside(volume, own, intruder);
+    const auto violated = encounter::violation(volume, own, intruder, world.lookahead_s);
+    annotation::VolumeTruth& one = truth.volumes.emplace_back();
+    one.name = name;
+    one.inside = inside;
+    // At the volume's very edge rounding may decide the two differently.
+    if (inside)
+      one.to_violation_s = 0;
+    else if (violated)
+      one.to_violation_s = violated->begin_s;
+  }
+  return truth;
 }
 
 void add_geometry(annotation::Intruder& truth,
@@ -89,6 +113,7 @@ std::vector<annotation::Intruder> intruders_of(const World& world,
     truth.aircraft = world.actors[i].aircraft;
     if (moment.states[i]) {
       add_geometry(truth, moment, *moment.states[i]);
+      truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
       const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
       truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
       if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;

@@ -16,6 +16,7 @@
 #include "sequence/sequence/frame_maker.h"
 #include "sequence/sequence/resolve.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
 #include "show/drawing/draw.h"
 #include "show/drawing/flight_views.h"
 #include "show/drawing/pictures.h"
@@ -38,7 +39,8 @@ class Previewer {
         scene_(plain(stated(scene, reader_.info()).scene)),
         size_{reader_.info().width, reader_.info().height},
         mask_(read_mask(scene_, size_)),
-        world_(load_world(scene_, size_, options.warn, options.stop)),
+        inputs_(openness_cache(options)),
+        world_(load_world(scene_, size_, options.warn, options.stop, &inputs_)),
         painter_(make_painter(scene_, world_, own_aircraft(), {{}, true, options.stop})),
         rate_hz_(reader_.info().frame_rate.value()),
         duration_s_(static_cast<double>(std::max<std::int64_t>(0, frame_count() - 1)) / rate_hz_) {
@@ -289,6 +291,7 @@ class Previewer {
   scene::Scene scene_;
   lens::ImageSize size_;
   std::optional<image::Mask> mask_;
+  SharedInputs inputs_;
   World world_;
   std::unique_ptr<Painter> painter_;
   double rate_hz_;

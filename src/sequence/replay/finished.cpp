@@ -116,6 +116,7 @@ Finished open_finished(const fs::path& folder) {
     throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
                 {record_file.string()});
   finished.has_covered_boxes = record.has("covered_alpha");
+  finished.has_encounters = record.has("encounters");
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
   const auto format = format_of(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));

@@ -27,6 +27,8 @@ struct Finished {
   annotation::Truth truth;
   // True where the sequence was made with covered boxes. Older sequences have none.
   bool has_covered_boxes = false;
+  // True where the truth has the measures of encounters. Older sequences have none.
+  bool has_encounters = false;
 };
 
 // Throws Error where the folder is not whole: sequence.json or a file that it names is missing.

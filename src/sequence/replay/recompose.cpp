@@ -123,6 +123,8 @@ std::vector<std::string> frame_faults(const Finished& sequence,
   annotation::Frame again = frame_truth(
       world, frame.background, {truth.motion_state, truth.shake}, frame.moment, frame.painted);
   if (!sequence.has_covered_boxes) as_older_truth(again);
+  if (!sequence.has_encounters)
+    for (annotation::Intruder& intruder : again.intruders) intruder.encounter.reset();
   std::vector<std::string> faults =
       truth_faults(sequence, truth, again, frame.painted.layer, own_aircraft);
   const scene::OutputVideo format = sequence.scene->output.video;

@@ -53,7 +53,6 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   return info;
 }
 
-// The folder that keeps the openness of aircraft; empty: none.
 fs::path openness_cache(const Options& options) {
   if (!options.use_cache) return {};
   return (options.cache.empty() ? cache_folder() : options.cache) / "openness";

@@ -112,6 +112,9 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
 // The folder in which motion is kept; empty: motion is not kept.
 fs::path motion_cache(const Options& options);
 
+// The folder that keeps the openness of aircraft; empty: none.
+fs::path openness_cache(const Options& options);
+
 // A reader of the scene's part of its background.
 video::Reader open_background(const scene::Scene& scene, const Options& options);
 

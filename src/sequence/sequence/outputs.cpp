@@ -101,6 +101,7 @@ void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
 
 void Outputs::finish(const scene::Scene& scene,
                      const std::vector<Checksum>& inputs,
+                     const std::vector<EncounterRecord>& encounters,
                      const Summary& summary) {
   scene_ = scene;
   writer_.finish();
@@ -111,7 +112,7 @@ void Outputs::finish(const scene::Scene& scene,
   write_annotations();
   write_preview();
   if (scene_.output.masks) flush_files(folder_);
-  write_record(inputs, summary);
+  write_record(inputs, encounters, summary);
 }
 
 void Outputs::write_annotations() const {
@@ -124,7 +125,9 @@ void Outputs::write_annotations() const {
 
 void Outputs::write_preview() const { video::write_still(folder_ / "preview.jpg", sheet_.sheet()); }
 
-void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& summary) const {
+void Outputs::write_record(const std::vector<Checksum>& inputs,
+                           const std::vector<EncounterRecord>& encounters,
+                           const Summary& summary) const {
   nlohmann::ordered_json record;
   record["format"] = "airtruth sequence 1";
   record["version"] = kVersion;
@@ -139,6 +142,7 @@ void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& s
                        {"frames_with_an_intruder_visible", summary.frames_visible},
                        {"frames_with_bridged_motion", summary.frames_bridged},
                        {"frames_damaged_in_the_background", summary.frames_damaged}};
+  record["encounters"] = json_of(encounters);
   write_file(folder_ / "sequence.json", record.dump(2) + "\n");
 }
 

@@ -13,6 +13,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
 #include "sequence/frame/masks.h"
+#include "sequence/sequence/encounter_record.h"
 #include "sequence/sequence/sequence.h"
 #include "show/drawing/pictures.h"
 #include "truth/annotation/evision.h"
@@ -46,12 +47,15 @@ class Outputs {
   // opened.
   void finish(const scene::Scene& scene,
               const std::vector<Checksum>& inputs,
+              const std::vector<EncounterRecord>& encounters,
               const Summary& summary);
 
  private:
   void write_annotations() const;
   void write_preview() const;
-  void write_record(const std::vector<Checksum>& inputs, const Summary& summary) const;
+  void write_record(const std::vector<Checksum>& inputs,
+                    const std::vector<EncounterRecord>& encounters,
+                    const Summary& summary) const;
 
   fs::path folder_;
   scene::Scene scene_;

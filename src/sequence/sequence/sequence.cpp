@@ -175,6 +175,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   Summary summary = summary_of(tally, clocks, maker.motion_is_from_cache());
   outputs->finish(maker.scene(),
                   input_files(scene, maker.world(), maker.video_sha256(), options.shared.get()),
+                  encounter_records(maker.world(), tally.first_seen, tally.last_time_s),
                   summary);
   outputs.reset();
   staged.commit();

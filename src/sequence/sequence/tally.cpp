@@ -21,6 +21,30 @@ void warn_not_flyable(const scene::Intruder& intruder,
   warn(to_warn, to_string(intruder.where) + ": intruder '" + actor.id + "': " + words);
 }
 
+// A turn may bring an intruder nearer within the clip than at the closest approach that its scene
+// states.
+void warn_nearer(const scene::Intruder& intruder,
+                 const Actor& actor,
+                 const trajectory::Path& own,
+                 double last_time_s,
+                 const Warn& to_warn) {
+  constexpr double kNearerM = 0.1;
+  if (!intruder.encounter) return;
+  const double cpa_time_s = intruder.encounter->cpa_time_s;
+  const auto stated = encounter::closest_approach(own, actor.path, cpa_time_s, cpa_time_s);
+  const auto nearest = encounter::closest_approach(own, actor.path, 0, last_time_s);
+  if (!stated || !nearest || nearest->distance_m > stated->distance_m - kNearerM) return;
+  warn(to_warn,
+       fmt::format("{}: intruder '{}' comes nearer than at its cpa_time_s of {:.2f} s: {:.1f} m in "
+                   "place of {:.1f} m, at {:.2f} s",
+                   to_string(intruder.where),
+                   actor.id,
+                   cpa_time_s,
+                   nearest->distance_m,
+                   stated->distance_m,
+                   nearest->time_s));
+}
+
 void warn_never_seen(const scene::Intruder& intruder,
                      const World& world,
                      std::size_t i,
@@ -94,12 +118,12 @@ void add_frame(Tally& tally,
                const annotation::Frame& truth) {
   ++tally.frames;
   tally.last_time_s = frame.time_s;
-  tally.seen.resize(truth.intruders.size(), false);
+  tally.first_seen.resize(truth.intruders.size());
   bool any = false;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const bool visible = truth.intruders[i].state == annotation::State::kVisible;
     any = any || visible;
-    tally.seen[i] = tally.seen[i] || visible;
+    if (!tally.first_seen[i]) tally.first_seen[i] = seen_in(truth, truth.intruders[i]);
   }
   tally.frames_visible += any ? 1 : 0;
   tally.frames_bridged += motion::is_known(motion) ? 0 : 1;
@@ -117,7 +141,8 @@ void warn_of_run(const Tally& tally,
   warn_of_motion(tally, scene.background, to_warn);
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
     warn_not_flyable(scene.intruders[i], world.actors[i], tally.last_time_s, to_warn);
-    if (i >= tally.seen.size() || !tally.seen[i])
+    warn_nearer(scene.intruders[i], world.actors[i], world.camera, tally.last_time_s, to_warn);
+    if (i >= tally.first_seen.size() || !tally.first_seen[i])
       warn_never_seen(scene.intruders[i], world, i, tally.last_time_s, to_warn);
   }
 }

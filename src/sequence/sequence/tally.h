@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "camera/motion/motion.h"
 #include "foundation/base/log.h"
 #include "picture/video/reader.h"
+#include "sequence/sequence/encounter_record.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/world.h"
 #include "truth/annotation/truth.h"
@@ -22,8 +24,9 @@ struct Tally {
   std::int64_t frames_turned = 0;   // of these: the camera has turned beyond a homography's reach
   std::int64_t frames_damaged = 0;  // the background's data was corrupt
   std::vector<std::int64_t> cuts;   // frames that begin a shot
-  std::vector<bool> seen;           // per intruder: visible in at least one frame
-  double last_time_s = 0;           // of the last frame
+  // Per intruder: the first frame that shows it; empty: never visible.
+  std::vector<std::optional<FirstSeen>> first_seen;
+  double last_time_s = 0;  // of the last frame
 };
 
 // Counts one more frame; frames come in order.
@@ -33,7 +36,8 @@ void add_frame(Tally& tally,
                const annotation::Frame& truth);
 
 // Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,
-// cuts, intruders that fly beyond their type's limits, and intruders that are never visible.
+// cuts, intruders that fly beyond their type's limits, that come nearer than their stated closest
+// approach, and that are never visible.
 void warn_of_run(const Tally& tally,
                  const scene::Scene& scene,
                  const World& world,

@@ -3,8 +3,12 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "camera/lens/calibration_file.h"
 #include "encounter/placement/by_approach.h"
+#include "foundation/base/suggest.h"
 #include "picture/render/renderer.h"
 #include "sequence/setup/own_log.h"
 
@@ -69,6 +73,31 @@ trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path
             : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
     return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
   });
+}
+
+std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth) {
+  std::vector<encounter::AskedVolume> result;
+  for (const std::string& name : truth.volumes) {
+    const encounter::NamedVolume* known = encounter::named_volume(name);
+    if (known == nullptr) {
+      const auto nearest = nearest_spelling(name, encounter::volume_names());
+      throw Error(fmt::format("[truth] volumes has '{}', which is unknown{}; expected {}",
+                              name,
+                              nearest ? fmt::format("; did you mean '{}'?", *nearest) : "",
+                              fmt::join(encounter::volume_names(), ", ")),
+                  truth.where);
+    }
+    result.push_back({name, known->volume});
+  }
+  for (const scene::TruthVolume& own : truth.own_volumes) {
+    if (encounter::named_volume(own.name) != nullptr)
+      throw Error(fmt::format("[[truth.volume]] has the name '{}' of a known volume; expected "
+                              "another name",
+                              own.name),
+                  truth.where);
+    result.push_back({own.name, {own.horizontal_m, own.vertical_m, own.tau_s, own.coaltitude_s}});
+  }
+  return result;
 }
 
 Vector3 to_sun_in_world(const scene::Light& light) {

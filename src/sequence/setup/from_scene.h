@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "camera/lens/lens.h"
+#include "encounter/separation/volumes.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
@@ -26,6 +29,10 @@ trajectory::Path camera_path(const scene::Camera& camera);
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
 // `seen` must have been placed (seen.h).
 trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path& own);
+
+// [truth]: the volumes that it asks for, with those of own thresholds last. Error where a name is
+// unknown.
+std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth);
 
 // [light]: the unit vector to the sun, in world axes.
 Vector3 to_sun_in_world(const scene::Light& light);

@@ -101,10 +101,11 @@ TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
   EXPECT_EQ(error_of(scene_of(log, "")),
             "s.toml:5:1: the log (CSV) has a clock of its own; expected log_offset_s, which "
             "'airtruth log align' finds");
-  EXPECT_EQ(error_of(scene_of(log, "log_offset_s = 100\n")),
-            "s.toml:5:1: the log's positions go from 0.00 to 30.00 s, and the clip begins at 100.000 "
-            "s of the log; "
-            "expected a log of the same flight, or another log_offset_s");
+  EXPECT_EQ(
+      error_of(scene_of(log, "log_offset_s = 100\n")),
+      "s.toml:5:1: the log's positions go from 0.00 to 30.00 s, and the clip begins at 100.000 "
+      "s of the log; "
+      "expected a log of the same flight, or another log_offset_s");
   EXPECT_THAT(error_of(scene_of(folder / "missing.csv", "log_offset_s = 1\n")),
               testing::HasSubstr("missing.csv"));
   const auto parse_error = [&](const std::string& camera, const std::string& background) {

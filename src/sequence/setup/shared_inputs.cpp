@@ -28,8 +28,7 @@ std::size_t bytes_of(const aircraft::Mesh& mesh) {
   std::size_t texels = 0;
   for (const aircraft::Texture& texture : mesh.textures)
     for (const aircraft::Texture::Level& level : texture.levels) texels += level.texels.size();
-  // The model holds a copy of the mesh.
-  return 2 * texels * sizeof(std::array<float, 4>) + mesh.triangle_count() * kBytesOfATriangle;
+  return texels * sizeof(std::array<float, 4>) + mesh.triangle_count() * kBytesOfATriangle;
 }
 
 std::vector<FileStamp> stamps_of(const aircraft::Aircraft& aircraft) {
@@ -39,9 +38,12 @@ std::vector<FileStamp> stamps_of(const aircraft::Aircraft& aircraft) {
 }
 
 std::shared_ptr<const Type> prepared(std::shared_ptr<const aircraft::Aircraft> aircraft,
-                                     std::vector<std::string> warnings) {
+                                     std::vector<std::string> warnings,
+                                     const std::filesystem::path& openness_cache) {
   auto type = std::make_shared<Type>();
-  type->model = std::make_shared<const render::Model>(aircraft->mesh);
+  // The model shares the mesh within the aircraft.
+  const std::shared_ptr<const aircraft::Mesh> mesh(aircraft, &aircraft->mesh);
+  type->model = std::make_shared<const render::Model>(mesh, openness_cache);
   type->silhouette = {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)};
   type->bytes = bytes_of(aircraft->mesh);
   type->aircraft = std::move(aircraft);
@@ -64,7 +66,7 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
     const auto collect = [&](const std::string& text) { warnings.push_back(text); };
     const auto loaded = aircraft_of(intruder, path, collect, stop);
     type = twin_of(*loaded);
-    if (!type || type->warnings != warnings) type = prepared(loaded, warnings);
+    if (!type || type->warnings != warnings) type = prepared(loaded, warnings, openness_cache_);
     keep(*slot, type);
   }
   for (const std::string& text : type->warnings) airtruth::warn(warn, text);

@@ -98,7 +98,7 @@ TEST_F(SharedInputsTest, AFileThatHasChangedIsReadAgain) {
 }
 
 TEST_F(SharedInputsTest, WhatNoSequenceUsesIsDroppedBeyondTheLimit) {
-  SharedInputs shared(1);
+  SharedInputs shared({}, 1);
   auto used = shared.type_of(intruder_of("c172/news"), straight_at(60), {}, {});
   EXPECT_EQ(shared.kept(), 1u);  // in use
   shared.type_of(intruder_of(triangle(10)), straight_at(60), {}, {});

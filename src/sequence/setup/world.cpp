@@ -50,13 +50,8 @@ Actor actor_of(const scene::Intruder& intruder,
   const trajectory::Path path = path_of(intruder, world.camera);
   const auto type =
       at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
-  return {intruder.id,
-          intruder.aircraft,
-          path,
-          type->aircraft,
-          type->model,
-          type->silhouette,
-          type};
+  return {
+      intruder.id, intruder.aircraft, path, type->aircraft, type->model, type->silhouette, type};
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed
@@ -115,7 +110,9 @@ World load_world(const scene::Scene& scene,
   World world{lens_of(scene.lens, size),
               at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
               {},
-              shutter_of(scene.camera_model)};
+              shutter_of(scene.camera_model),
+              volumes_of(scene.truth),
+              scene.truth.lookahead_s};
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
   for (const scene::Intruder& intruder : scene.intruders)
@@ -160,6 +157,7 @@ void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   const trajectory::Path camera =
       at_place(scene.camera.where, [&] { return camera_path(scene.camera); });
   check_camera_path(camera, info);
+  volumes_of(scene.truth);
   const lens::Lens lens = lens_of(scene.lens, {info.width, info.height});
   const SeenThrough through{&lens, &camera, shutter_of(scene.camera_model), steady_frame};
   for (const scene::Intruder& intruder : scene.intruders) {

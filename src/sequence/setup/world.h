@@ -11,6 +11,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "camera/lens/lens.h"
+#include "encounter/separation/volumes.h"
 #include "foundation/base/log.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
@@ -42,6 +43,9 @@ struct World {
   trajectory::Path camera;
   std::vector<Actor> actors;
   Shutter shutter;
+  // What the truth says of encounters ([truth]).
+  std::vector<encounter::AskedVolume> volumes;
+  double lookahead_s = 180;
 };
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
@@ -58,8 +62,8 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const std::stop_token& stop = {});
 
 // Loads a scene without "auto" keys (resolve.h). Intruders of [[intruder.seen]] are placed as if
-// the camera did not shake; place_seen() puts them right. Throws Interrupted on stop. `shared` gives
-// the aircraft where it is not nullptr.
+// the camera did not shake; place_seen() puts them right. Throws Interrupted on stop. `shared`
+// gives the aircraft where it is not nullptr.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,

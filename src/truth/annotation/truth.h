@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "encounter/separation/measures.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
@@ -37,6 +38,21 @@ enum class State {
 // "visible" and so on.
 const char* name(State state);
 
+// Whether an intruder violates a volume (encounter/separation/volumes.h).
+struct VolumeTruth {
+  std::string name;
+  bool inside = false;
+  // Time to the violation if both keep their velocities; 0 inside, empty where there is none within
+  // the lookahead.
+  std::optional<double> to_violation_s;
+};
+
+// How an intruder stands to the own aircraft on its nominal path.
+struct EncounterTruth {
+  encounter::Measures measures;
+  std::vector<VolumeTruth> volumes;
+};
+
 // The truth of one intruder in one frame.
 struct Intruder {
   std::string id;
@@ -63,6 +79,8 @@ struct Intruder {
   // pixel.
   std::optional<double> nominal_azimuth_deg;
   std::optional<double> nominal_elevation_deg;
+  // Empty in older files.
+  std::optional<EncounterTruth> encounter;
   // Box of the projected geometry, not clipped by the frame; empty behind the camera or beyond the
   // lens's field.
   std::optional<Box> exact_box_px;

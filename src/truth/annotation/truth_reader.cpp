@@ -68,6 +68,29 @@ State state_from(const JsonObject& object) {
   object.fail("state", "visible, hidden, outside, behind or ended");
 }
 
+EncounterTruth encounter_from(const JsonObject& object, const std::optional<double>& range_m) {
+  EncounterTruth truth;
+  encounter::Measures& m = truth.measures;
+  m.range_m = range_m.value_or(0);
+  m.horizontal_m = object.number("horizontal_m");
+  m.above_m = object.number("above_m");
+  m.closing_speed_mps = object.maybe_number("closing_speed_mps");
+  m.bearing_deg = object.maybe_number("bearing_deg");
+  m.bearing_rate_dps = object.maybe_number("bearing_rate_dps");
+  m.relative_bearing_deg = object.maybe_number("relative_bearing_deg");
+  m.line_of_sight_rate_dps = object.maybe_number("line_of_sight_rate_dps");
+  m.tcpa_s = object.maybe_number("tcpa_s");
+  m.dcpa_m = object.maybe_number("dcpa_m");
+  m.hmd_m = object.number("hmd_m");
+  m.vmd_m = object.number("vmd_m");
+  m.tau_mod_s = object.maybe_number("tau_mod_s");
+  m.tcoa_s = object.maybe_number("tcoa_s");
+  for (const JsonObject& volume : object.objects("volumes"))
+    truth.volumes.push_back(
+        {volume.text("name"), volume.truth("inside"), volume.maybe_number("to_violation_s")});
+  return truth;
+}
+
 Intruder intruder_from(const JsonObject& object) {
   Intruder intruder;
   intruder.id = object.text("id");
@@ -83,6 +106,8 @@ Intruder intruder_from(const JsonObject& object) {
   intruder.elevation_deg = object.maybe_number("elevation_deg");
   intruder.nominal_azimuth_deg = object.maybe_number("nominal_azimuth_deg");
   intruder.nominal_elevation_deg = object.maybe_number("nominal_elevation_deg");
+  if (object.has("encounter"))
+    intruder.encounter = encounter_from(object.object("encounter"), intruder.range_m);
   if (object.has("exact_box_px")) {
     const auto box = tuple<4>(object, "exact_box_px");
     intruder.exact_box_px = Box{box[0], box[1], box[2], box[3]};

@@ -23,17 +23,50 @@ bool finite(const std::optional<T>& value) {
   return !value || finite(*value);
 }
 
+bool finite(const EncounterTruth& truth) {
+  const encounter::Measures& m = truth.measures;
+  return finite(m.horizontal_m) && finite(m.above_m) && finite(m.closing_speed_mps) &&
+         finite(m.bearing_deg) && finite(m.bearing_rate_dps) && finite(m.relative_bearing_deg) &&
+         finite(m.line_of_sight_rate_dps) && finite(m.tcpa_s) && finite(m.dcpa_m) &&
+         finite(m.hmd_m) && finite(m.vmd_m) && finite(m.tau_mod_s) && finite(m.tcoa_s) &&
+         std::all_of(truth.volumes.begin(), truth.volumes.end(), [](const VolumeTruth& volume) {
+           return finite(volume.to_violation_s);
+         });
+}
+
 bool all_finite(const Intruder& i) {
   return finite(i.position_ned_m) && finite(i.velocity_ned_mps) &&
          finite(i.attitude_yaw_pitch_roll_deg) && finite(i.position_in_cam_m) &&
          finite(i.range_m) && finite(i.range_rate_mps) && finite(i.azimuth_deg) &&
          finite(i.elevation_deg) && finite(i.nominal_azimuth_deg) &&
-         finite(i.nominal_elevation_deg) && finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
+         finite(i.nominal_elevation_deg) && (!i.encounter || finite(*i.encounter)) &&
+         finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
          (!i.centroid_px || i.centroid_px->allFinite()) && finite(i.hidden_by_own_aircraft) &&
          finite(i.hidden_by_intruder) && finite(i.cut_by_frame);
 }
 
 bool is_fraction(double value) { return value >= 0 && value <= 1; }
+
+bool is_below_0(const std::optional<double>& value) { return value && *value < 0; }
+
+std::optional<std::string> fault(const EncounterTruth& truth) {
+  const encounter::Measures& m = truth.measures;
+  if (m.horizontal_m < 0 || m.hmd_m < 0 || m.vmd_m < 0 || is_below_0(m.dcpa_m) ||
+      is_below_0(m.line_of_sight_rate_dps))
+    return "has an encounter with a distance or a rate of sight below 0";
+  if (is_below_0(m.tcpa_s) || is_below_0(m.tau_mod_s) || is_below_0(m.tcoa_s))
+    return "has an encounter with a time below 0";
+  if (m.tcpa_s.has_value() != m.dcpa_m.has_value()) return "has half a closest approach";
+  constexpr double kRounding = 1 + 1e-9;
+  if (m.hmd_m > m.horizontal_m * kRounding || m.vmd_m > std::abs(m.above_m) * kRounding)
+    return "has a miss distance above the distance of now";
+  for (const VolumeTruth& volume : truth.volumes)
+    if (is_below_0(volume.to_violation_s) || (volume.inside && volume.to_violation_s != 0.0))
+      return fmt::format("is {} the volume '{}' with another time to its violation",
+                         volume.inside ? "inside" : "outside",
+                         volume.name);
+  return std::nullopt;
+}
 
 std::optional<std::string> fault(const Intruder& i) {
   if (!all_finite(i)) return "holds a number that is not finite";
@@ -45,7 +78,7 @@ std::optional<std::string> fault(const Intruder& i) {
   const bool any_place = i.position_ned_m || i.velocity_ned_mps || i.attitude_yaw_pitch_roll_deg ||
                          i.position_in_cam_m || i.range_m || i.range_rate_mps || i.azimuth_deg ||
                          i.elevation_deg || i.nominal_azimuth_deg || i.nominal_elevation_deg ||
-                         i.exact_box_px;
+                         i.encounter || i.exact_box_px;
   if (i.state == State::kEnded && any_place) return "is ended and has a place";
   if (i.state != State::kEnded && !placed)
     return fmt::format("is {} and lacks its place", name(i.state));
@@ -65,7 +98,7 @@ std::optional<std::string> fault(const Intruder& i) {
   if (!is_fraction(i.hidden_by_own_aircraft) || !is_fraction(i.hidden_by_intruder) ||
       !is_fraction(i.cut_by_frame))
     return "holds a fraction outside 0..1";
-  return std::nullopt;
+  return i.encounter ? fault(*i.encounter) : std::nullopt;
 }
 
 }  // namespace

@@ -41,6 +41,22 @@ Intruder visible_intruder() {
   intruder.visible_area_px = 120;
   intruder.alpha_sum_px = 77.5;
   intruder.hidden_by_own_aircraft = 0.25;
+  EncounterTruth& encounter = intruder.encounter.emplace();
+  encounter.measures.range_m = *intruder.range_m;
+  encounter.measures.horizontal_m = 790;
+  encounter.measures.above_m = 20.5;
+  encounter.measures.closing_speed_mps = -3.5;
+  encounter.measures.bearing_deg = 359.5;
+  encounter.measures.bearing_rate_dps = -0.25;
+  encounter.measures.relative_bearing_deg = -1.5;
+  encounter.measures.line_of_sight_rate_dps = 0.5;
+  encounter.measures.tcpa_s = 12;
+  encounter.measures.dcpa_m = 30;
+  encounter.measures.hmd_m = 30;
+  encounter.measures.vmd_m = 20;
+  encounter.measures.tau_mod_s = 11;
+  encounter.measures.tcoa_s = 40;
+  encounter.volumes = {{"nmac", false, std::nullopt}, {"own", true, 0.0}};
   return intruder;
 }
 
@@ -86,6 +102,9 @@ TEST(Truth, ALineReadsBackTheSame) {
   EXPECT_EQ(again.shake.frame_from_reference, frame_of_two().shake.frame_from_reference);
   EXPECT_EQ(again.intruders[0].attitude_yaw_pitch_roll_deg->pitch_deg, 1.0 / 3.0);
   EXPECT_EQ(again.intruders[0].visible_box_px, (PixelBox{10, 339, 31, 10}));
+  EXPECT_EQ(again.intruders[0].encounter->measures.tau_mod_s, 11.0);
+  EXPECT_FALSE(again.intruders[0].encounter->volumes.at(0).to_violation_s);
+  EXPECT_TRUE(again.intruders[0].encounter->volumes.at(1).inside);
   EXPECT_EQ(again.intruders[1].state, State::kEnded);
   EXPECT_FALSE(again.intruders[1].position_ned_m);
 }
@@ -105,6 +124,12 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
   refused([](Frame& f) { f.intruders[0].range_m.reset(); });
   refused([](Frame& f) { f.intruders[0].exact_box_px->x = std::nan(""); });
   refused([](Frame& f) { f.intruders[1].range_m = 3; });
+  refused([](Frame& f) { f.intruders[1].encounter.emplace(); });
+  refused([](Frame& f) { f.intruders[0].encounter->measures.hmd_m = std::nan(""); });
+  refused([](Frame& f) { f.intruders[0].encounter->measures.hmd_m = 791; });
+  refused([](Frame& f) { f.intruders[0].encounter->measures.tcpa_s.reset(); });
+  refused([](Frame& f) { f.intruders[0].encounter->measures.tcoa_s = -1; });
+  refused([](Frame& f) { f.intruders[0].encounter->volumes[1].to_violation_s = 3; });
   refused([](Frame& f) { f.intruders[1].nominal_azimuth_deg = 3; });
   refused([](Frame& f) { f.intruders[0].elevation_deg.reset(); });
   refused([](Frame& f) { f.intruders[0].nominal_elevation_deg.reset(); });
@@ -278,6 +303,10 @@ TEST(TruthSchema, RefusesWhatIsNot) {
             "line.intruders[].state: enum");
   EXPECT_EQ(refused([](Json& j) { j["intruders"][0]["visible_box_px"][0] = 0.5; }),
             "line.intruders[].visible_box_px[]: type");
+  EXPECT_EQ(refused([](Json& j) { j["intruders"][0]["encounter"]["tcpa_s"] = -2; }),
+            "line.intruders[].encounter.tcpa_s: minimum");
+  EXPECT_EQ(refused([](Json& j) { j["intruders"][0]["encounter"]["volumes"][0].erase("inside"); }),
+            "line.intruders[].encounter.volumes[]: no inside");
   EXPECT_EQ(refused([](Json& j) { j["intruders"][0]["cut_by_frame"] = 2; }),
             "line.intruders[].cut_by_frame: maximum");
 }
@@ -286,8 +315,13 @@ TEST(TruthSchema, EveryKeyIsInTheManual) {
   const std::filesystem::path formats = std::filesystem::path(AIRTRUTH_SOURCE_DIR) / "docs/formats";
   const std::string manual = read_file(formats / "truth.md");
   const Json line = Json::parse(jsonl_line(frame_of_two(), kLens));
-  for (const Json& object :
-       {line, line["lens"], line["camera"], line["motion"], line["intruders"][0]})
+  for (const Json& object : {line,
+                             line["lens"],
+                             line["camera"],
+                             line["motion"],
+                             line["intruders"][0],
+                             line["intruders"][0]["encounter"],
+                             line["intruders"][0]["encounter"]["volumes"][1]})
     for (const auto& [key, value] : object.items())
       EXPECT_NE(manual.find("`" + key + "`"), std::string::npos) << key;
 }

@@ -29,6 +29,32 @@ void add(OrderedJson& object, const char* key, const std::optional<T>& value) {
   if (value) object[key] = json(*value);
 }
 
+OrderedJson json(const EncounterTruth& truth) {
+  const encounter::Measures& m = truth.measures;
+  OrderedJson object;
+  object["horizontal_m"] = m.horizontal_m;
+  object["above_m"] = m.above_m;
+  add(object, "closing_speed_mps", m.closing_speed_mps);
+  add(object, "bearing_deg", m.bearing_deg);
+  add(object, "bearing_rate_dps", m.bearing_rate_dps);
+  add(object, "relative_bearing_deg", m.relative_bearing_deg);
+  add(object, "line_of_sight_rate_dps", m.line_of_sight_rate_dps);
+  add(object, "tcpa_s", m.tcpa_s);
+  add(object, "dcpa_m", m.dcpa_m);
+  object["hmd_m"] = m.hmd_m;
+  object["vmd_m"] = m.vmd_m;
+  add(object, "tau_mod_s", m.tau_mod_s);
+  add(object, "tcoa_s", m.tcoa_s);
+  OrderedJson volumes = OrderedJson::array();
+  for (const VolumeTruth& volume : truth.volumes) {
+    OrderedJson one = {{"name", volume.name}, {"inside", volume.inside}};
+    add(one, "to_violation_s", volume.to_violation_s);
+    volumes.push_back(std::move(one));
+  }
+  object["volumes"] = std::move(volumes);
+  return object;
+}
+
 OrderedJson json(const Intruder& intruder) {
   OrderedJson object;
   object["id"] = intruder.id;
@@ -44,6 +70,7 @@ OrderedJson json(const Intruder& intruder) {
   add(object, "elevation_deg", intruder.elevation_deg);
   add(object, "nominal_azimuth_deg", intruder.nominal_azimuth_deg);
   add(object, "nominal_elevation_deg", intruder.nominal_elevation_deg);
+  if (intruder.encounter) object["encounter"] = json(*intruder.encounter);
   add(object, "exact_box_px", intruder.exact_box_px);
   add(object, "covered_box_px", intruder.covered_box_px);
   add(object, "visible_box_px", intruder.visible_box_px);

@@ -47,6 +47,10 @@ inline constexpr Limits kSpeed{
 inline constexpr Limits kMiss{.expected = "metres from -1e5 to 1e5", .low = -1e5, .high = 1e5};
 inline constexpr Limits kClimb{
     .expected = "metres a second from -1000 to 1000", .low = -1000, .high = 1000};
+inline constexpr Limits kThreshold{.expected = "metres from 0 to 1e5", .low = 0, .high = 1e5};
+inline constexpr Limits kThresholdTime{
+    .expected = "seconds from 0 to 3600", .low = 0, .high = 3600};
+inline constexpr Limits kLookahead{.expected = "seconds from 1 to 3600", .low = 1, .high = 3600};
 inline constexpr Limits kTurnRate{
     .expected = "degrees a second from -90 to 90", .low = -90, .high = 90};
 inline constexpr Limits kSmoothing{

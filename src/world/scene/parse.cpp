@@ -46,7 +46,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       "a scene",
       file.string(),
       with_camera_tables({"name", "seed", "background", "lens", "camera", "motion", "light"},
-                         {"realism", "intruder", "render", "composite", "output"}));
+                         {"realism", "intruder", "truth", "render", "composite", "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -60,6 +60,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.camera_model = camera_model_in(root);
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
+  scene.truth = truth_in(root);
   scene.render = render_in(root);
   scene.composite = composite_in(root);
   scene.output = output_in(root);

@@ -214,6 +214,25 @@ struct Intruder {
   Where where;
 };
 
+// [[truth.volume]]: a volume of airspace by own thresholds (encounter/separation/volumes.h).
+struct TruthVolume {
+  std::string name;
+  double horizontal_m = 0;
+  double vertical_m = 0;
+  double tau_s = 0;
+  double coaltitude_s = 0;
+};
+
+// [truth]: what the truth says of an encounter beside its measures.
+struct Truth {
+  // Names of known volumes.
+  std::vector<std::string> volumes;
+  std::vector<TruthVolume> own_volumes;
+  // How far ahead miss distances and violations look.
+  double lookahead_s = 180;
+  Where where;
+};
+
 // [render]: the quality of the rendering.
 struct Render {
   // From 1 (draft) to 5 (the reference of the tests); 3 holds alpha within 1/64.
@@ -248,6 +267,7 @@ struct Scene {
   CameraModel camera_model;
   Realism realism;
   std::vector<Intruder> intruders;
+  Truth truth;
   Render render;
   Composite composite;
   Output output;

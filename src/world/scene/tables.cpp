@@ -2,6 +2,7 @@
 #include "world/scene/tables.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -236,7 +237,47 @@ void take_encoder(Output& output, const TableReader& table) {
                 output.encoder_where);
 }
 
+TruthVolume truth_volume_from(const TableReader& table) {
+  TruthVolume volume;
+  const auto name = table.file_name("name");
+  const auto horizontal_m = table.number("horizontal_m", kThreshold);
+  const auto vertical_m = table.number("vertical_m", kThreshold);
+  if (!name || !horizontal_m || !vertical_m)
+    throw Error(
+        fmt::format("[[truth.volume]] has no {}; expected name, horizontal_m and vertical_m",
+                    !name           ? "name"
+                    : !horizontal_m ? "horizontal_m"
+                                    : "vertical_m"),
+        table.where());
+  volume.name = *name;
+  volume.horizontal_m = *horizontal_m;
+  volume.vertical_m = *vertical_m;
+  volume.tau_s = table.number("tau_s", kThresholdTime).value_or(0);
+  volume.coaltitude_s = table.number("coaltitude_s", kThresholdTime).value_or(0);
+  return volume;
+}
+
 }  // namespace
+
+Truth truth_in(const TableReader& parent) {
+  const TableReader table = parent.table("truth", {"volumes", "volume", "lookahead_s"});
+  Truth truth;
+  truth.where = table.where();
+  truth.volumes = table.texts("volumes").value_or(std::vector<std::string>{});
+  std::set<std::string> taken;
+  for (const std::string& name : truth.volumes)
+    if (!taken.insert(name).second)
+      table.fail("volumes", fmt::format("volumes has '{}' twice; expected each once", name));
+  for (const TableReader& own :
+       table.tables("volume", {"name", "horizontal_m", "vertical_m", "tau_s", "coaltitude_s"})) {
+    truth.own_volumes.push_back(truth_volume_from(own));
+    const std::string& name = truth.own_volumes.back().name;
+    if (!taken.insert(name).second)
+      own.fail("name", fmt::format("name '{}' is taken by another volume; expected another", name));
+  }
+  truth.lookahead_s = table.number("lookahead_s", kLookahead).value_or(truth.lookahead_s);
+  return truth;
+}
 
 Output output_in(const TableReader& parent) {
   const TableReader table = parent.table("output", {"video", "quality", "encoder", "masks"});

@@ -26,6 +26,7 @@ Motion motion_in(const TableReader& parent);
 CameraModel camera_model_in(const TableReader& parent);
 Realism realism_in(const TableReader& parent);
 Light light_in(const TableReader& parent);
+Truth truth_in(const TableReader& parent);
 Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);
 Composite composite_in(const TableReader& parent);

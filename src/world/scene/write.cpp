@@ -187,6 +187,20 @@ void add_intruder(Text& text, const Intruder& intruder) {
   for (const Seen& seen : intruder.seen) add_seen(text, seen);
 }
 
+void add_truth(Text& text, const Truth& truth) {
+  text.heading("[truth]");
+  text.add("lookahead_s", truth.lookahead_s);
+  if (!truth.volumes.empty()) text.add("volumes", truth.volumes);
+  for (const TruthVolume& volume : truth.own_volumes) {
+    text.heading("[[truth.volume]]");
+    text.add("name", volume.name);
+    text.add("horizontal_m", volume.horizontal_m);
+    text.add("vertical_m", volume.vertical_m);
+    text.add("tau_s", volume.tau_s);
+    text.add("coaltitude_s", volume.coaltitude_s);
+  }
+}
+
 }  // namespace
 
 std::string toml_from_scene(const Scene& scene) {
@@ -209,6 +223,7 @@ std::string toml_from_scene(const Scene& scene) {
   for (const Intruder& intruder : scene.intruders) add_intruder(text, intruder);
   add_camera_model(text, scene.camera_model);
   add_realism(text, scene.realism);
+  add_truth(text, scene.truth);
   text.heading("[render]");
   text.add("quality", scene.render.quality);
   text.heading("[composite]");
