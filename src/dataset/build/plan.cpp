@@ -94,14 +94,26 @@ class Planner {
     return std::max<std::int64_t>(0, facts.files.frames - first_frame);
   }
 
+  // Why an intruder cannot fly its path, or has none; "" where it can.
+  static std::string words_of_flight(const scene::Intruder& intruder,
+                                     const trajectory::Path& camera,
+                                     double clip_s) {
+    try {
+      return sequence::words_beyond_limits(
+          intruder.aircraft, sequence::path_of(intruder, camera), 0, clip_s);
+    } catch (const Error& error) {
+      if (!intruder.encounter) throw;
+      return error.message();  // a drawn encounter that no path fulfils
+    }
+  }
+
   // The speed, climb and bank of random paths are known before place(); the range does not change
   // them.
   void fly(const Item& item, double clip_s) {
     const trajectory::Path camera = sequence::camera_path(item.scene.camera);
     for (const scene::Intruder& intruder : item.scene.intruders) {
       if (!intruder.seen.empty()) continue;  // its path follows from the measured motion
-      const std::string words = sequence::words_beyond_limits(
-          intruder.aircraft, sequence::path_of(intruder, camera), 0, clip_s);
+      const std::string words = words_of_flight(intruder, camera, clip_s);
       if (words.empty()) continue;
       ++plan_.not_flyable;
       if (plan_.not_flyable_words.size() < Plan::kMaxNamed)

@@ -112,6 +112,18 @@ TEST(DrawnPath, ATrajectoryMayBeAnEncounter) {
   EXPECT_EQ(item.scene.intruders[0].encounter->cpa_right_m, 40.0);
 }
 
+// A camera that hovers is never passed sideways by what crosses before it: the draw is counted.
+TEST(DrawnPath, ThePlanCountsDrawsThatNoPathFulfils) {
+  const Plan plan = plan_of(
+      with_random("[random.encounter]\ncpa_right_m = 50\ncourse_deg = { any_of = [90, 180] }\n"),
+      {},
+      {});
+  EXPECT_NEAR(double(plan.not_flyable), 200, 40);
+  ASSERT_FALSE(plan.not_flyable_words.empty());
+  EXPECT_NE(plan.not_flyable_words[0].find("no closest approach has this cpa_right_m"),
+            std::string::npos);
+}
+
 TEST(DrawnPath, SaysWhatIsWrong) {
   EXPECT_NE(error_of("range_m = [1, 2]\n" + kApproach).find("exclude each other"),
             std::string::npos);

@@ -88,7 +88,7 @@ std::pair<toml::table*, std::string> table_at(toml::table& root, const std::stri
     rest = rest.substr(dot + 1);
     if (const std::size_t bracket = key.find('['); bracket != std::string::npos) {
       const std::size_t index = std::stoul(key.substr(bracket + 1));
-      table = root.get_as<toml::array>(key.substr(0, bracket))->get_as<toml::table>(index);
+      table = table->get_as<toml::array>(key.substr(0, bracket))->get_as<toml::table>(index);
     } else {
       if (!table->contains(key)) table->insert(key, toml::table{});
       table = table->get_as<toml::table>(key);
