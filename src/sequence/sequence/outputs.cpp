@@ -128,6 +128,7 @@ void Outputs::write_record(const std::vector<Checksum>& inputs, const Summary& s
   record["version"] = kVersion;
   record["name"] = scene_.name;
   record["seed"] = scene_.seed;
+  if (scene_.weight) record["weight"] = *scene_.weight;
   record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene_);
   record["inputs"] = json_of(inputs);
