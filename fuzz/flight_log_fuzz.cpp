@@ -37,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   airtruth::flight_log::add_gpmf_packet(telemetry, {data, size}, 0, 1);
   require_rules(telemetry);
   try {
-    const auto log = airtruth::flight_log::parse_flight_log(
-        {reinterpret_cast<const char*>(data), size}, "log");
+    const auto log =
+        airtruth::flight_log::parse_flight_log({reinterpret_cast<const char*>(data), size}, "log");
     require_rules(log);
     const auto path = airtruth::flight_log::local_path(log, {log.fixes.front().time_s, {0, 0, 0}});
     const auto state = path.at(0);

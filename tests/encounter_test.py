@@ -143,6 +143,11 @@ class Encounter(unittest.TestCase):
         self.refused("sample", "geometric", "--own", OWN, "--domain", "1", "-o", "b.csv", says=["--domain"])
         self.refused("sample", MODEL, "--own", OWN, "--cpa-time", "99", "-o", "b.csv", says=["closest approach"])
         self.refused("sample", MODEL, "--own", OWN, "--hmd-m", "9", "3", "-o", "b.csv", says=["--hmd-m is 9 3"])
+        with open(self.path("long.csv"), "w", encoding="utf-8") as file:
+            file.write("encounter,aircraft,time_s,north_m,east_m,down_m\n1,own,0,0,0,-600\n1,own,1e9,9,0,-600\n")
+        self.refused("sample", "geometric", "--own", "long.csv", "-o", "b.csv", says=["1000000000 s long", "3600"])
+        self.refused("sample", MODEL, "--own", "long.csv", "-o", "b.csv", says=["1000000000 s long", "3600"])
+        os.remove(self.path("long.csv"))
         self.done("sample", MODEL, "--own", OWN, "--count", "2", "-o", "pairs.csv")
         self.refused("convert", "pairs.csv", "b.daa", says=["holds one"])
         self.refused("convert", "pairs.csv", "b.daa", "--encounter", "3", says=["--encounter of 1 to 2"])

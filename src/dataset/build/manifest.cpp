@@ -19,12 +19,15 @@ constexpr std::int64_t kLinesInAFile = 10'000;
 Json manifest_line(const Folder& folder, const Item& item) {
   const JsonDocument record(folder.sequence(item) / "sequence.json");
   const JsonObject summary = record.object("summary");
-  return {{"index", item.index},
-          {"name", item.name},
-          {"folder", fs::relative(folder.sequence(item), folder.root).string()},
-          {"frames", summary.count("frames")},
-          {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")},
-          {"outputs", record.value("outputs")}};
+  Json line = {
+      {"index", item.index},
+      {"name", item.name},
+      {"folder", fs::relative(folder.sequence(item), folder.root).string()},
+      {"frames", summary.count("frames")},
+      {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")}};
+  if (record.has("weight")) line["weight"] = record.value("weight");
+  line["outputs"] = record.value("outputs");
+  return line;
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "dataset/catalogue/drawn_rule.h"
+#include "dataset/catalogue/encounter_rule.h"
 #include "dataset/catalogue/names.h"
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
@@ -183,9 +185,13 @@ void add_rules(const TableReader& root, Catalogue& catalogue) {
        root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
     catalogue.rules.emplace_back(product_from(table, catalogue));
   for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
+  for (EncounterRule& rule : encounter_rules(root, catalogue))
+    catalogue.rules.emplace_back(std::move(rule));
   if (catalogue.rules.empty())
-    throw Error("makes no sequence; expected [[sequence]], [[product]] or [[random]]",
-                {catalogue.file.string()});
+    throw Error(
+        "makes no sequence; expected [[sequence]], [[product]], [[random]] or "
+        "[[encounter_model]]",
+        {catalogue.file.string()});
   refuse_same_names(catalogue);
 }
 
@@ -208,6 +214,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
                           "sequence",
                           "product",
                           "random",
+                          "encounter_model",
                           "truth",
                           "render",
                           "composite",

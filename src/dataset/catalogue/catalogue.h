@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "dataset/catalogue/drawn_path.h"
+#include "encounter/pairing/geometric.h"
 #include "foundation/base/enum_names.h"
 #include "world/scene/scene.h"
 #include "world/synthetic/flight.h"
@@ -22,6 +24,10 @@
 // Example: two [[background]] tables, one [[trajectory]], two [[aircraft]] and one [[product]] over
 // all of them describe 2 x 1 x 2 = 4 sequences. With a [[random]] rule of count = 10 beside it, the
 // catalogue describes 14 (expand.h).
+namespace airtruth::encounter {
+class Sampler;
+}
+
 namespace airtruth::dataset {
 
 namespace fs = std::filesystem;
@@ -147,7 +153,31 @@ struct Drawn {
   ClipStart start = ClipStart::kFirst;
 };
 
-using Rule = std::variant<Listed, Product, Drawn>;
+// A rule for encounters: intruders that pass the own aircraft as a model of traffic or a stated
+// geometry says, whether or not the camera sees them (encounter/pairing/pair.h).
+struct EncounterRule {
+  std::string name;  // pattern with {index}
+  Where where;
+  std::int64_t count = 0;
+  std::int64_t frame_count = 240;
+  std::vector<std::size_t> backgrounds;
+  // One whose class flies the intruder's track is chosen, then a livery of it.
+  std::vector<AircraftType> types;
+  // The seed of all that is drawn; it follows from the catalogue's and the rule's name.
+  std::uint64_t seed = 1;
+  // The tracks of `kind = "bayes"` and their file; empty: the geometry below is drawn.
+  std::shared_ptr<const encounter::Sampler> tracks;
+  fs::path model_file;
+  // Times are those of the clip. Tracks of a model use only the time and the miss distances.
+  encounter::GeometricOptions geometry;
+  // How long the tracks are, in seconds of the clip.
+  int length_s = 0;
+  // Shares of the sequences, from 0 to 1: without an intruder, and of the others with two.
+  double negatives = 0;
+  double two_intruders = 0;
+};
+
+using Rule = std::variant<Listed, Product, Drawn, EncounterRule>;
 
 struct Catalogue {
   std::string name;

@@ -103,13 +103,6 @@ Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& r
   return encounter;
 }
 
-// Selects every 1/share-th sequence; the seed draws the offset.
-bool is_negative(const Drawn& rule, const Seed& seed, std::int64_t index) {
-  Random random = seed.stream("negatives of " + rule.name);
-  const double before = static_cast<double>(index) * rule.negatives + random.uniform();
-  return std::floor(before + rule.negatives) > std::floor(before);
-}
-
 // The sun at a random hour of daylight.
 SunPosition drawn_sun(Random random, const DaytimeRange& daytime, const std::string& aircraft) {
   Range hours = kAnyHours;
@@ -156,8 +149,16 @@ DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t ind
   }
   Random of_start = stream("start of sequence ");
   result.start_share = of_start.uniform();
-  if (is_negative(rule, seed, index)) result.encounters.clear();
+  if (is_chosen("negatives of " + rule.name, rule.negatives, seed_value, index))
+    result.encounters.clear();
   return result;
+}
+
+// Selects every 1/share-th sequence; the seed draws the offset.
+bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::int64_t index) {
+  Random random = Seed(seed).stream(what);
+  const double before = static_cast<double>(index) * share + random.uniform();
+  return std::floor(before + share) > std::floor(before);
 }
 
 }  // namespace airtruth::dataset

@@ -47,4 +47,8 @@ struct DrawnSequence {
 // a uniform logarithm.
 DrawnSequence draw(const Drawn& rule, std::uint64_t seed, std::int64_t index);
 
+// True for a share of the sequences of a rule: of any n in a row for n times that, within one. The
+// seed and `what` decide for which.
+bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::int64_t index);
+
 }  // namespace airtruth::dataset

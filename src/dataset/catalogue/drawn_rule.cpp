@@ -56,31 +56,6 @@ std::string no_aircraft_fits(const std::string& pattern) {
   return text + nearest + "; see `airtruth aircraft list`";
 }
 
-std::vector<AircraftType> types_from(const TableReader& table) {
-  const auto patterns = table.texts("aircraft");
-  if (!patterns)
-    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
-                table.where());
-  std::map<std::string, AircraftType> types;
-  for (std::size_t i = 0; i < patterns->size(); ++i) {
-    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
-    for (const std::string& name : names) {
-      const std::string type = name.substr(0, name.find('/'));
-      types[type].name = type;
-      types[type].liveries.push_back(name);
-    }
-    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
-  }
-  std::vector<AircraftType> result;
-  for (auto& [name, type] : types) {
-    std::sort(type.liveries.begin(), type.liveries.end());
-    type.liveries.erase(std::unique(type.liveries.begin(), type.liveries.end()),
-                        type.liveries.end());
-    result.push_back(std::move(type));
-  }
-  return result;
-}
-
 std::optional<DaytimeRange> daytime_from(const TableReader& table) {
   table.exclude("time_of_day_h", {"sun_azimuth_deg", "sun_elevation_deg"});
   for (const char* key : {"latitude_deg", "day_of_year"})
@@ -181,7 +156,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   drawn.count = table.whole("count", 1, kMost).value_or(1);
   drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
-  drawn.types = types_from(table);
+  drawn.types = types_in(table);
   read_paths(table, drawn);
   read_intruders(table, drawn);
   read_start(table, catalogue, drawn);
@@ -192,6 +167,31 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
 }
 
 }  // namespace
+
+std::vector<AircraftType> types_in(const TableReader& table) {
+  const auto patterns = table.texts("aircraft");
+  if (!patterns)
+    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
+                table.where());
+  std::map<std::string, AircraftType> types;
+  for (std::size_t i = 0; i < patterns->size(); ++i) {
+    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
+    for (const std::string& name : names) {
+      const std::string type = name.substr(0, name.find('/'));
+      types[type].name = type;
+      types[type].liveries.push_back(name);
+    }
+    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
+  }
+  std::vector<AircraftType> result;
+  for (auto& [name, type] : types) {
+    std::sort(type.liveries.begin(), type.liveries.end());
+    type.liveries.erase(std::unique(type.liveries.begin(), type.liveries.end()),
+                        type.liveries.end());
+    result.push_back(std::move(type));
+  }
+  return result;
+}
 
 std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalogue) {
   std::vector<Drawn> result;

@@ -12,4 +12,7 @@ namespace airtruth::dataset {
 // line and column.
 std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& catalogue);
 
+// The key `aircraft` of a table: the aircraft of the list that fit its patterns, by type.
+std::vector<AircraftType> types_in(const scene::TableReader& table);
+
 }  // namespace airtruth::dataset

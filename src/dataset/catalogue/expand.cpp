@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "dataset/catalogue/encounter_item.h"
 #include "dataset/catalogue/meeting.h"
 #include "foundation/base/error.h"
 
@@ -22,6 +23,7 @@ std::int64_t size_of(const Rule& rule) {
            static_cast<std::int64_t>(product->trajectories.size()) *
            static_cast<std::int64_t>(product->aircraft.size());
   if (const auto* drawn = std::get_if<Drawn>(&rule)) return drawn->count;
+  if (const auto* encounters = std::get_if<EncounterRule>(&rule)) return encounters->count;
   return 1;
 }
 
@@ -113,6 +115,33 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
   return item;
 }
 
+Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t index) {
+  Item item;
+  item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
+  item.frame_count = rule.frame_count;
+  item.background = background_of(rule, index);
+  item.scene = scene_over(catalogue, item.background);
+  item.encounter_s = rule.length_s;
+  add_encounter(item.scene, rule, index);
+  return item;
+}
+
+// A clip must not outlast the tracks of its encounter.
+void check_length(const Item& item, const BackgroundFiles& files) {
+  if (item.encounter_s == 0 || files.frame_rate_hz <= 0) return;
+  const double clip_s = static_cast<double>(item.frame_count) / files.frame_rate_hz;
+  if (clip_s > item.encounter_s)
+    throw Error(
+        fmt::format("{}: {} frames at {:.3g} a second are {:.1f} s; encounters are drawn for "
+                    "{:.0f} s, expected 24 frames a second or more",
+                    files.video.string(),
+                    item.frame_count,
+                    files.frame_rate_hz,
+                    clip_s,
+                    item.encounter_s),
+        item.scene.background.where);
+}
+
 }  // namespace
 
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
@@ -182,6 +211,7 @@ void place(Item& item,
   placed.mask = files.mask;
   placed.first_frame = background.first_frame;
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
+  check_length(item, files);
   if (item.rule == nullptr) return;
   if (item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);

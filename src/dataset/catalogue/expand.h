@@ -35,6 +35,8 @@ struct Item {
   scene::Scene scene;
   const Drawn* rule = nullptr;  // the rule of [[random]]; nullptr for a listed sequence
   DrawnSequence drawn;          // valid where there is a rule
+  // Of a rule of [[encounter_model]]: how long its tracks are, in seconds of the clip; else 0.
+  double encounter_s = 0;
 };
 
 // The sequences of a catalogue by number, in the order of the file. Memory holds only the catalogue

@@ -8,9 +8,32 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "dataset/catalogue/encounter_rule.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::dataset {
+
+namespace {
+
+// Keeps the encounter models of the catalogue beside its copy.
+void keep_models(const Catalogue& catalogue, const Folder& folder) {
+  for (const Rule& rule : catalogue.rules) {
+    const auto* encounters = std::get_if<EncounterRule>(&rule);
+    if (encounters == nullptr || !encounters->tracks) continue;
+    const fs::path kept = kept_model(folder.root, encounters->model_file);
+    const fs::path model = fs::exists(encounters->model_file) ? encounters->model_file : kept;
+    const std::string text = read_file(model);
+    fs::create_directories(kept.parent_path());
+    if (!fs::exists(kept))
+      write_file(kept, text);
+    else if (read_file(kept) != text)
+      throw Error("was begun with another model (" + kept.string() + " differs from " +
+                      model.string() + "); expected a new folder, or that model",
+                  {folder.root.string()});
+  }
+}
+
+}  // namespace
 
 Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_t max_in_a_folder) {
   Folder folder{root};
@@ -27,6 +50,7 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
                     catalogue.file.string() + "); expected a new folder, or that catalogue",
                 {root.string()});
   }
+  keep_models(catalogue, folder);
   return folder;
 }
 

@@ -42,6 +42,27 @@ void add_with_ancestors(const BayesModel& model, std::size_t variable, std::vect
     add_with_ancestors(model, parent, chosen);
 }
 
+// How many combinations the bins of the variables have.
+std::size_t combinations_of(const BayesModel& model, const std::vector<std::size_t>& variables) {
+  std::size_t count = 1;
+  for (const std::size_t variable : variables) {
+    count *= model.initial[variable].bins;
+    if (count > kMaxCombinations)
+      throw Error(
+          fmt::format("the cut depends on more than {} combinations of bins; expected fewer",
+                      kMaxCombinations),
+          {model.file.string()});
+  }
+  return count;
+}
+
+// 0 where the column has no counts.
+double probability_of(const Node& node, std::size_t column, std::size_t bin) {
+  const double* sums = &node.sums[column * node.bins];
+  const double total = sums[node.bins - 1];
+  return total > 0 ? (sums[bin] - (bin == 0 ? 0 : sums[bin - 1])) / total : 0;
+}
+
 }  // namespace
 
 CutTable::CutTable(const BayesModel& model, const Cut& cut) {
@@ -78,13 +99,7 @@ void CutTable::set_altitudes(const BayesModel& model, const Cut& cut) {
 void CutTable::set_table(const BayesModel& model, const Kept& kept) {
   std::vector<std::size_t> bins_of;
   for (const Node& node : model.initial) bins_of.push_back(node.bins);
-  std::size_t count = 1;
-  for (const std::size_t variable : variables_) count *= bins_of[variable];
-  if (count > kMaxCombinations)
-    throw Error(fmt::format("the cut depends on {} combinations of bins; expected up to {}",
-                            count,
-                            kMaxCombinations),
-                {model.file.string()});
+  const std::size_t count = combinations_of(model, variables_);
   std::vector<std::size_t> bins(model.initial.size(), 0);
   double sum = 0;
   for (std::size_t c = 0; c < count; ++c) {
@@ -95,13 +110,9 @@ void CutTable::set_table(const BayesModel& model, const Kept& kept) {
     }
     double probability = 1;
     for (const std::size_t variable : variables_) {
-      const Node& node = model.initial[variable];
-      const std::size_t column = column_of(node, bins_of, bins.data());
-      const double* sums = &node.sums[column * node.bins];
-      const std::size_t k = bins[variable];
-      const double total = sums[node.bins - 1];
-      const double weight = sums[k] - (k == 0 ? 0 : sums[k - 1]);
-      probability *= total > 0 ? kept[variable][k] * weight / total : 0;
+      const std::size_t column = column_of(model.initial[variable], bins_of, bins.data());
+      probability *= kept[variable][bins[variable]] *
+                     probability_of(model.initial[variable], column, bins[variable]);
     }
     if (!(probability > 0)) continue;
     sums_.push_back(sum += probability);

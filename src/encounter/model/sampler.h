@@ -52,6 +52,7 @@ class Sampler {
 
   // Throws Error where none of many draws can be flown.
   SampledTrack sample(std::uint64_t index) const;
+  int duration_s() const { return options_.duration_s; }
   // Share of the model's traffic that is in the cut, 0..1.
   double share() const { return cut_.share(); }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/sets/draw_encounter.h"
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,9 +17,13 @@ constexpr std::uint64_t kMaxTracks = 100;
 // Where the tracks of a next attempt begin; sets are smaller.
 constexpr std::uint64_t kNextAttempt = std::uint64_t{1} << 40;
 
-Track own_of(Track own) {
+// The own track with a sample in each second of the intruder, so that tools which want both at the
+// same time find them.
+Track own_of(Track own, int seconds) {
   own.name = "own";
-  return with_velocities(std::move(own));
+  std::vector<double> times_s;
+  for (int i = 0; i <= seconds; ++i) times_s.push_back(own.times_s.front() + i);
+  return with_samples_at(with_velocities(std::move(own)), times_s);
 }
 
 }  // namespace
@@ -34,8 +40,8 @@ DrawEncounter model_pairs(std::shared_ptr<const Sampler> sampler,
                           Track own,
                           const PairingOptions& options,
                           std::uint64_t seed) {
-  return [sampler = std::move(sampler), own = own_of(std::move(own)), options, seed](
-             std::uint64_t index) {
+  own = own_of(std::move(own), sampler->duration_s());
+  return [sampler = std::move(sampler), own = std::move(own), options, seed](std::uint64_t index) {
     Random random = Seed(seed).stream("pairing", index);
     DrawnEncounter drawn{{{own}, 1}, 0};
     for (std::uint64_t attempt = 0; attempt < kMaxTracks; ++attempt) {
@@ -59,7 +65,12 @@ DrawEncounter model_pairs(std::shared_ptr<const Sampler> sampler,
 }
 
 DrawEncounter geometric_pairs(const GeometricSampler& sampler, Track own) {
-  return [sampler, own = own_of(std::move(own))](std::uint64_t index) {
+  const double length_s = own.times_s.back() - own.times_s.front();
+  if (length_s > kMaxDuration_s)
+    throw Error(
+        fmt::format("the own track is {} s long; expected up to {} s", length_s, kMaxDuration_s));
+  own = own_of(std::move(own), static_cast<int>(std::ceil(length_s)));
+  return [sampler, own = std::move(own)](std::uint64_t index) {
     return DrawnEncounter{
         {{own, geometric_track(own, sampler.draw(index), own.times_s.front(), own.times_s.back())},
          1},

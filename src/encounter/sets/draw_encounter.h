@@ -26,15 +26,16 @@ using DrawEncounter = std::function<DrawnEncounter(std::uint64_t index)>;
 // Tracks of a model by themselves: encounters of one aircraft.
 DrawEncounter model_tracks(std::shared_ptr<const Sampler> sampler);
 
-// The own track, and an intruder from the model that begins at the same time and is paired with it.
-// The time of the closest approach is one of the own track's. Throws Error where the own track does
-// not contain it.
+// The own track, with a sample in each second, and an intruder from the model that begins at the
+// same time and is paired with it. The time of the closest approach is one of the own track's.
+// Throws Error where the own track does not contain it.
 DrawEncounter model_pairs(std::shared_ptr<const Sampler> sampler,
                           Track own,
                           const PairingOptions& options,
                           std::uint64_t seed);
 
-// The own track, and an intruder of the stratified geometry that flies as long.
+// The own track, likewise, and an intruder of the stratified geometry that flies as long. Throws
+// Error where that is longer than kMaxDuration_s.
 DrawEncounter geometric_pairs(const GeometricSampler& sampler, Track own);
 
 }  // namespace airtruth::encounter

@@ -66,7 +66,8 @@ TEST_F(Sets, PairsHoldTheOwnTrackAndAnIntruderWithItsWeight) {
   for (const Encounter& encounter : encounters) {
     ASSERT_EQ(encounter.aircraft.size(), 2u);
     EXPECT_EQ(encounter.aircraft[0].name, "own");
-    EXPECT_EQ(encounter.aircraft[0].positions_ned_m[1], Vector3(0, 1100, -320));
+    EXPECT_EQ(encounter.aircraft[0].positions_ned_m.back(), Vector3(0, 1100, -320));
+    EXPECT_EQ(encounter.aircraft[0].times_s, encounter.aircraft[1].times_s);
     EXPECT_EQ(encounter.aircraft[1].times_s.front(), 100);
     EXPECT_EQ(encounter.aircraft[1].times_s.back(), 120);
     EXPECT_GT(encounter.weight, 0);

@@ -60,6 +60,24 @@ TrackState state_at(const Track& track, double time_s) {
   return {p + u * (v + u * (square + u * cube)), (v + u * (2 * square + 3 * u * cube)) / step};
 }
 
+Track with_samples_at(const Track& track, const std::vector<double>& times_s) {
+  Track result{track.name, {}, {}, {}};
+  std::set_union(track.times_s.begin(),
+                 track.times_s.end(),
+                 times_s.begin(),
+                 times_s.end(),
+                 std::back_inserter(result.times_s));
+  std::erase_if(result.times_s, [&](double time_s) {
+    return time_s < track.times_s.front() || time_s > track.times_s.back();
+  });
+  for (const double time_s : result.times_s) {
+    const TrackState state = state_at(track, time_s);
+    result.positions_ned_m.push_back(state.position_ned_m);
+    result.velocities_ned_mps.push_back(state.velocity_ned_mps);
+  }
+  return result;
+}
+
 void turn_and_move(Track& track,
                    double angle_rad,
                    const Vector3& pivot_ned_m,

@@ -53,6 +53,10 @@ Track with_velocities(Track track);
 // more.
 TrackState state_at(const Track& track, double time_s);
 
+// The track with further samples, from state_at(), at those of the times that lie within it. The
+// times increase; the track must have velocities.
+Track with_samples_at(const Track& track, const std::vector<double>& times_s);
+
 // Turns the track by `angle_rad` from north towards east about the vertical through `pivot_ned_m`,
 // then moves it by `shift_m`.
 void turn_and_move(Track& track,

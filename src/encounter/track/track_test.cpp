@@ -58,6 +58,17 @@ TEST(Track, StateFollowsACircleBetweenItsSamples) {
   }
 }
 
+TEST(Track, FurtherSamplesLieOnTheTrack) {
+  Track track = circle(1.0);
+  for (const double t : track.times_s) track.velocities_ned_mps.push_back(circle_velocity(t));
+  const Track more = with_samples_at(track, {-1, 0.5, 3, 7.25, 20, 30});
+  ASSERT_EQ(more.size(), track.size() + 2);
+  EXPECT_EQ(more.times_s[1], 0.5);
+  for (std::size_t i = 0; i < more.size(); ++i)
+    EXPECT_LT((more.positions_ned_m[i] - on_circle(more.times_s[i])).norm(), 1e-3) << i;
+  EXPECT_EQ(more.positions_ned_m[2], track.positions_ned_m[1]);
+}
+
 TEST(Track, TimesOutsideGiveTheNearestEnd) {
   const Track track = with_velocities(circle(1.0));
   EXPECT_EQ(state_at(track, -5).position_ned_m, track.positions_ned_m.front());

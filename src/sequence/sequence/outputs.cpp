@@ -133,6 +133,7 @@ void Outputs::write_record(const std::vector<Checksum>& inputs,
   record["version"] = kVersion;
   record["name"] = scene_.name;
   record["seed"] = scene_.seed;
+  if (scene_.weight) record["weight"] = *scene_.weight;
   record["encoder"] = writer_.encoder();
   record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene_);

@@ -84,9 +84,10 @@ TEST(LocalPath, ALogOfAnotherTimeIsRefused) {
     local_path(log, {100, {0, 0, 0}});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "the log's positions go from 0.00 to 60.00 s, and the clip begins at 100.000 s of the "
-                 "log; expected a log of the same flight, or another log_offset_s");
+    EXPECT_STREQ(
+        error.what(),
+        "the log's positions go from 0.00 to 60.00 s, and the clip begins at 100.000 s of the "
+        "log; expected a log of the same flight, or another log_offset_s");
   }
 }
 

@@ -45,12 +45,14 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       parsed,
       "a scene",
       file.string(),
-      with_camera_tables({"name", "seed", "background", "lens", "camera", "motion", "light"},
-                         {"realism", "intruder", "truth", "render", "composite", "output"}));
+      with_camera_tables(
+          {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
+          {"realism", "intruder", "truth", "render", "composite", "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
   scene.seed = static_cast<std::uint64_t>(root.whole("seed", 0, kLargestSeed).value_or(1));
+  scene.weight = root.number("weight", kWeight);
   scene.background =
       background_from(root.table("background", {"video", "mask", "first_frame", "frame_count"}));
   scene.lens = lens_in(root);

@@ -259,6 +259,9 @@ struct Output {
 struct Scene {
   std::string name;
   std::uint64_t seed = 1;
+  // How many encounters of real traffic the scene stands for, up to a factor that a data set
+  // shares; empty where it is not drawn from a model of traffic.
+  std::optional<double> weight;
   Background background;
   Lens lens;
   Camera camera;

@@ -208,6 +208,7 @@ std::string toml_from_scene(const Scene& scene) {
   Text text;
   text.add("name", scene.name);
   text.add("seed", static_cast<std::int64_t>(scene.seed));
+  text.add("weight", scene.weight);
   text.heading("[background]");
   text.add("video", scene.background.video);
   text.add("mask", scene.background.mask);

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/encounter_rule.h"
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dataset/build/plan.h"
+#include "dataset/catalogue/expand.h"
+#include "dataset/catalogue/folder.h"
+#include "encounter/model/small_model.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "sequence/setup/flyable.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::dataset {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kBackground = R"(
+[[background]]
+name = "sky"
+flight = { seed = 3, frame_count = 240, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -900], velocity_ned_mps = [40, 10, -1] }
+[[encounter_model]]
+aircraft = ["c172/*", "738/738-Ryanair", "Cub/*"]
+)";
+
+class EncounterModel : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("airtruth-encounter-rule-") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write_file(folder_ / "small.txt", encounter::kSmallModel);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Catalogue with(const std::string& keys) const {
+    return parse_catalogue(kBackground + keys, folder_ / "c.toml");
+  }
+  std::string fault_of(const std::string& keys) const {
+    try {
+      with(keys);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  fs::path folder_;
+};
+
+constexpr const char* kBayes = "kind = \"bayes\"\nmodel = \"small.txt\"\n";
+
+struct Closest {
+  double time_s = 0, distance_m = HUGE_VAL, above_m = 0;
+};
+// The horizontal closest approach of the two paths as the renderer has them, in steps of 1 ms.
+Closest closest_of(const scene::Scene& scene, const scene::Intruder& intruder, double end_s) {
+  const trajectory::Path own = sequence::camera_path(scene.camera);
+  const trajectory::Path path = sequence::path_of(intruder);
+  Closest closest;
+  for (double t = 0; t <= end_s; t += 1e-3) {
+    const Vector3 apart = path.at(t)->position_in_world - own.at(t)->position_in_world;
+    if (apart.head<2>().norm() < closest.distance_m)
+      closest = {t, apart.head<2>().norm(), -apart.z()};
+  }
+  return closest;
+}
+
+TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
+  const Catalogue catalogue = with(
+      "kind = \"geometric\"\ncount = 12\ncpa_time_s = 4.3\nhmd_m = 120\nvmd_m = [-60, 60]\n"
+      "speed_mps = [40, 60]\nturn_rate_dps = [-3, 3]\nclimb_mps = [-2, 2]\n");
+  const Expansion expansion(catalogue);
+  ASSERT_EQ(expansion.size(), 12);
+  for (std::int64_t i = 0; i < 12; ++i) {
+    const Item item = expansion.at(i);
+    ASSERT_EQ(item.scene.intruders.size(), 1u);
+    EXPECT_FALSE(item.scene.weight.has_value());
+    const Closest closest = closest_of(item.scene, item.scene.intruders[0], 8);
+    EXPECT_NEAR(closest.distance_m, 120, 0.1) << i;
+    EXPECT_NEAR(closest.time_s, 4.3, 0.1) << i;
+    EXPECT_LE(std::abs(closest.above_m), 60.1) << i;
+  }
+}
+
+TEST_F(EncounterModel, TracksOfAModelPassInTheRangeAndCarryTheirWeight) {
+  const Catalogue catalogue =
+      with(std::string(kBayes) +
+           "count = 20\nhmd_m = [-90, 90]\nvmd_m = [-40, 40]\ncpa_time_s = [3, 5]\n");
+  const Expansion expansion(catalogue);
+  std::set<double> weights;
+  for (std::int64_t i = 0; i < 20; ++i) {
+    Item item = expansion.at(i), again = expansion.at(i);
+    for (Item* each : {&item, &again}) place(*each, catalogue, {"v.mp4", {}, 160, 120, 30, 240});
+    ASSERT_TRUE(item.scene.weight.has_value());
+    weights.insert(*item.scene.weight);
+    const scene::Intruder& intruder = item.scene.intruders.at(0);
+    EXPECT_EQ(intruder.id, "intruder");
+    const Closest closest = closest_of(item.scene, intruder, 8);
+    EXPECT_LE(closest.distance_m, 90.1) << i;
+    EXPECT_LE(std::abs(closest.above_m), 40 + 5) << i;  // climbs in what the approach is off
+    // The aircraft flies its track.
+    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, 8),
+              "")
+        << i;
+    EXPECT_EQ(scene::toml_from_scene(again.scene), scene::toml_from_scene(item.scene));
+    EXPECT_THAT(scene::toml_from_scene(item.scene), HasSubstr("\nweight = "));
+  }
+  EXPECT_GT(weights.size(), 15u);
+}
+
+TEST_F(EncounterModel, TheAircraftFitsTheSpeed) {
+  for (const auto& [speed, type] :
+       {std::pair("150", "738"), std::pair("50", "c172"), std::pair("28", "Cub")}) {
+    const Catalogue catalogue =
+        with(std::string("kind = \"geometric\"\ncount = 8\nspeed_mps = ") + speed + "\n");
+    const Expansion expansion(catalogue);
+    for (std::int64_t i = 0; i < 8; ++i)
+      EXPECT_THAT(expansion.at(i).scene.intruders.at(0).aircraft,
+                  testing::StartsWith(std::string(type) + "/"));
+  }
+  // No aircraft of the rule flies 400 m/s: the fastest comes nearest, and the plan says so.
+  const Catalogue fast = with("kind = \"geometric\"\ncount = 2\nspeed_mps = 400\n");
+  EXPECT_THAT(Expansion(fast).at(0).scene.intruders.at(0).aircraft, testing::StartsWith("738/"));
+  EXPECT_EQ(plan_of(fast, {}, {}).not_flyable, 2);
+}
+
+TEST_F(EncounterModel, NegativesAndSecondIntrudersAreTheSharesThatWereAskedFor) {
+  const Catalogue catalogue = with(
+      "kind = \"geometric\"\ncount = 200\nnegatives = 0.05\ntwo_intruders = 0.1\nvmd_m = [0, "
+      "100]\n");
+  int of[3] = {0, 0, 0};
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < 200; ++i) {
+    const scene::Scene scene = expansion.at(i).scene;
+    ++of[scene.intruders.size()];
+    if (scene.intruders.empty()) continue;
+    EXPECT_EQ(scene.intruders[0].id, "intruder-1");
+  }
+  EXPECT_NEAR(of[0], 10, 1);
+  EXPECT_NEAR(of[2], 19, 3);
+}
+
+TEST_F(EncounterModel, ADataSetKeepsItsModel) {
+  const Catalogue catalogue = with(std::string(kBayes) + "count = 3\n");
+  const fs::path root = folder_ / "set";
+  open_folder(catalogue, root);
+  EXPECT_EQ(read_file(root / "models" / "small.txt"), encounter::kSmallModel);
+  fs::remove(folder_ / "small.txt");
+  const Catalogue copy = read_catalogue(root / "catalogue.toml");
+  EXPECT_EQ(Expansion(copy).at(2).scene.intruders.at(0).waypoints_ned_m,
+            Expansion(catalogue).at(2).scene.intruders.at(0).waypoints_ned_m);
+  open_folder(copy, root);
+  write_file(folder_ / "small.txt", std::string(encounter::kSmallModel) + "\n");
+  EXPECT_THROW(open_folder(catalogue, root), Error);
+}
+
+TEST_F(EncounterModel, AClipLongerThanItsTracksIsAnError) {
+  const Catalogue catalogue = with("kind = \"geometric\"\ncount = 1\nframe_count = 240\n");
+  Item item = Expansion(catalogue).at(0);
+  BackgroundFiles files{"v.mp4", {}, 160, 120, 25, 240};
+  EXPECT_NO_THROW(place(item, catalogue, files));
+  files.frame_rate_hz = 10;
+  EXPECT_THROW(place(item, catalogue, files), Error);
+}
+
+TEST_F(EncounterModel, EachFaultNamesItsLine) {
+  EXPECT_THAT(fault_of("count = 3\n"), HasSubstr("c.toml:7:1: has no kind"));
+  EXPECT_THAT(fault_of("kind = \"bayes\"\n"), HasSubstr("c.toml:7:1: has no model"));
+  EXPECT_THAT(fault_of("kind = \"bayes\"\nmodel = \"none.txt\"\n"), HasSubstr("c.toml:10:9: "));
+  EXPECT_THAT(fault_of("kind = \"markov\"\n"), HasSubstr("c.toml:9:8: kind"));
+  EXPECT_THAT(fault_of(std::string(kBayes) + "speed_mps = 30\n"),
+              HasSubstr("c.toml:11:13: speed_mps has no effect with kind = \"bayes\""));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nmodel = \"small.txt\"\n"),
+              HasSubstr("model has no effect with kind = \"geometric\""));
+  EXPECT_THAT(fault_of(std::string(kBayes) + "airspaces = [4]\n"),
+              HasSubstr("has no airspace class; expected no cut by it"));
+  EXPECT_THAT(fault_of(std::string(kBayes) + "domains = [1.5]\n"),
+              HasSubstr("expected whole numbers"));
+  EXPECT_THAT(fault_of(std::string(kBayes) + "hmd_m = 50\n"), HasSubstr("expected a range"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nhmd_m = [9, 3]\n"),
+              HasSubstr("c.toml:10:9: hmd_m is 9 3; expected one number, or the increasing edges"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nhmd_shares = [1]\n"),
+              HasSubstr("hmd_shares is for hmd_m"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\ncpa_time_s = 99\n"),
+              HasSubstr("outside of the clip"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nnegatives = 2\n"), HasSubstr("a share from 0 to 1"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nname = \"e\"\n"), HasSubstr("name has no {index}"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nspeed = 2\n"), HasSubstr("unknown key 'speed'"));
+}
+
+TEST_F(EncounterModel, ATrackBelowTheGroundIsRefusedOrDrawnAgain) {
+  const std::string low = "vmd_m = [-890, -880]\n";
+  const Catalogue stated = with("kind = \"geometric\"\n" + low);
+  EXPECT_THROW(Expansion(stated).at(0), Error);
+  const Catalogue drawn = with(std::string(kBayes) + low);
+  EXPECT_THROW(Expansion(drawn).at(0), Error);
+  const Catalogue some = with(std::string(kBayes) + "count = 10\nvmd_m = [-1800, 0]\n");
+  for (std::int64_t i = 0; i < 10; ++i) {
+    const Item item = Expansion(some).at(i);
+    for (const Vector3& position : item.scene.intruders.at(0).waypoints_ned_m)
+      EXPECT_LE(position.z(), -30);
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::dataset
