@@ -34,6 +34,43 @@ enum class IntruderState {
   kEnded,
 };
 
+// Whether an intruder violates a volume of airspace that the scene asks for.
+struct VolumeTruth {
+  std::string name;
+  bool inside = false;
+  // Time to the violation if both keep their velocities; 0 inside, empty where there is none within
+  // the lookahead.
+  std::optional<double> to_violation_s;
+
+  bool operator==(const VolumeTruth&) const = default;
+};
+
+// The measures of detect-and-avoid between the own aircraft on its nominal path and an intruder, if
+// both keep their velocities (docs/formats/truth.md). A measure that is not defined is empty.
+struct EncounterTruth {
+  // Distance over the ground; how much higher the intruder is.
+  double horizontal_m = 0;
+  double above_m = 0;
+  std::optional<double> closing_speed_mps;
+  // Direction of the intruder from north towards east, 0 to 360, and from the own course.
+  std::optional<double> bearing_deg;
+  std::optional<double> bearing_rate_dps;
+  std::optional<double> relative_bearing_deg;
+  std::optional<double> line_of_sight_rate_dps;
+  // Time to the horizontal closest approach, and the horizontal distance there.
+  std::optional<double> tcpa_s;
+  std::optional<double> dcpa_m;
+  // Least horizontal distance and least difference of height within the lookahead.
+  double hmd_m = 0;
+  double vmd_m = 0;
+  // Modified tau with a DMOD of 0.66 nmi; time to the same height.
+  std::optional<double> tau_mod_s;
+  std::optional<double> tcoa_s;
+  std::vector<VolumeTruth> volumes;
+
+  bool operator==(const EncounterTruth&) const = default;
+};
+
 // The truth of one intruder in one frame. The optional fields are all empty in the state kEnded.
 struct IntruderTruth {
   std::string id;
@@ -54,6 +91,8 @@ struct IntruderTruth {
   // Bearing from the boresight of the nominal, unshaken camera.
   std::optional<double> nominal_azimuth_deg;
   std::optional<double> nominal_elevation_deg;
+  // Empty where the intruder is not in the world, and in older files.
+  std::optional<EncounterTruth> encounter;
   // Box of the projected geometry, not clipped by the frame.
   std::optional<Box> exact_box_px;
   // Bounds of the whole pixels that the intruder covers with an alpha of 0.08 or more: the box for

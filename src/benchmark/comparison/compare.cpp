@@ -63,6 +63,8 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.intruders.resize(1);
   scene::Intruder& intruder = scene.intruders[0];
   intruder.path_file.reset();
+  intruder.encounter.reset();
+  intruder.seen.clear();
   intruder.waypoints_ned_m = path.waypoints_ned_m;
   intruder.times_s = path.times_s;
   intruder.speed_mps.reset();

@@ -44,6 +44,24 @@ Homography homography_of(const std::array<double, 9>& rows) {
   return h;
 }
 
+// The measures that both forms hold under the same names.
+template <typename From, typename To>
+void copy_measures(const From& from, To& to) {
+  to.horizontal_m = from.horizontal_m;
+  to.above_m = from.above_m;
+  to.closing_speed_mps = from.closing_speed_mps;
+  to.bearing_deg = from.bearing_deg;
+  to.bearing_rate_dps = from.bearing_rate_dps;
+  to.relative_bearing_deg = from.relative_bearing_deg;
+  to.line_of_sight_rate_dps = from.line_of_sight_rate_dps;
+  to.tcpa_s = from.tcpa_s;
+  to.dcpa_m = from.dcpa_m;
+  to.hmd_m = from.hmd_m;
+  to.vmd_m = from.vmd_m;
+  to.tau_mod_s = from.tau_mod_s;
+  to.tcoa_s = from.tcoa_s;
+}
+
 // The members that both forms name and type alike.
 template <typename From, typename To>
 void copy_scalars(const From& from, To& to) {
@@ -69,6 +87,12 @@ IntruderTruth public_intruder(const annotation::Intruder& intruder) {
   IntruderTruth truth;
   copy_scalars(intruder, truth);
   truth.state = static_cast<IntruderState>(intruder.state);
+  if (intruder.encounter) {
+    EncounterTruth& encounter = truth.encounter.emplace();
+    copy_measures(intruder.encounter->measures, encounter);
+    for (const annotation::VolumeTruth& volume : intruder.encounter->volumes)
+      encounter.volumes.push_back({volume.name, volume.inside, volume.to_violation_s});
+  }
   truth.position_ned_m = arrays_of(intruder.position_ned_m);
   truth.velocity_ned_mps = arrays_of(intruder.velocity_ned_mps);
   truth.attitude_yaw_pitch_roll_deg = arrays_of(intruder.attitude_yaw_pitch_roll_deg);
@@ -80,6 +104,13 @@ IntruderTruth public_intruder(const annotation::Intruder& intruder) {
 annotation::Intruder intruder_of(const IntruderTruth& truth) {
   annotation::Intruder intruder;
   copy_scalars(truth, intruder);
+  if (truth.encounter) {
+    annotation::EncounterTruth& encounter = intruder.encounter.emplace();
+    copy_measures(*truth.encounter, encounter.measures);
+    encounter.measures.range_m = truth.range_m.value_or(0);
+    for (const VolumeTruth& volume : truth.encounter->volumes)
+      encounter.volumes.push_back({volume.name, volume.inside, volume.to_violation_s});
+  }
   intruder.state = static_cast<State>(truth.state);
   intruder.position_ned_m = vectors_of(truth.position_ned_m);
   intruder.velocity_ned_mps = vectors_of(truth.velocity_ned_mps);

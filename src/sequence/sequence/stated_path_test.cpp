@@ -146,7 +146,10 @@ TEST_F(StatedPath, APathThatCannotBeFlownOrIsNeverSeenWarns) {
                     "[[intruder]]\nid = 'fast'\naircraft = 'c172/news'\n[intruder.encounter]\n"
                     "cpa_time_s = 1\ncpa_right_m = 300\ncourse_deg = 0\nspeed_mps = 131\n"
                     "[[intruder]]\nid = 'behind'\naircraft = 'c172/news'\n[intruder.encounter]\n"
-                    "cpa_time_s = -20\ncourse_deg = 180\nspeed_mps = 50\ncpa_right_m = 9\n"),
+                    "cpa_time_s = -20\ncourse_deg = 180\nspeed_mps = 50\ncpa_right_m = 9\n"
+                    "[[intruder]]\nid = 'returns'\naircraft = 'c172/news'\n[intruder.encounter]\n"
+                    "cpa_time_s = 1.2\ncpa_right_m = 30\ncourse_deg = 90\nspeed_mps = 45\n"
+                    "turn_rate_dps = 60\n"),
            [&](const std::string& text) { warnings.push_back(text); });
   const auto warned = [&](const std::string& words) {
     return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& text) {
@@ -156,6 +159,10 @@ TEST_F(StatedPath, APathThatCannotBeFlownOrIsNeverSeenWarns) {
   EXPECT_TRUE(
       warned("intruder 'fast': c172/news (light piston) cannot fly its path: at 0.00 s it "
              "flies 131.0 m/s, the fastest of its class 92 m/s"));
+  EXPECT_TRUE(
+      warned("intruder 'returns' comes nearer than at its cpa_time_s of 1.20 s: 55.4 m in place "
+             "of 61.8 m, at 0.00 s"));
+  EXPECT_FALSE(warned("intruder 'fast' comes nearer"));
   EXPECT_TRUE(warned("intruder 'behind' is never visible; it comes nearest to the view's edge at"));
 }
 
