@@ -70,7 +70,8 @@ std::optional<StraightTriangle> StraightTriangle::of(const std::vector<Corners>&
   StraightTriangle triangle;
   triangle.moves_ = eyes.size() == 3;
   if (!triangle.moves_) {
-    for (std::size_t k = 0; k < 3; ++k) triangle.corner_[k][0] = corners[0][k]->pixel;
+    for (std::size_t k = 0; k < 3; ++k)
+      triangle.corner_[k] = {corners[0][k]->pixel, Pixel::Zero(), Pixel::Zero()};
     triangle.stand_still();
     return triangle;
   }
