@@ -66,7 +66,7 @@ struct Closest {
 // The horizontal closest approach of the two paths as the renderer has them, in steps of 1 ms.
 Closest closest_of(const scene::Scene& scene, const scene::Intruder& intruder, double end_s) {
   const trajectory::Path own = sequence::camera_path(scene.camera);
-  const trajectory::Path path = sequence::path_of(intruder);
+  const trajectory::Path path = sequence::path_of(intruder, sequence::camera_path(scene.camera));
   Closest closest;
   for (double t = 0; t <= end_s; t += 1e-3) {
     const Vector3 apart = path.at(t)->position_in_world - own.at(t)->position_in_world;
@@ -110,7 +110,11 @@ TEST_F(EncounterModel, TracksOfAModelPassInTheRangeAndCarryTheirWeight) {
     EXPECT_LE(closest.distance_m, 90.1) << i;
     EXPECT_LE(std::abs(closest.above_m), 40 + 5) << i;  // climbs in what the approach is off
     // The aircraft flies its track.
-    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, sequence::path_of(intruder), 0, 8),
+    EXPECT_EQ(sequence::words_beyond_limits(
+                  intruder.aircraft,
+                  sequence::path_of(intruder, sequence::camera_path(item.scene.camera)),
+                  0,
+                  8),
               "")
         << i;
     EXPECT_EQ(scene::toml_from_scene(again.scene), scene::toml_from_scene(item.scene));

@@ -30,7 +30,7 @@ trajectory::Path straight_at(double speed_mps) {
   scene::Intruder intruder;
   intruder.waypoints_ned_m = {{100, 0, -1000}, {400, 0, -1000}};
   intruder.speed_mps = speed_mps;
-  return path_of(intruder);
+  return path_of(intruder, camera_path({}));
 }
 
 class SharedInputsTest : public testing::Test {
