@@ -14,10 +14,13 @@
 namespace airtruth::sequence {
 namespace {
 
-// The candidates, as a person would state them. A closest approach after the end of the clip keeps
-// the intruder in front of the camera.
+// An intruder that is nearest later than this begins as a dot of a pixel or two.
+constexpr double kMaxApproachS = 12;
+
+// The candidates, as a person would state them. A closest approach after the moments at which the
+// view is tested keeps the intruder in front of the camera.
 struct Candidate {
-  double cpa_share;  // of the clip's duration
+  double cpa_share;  // of the clip's duration, or of kMaxApproachS in a longer clip
   double course_deg;
   double speed_mps;
   double right_m;
@@ -32,7 +35,7 @@ constexpr int kSteps = 40;  // moments at which the view is tested
 
 scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
   scene::Encounter encounter;
-  encounter.cpa_time_s = candidate.cpa_share * std::max(duration_s, 1.0);
+  encounter.cpa_time_s = candidate.cpa_share * std::clamp(duration_s, 1.0, kMaxApproachS);
   encounter.cpa_right_m = candidate.right_m;
   encounter.cpa_above_m = kAboveM;
   encounter.course_deg = candidate.course_deg;
@@ -54,7 +57,7 @@ int moments_in_view(const scene::Encounter& encounter,
     const trajectory::Path path = encounter::path_to_approach(encounter, own);
     int count = 0;
     for (int i = 0; i <= kSteps; ++i) {
-      const double time_s = duration_s * i / kSteps;
+      const double time_s = std::min(duration_s, kMaxApproachS) * i / kSteps;
       const auto camera = own.at(time_s), state = path.at(time_s);
       if (!camera || !state) continue;
       const auto sight = sight_of(lens, {}, own, *camera, time_s, {});

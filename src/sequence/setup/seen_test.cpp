@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::sequence {
@@ -163,10 +164,11 @@ TEST(Seen, PlacingByTheMeasuredMotionMovesPathAndScene) {
   scene::Scene scene;
   scene.lens.vertical_fov_deg = 50;
   scene.intruders = {cessna(kThree)};
-  World world = load_world(scene, {1280, 720}, {});
+  SharedInputs shared;
+  World world = load_world(scene, {1280, 720}, {}, {}, &shared);
   const auto model = world.actors[0].model;
   const Vector3 steady = world.actors[0].path.at(1)->position_in_world;
-  place_seen(scene, world, frames(rotation_of));
+  place_seen(scene, world, frames(rotation_of), {}, &shared);
   EXPECT_TRUE(scene.intruders[0].seen.empty());
   EXPECT_GT((world.actors[0].path.at(1)->position_in_world - steady).norm(), 1);
   EXPECT_EQ(world.actors[0].model, model);  // the same shape keeps its BVH
