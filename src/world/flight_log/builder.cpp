@@ -77,6 +77,14 @@ FlightLog from_first_record(FlightLog log) {
   return log;
 }
 
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMaxShownBytes = 40;
+  std::string result(text.substr(0, kMaxShownBytes));
+  for (char& c : result)
+    if (c < 0x20 || c >= 0x7f) c = '?';
+  return result;
+}
+
 void require_positions(const FlightLog& log, const std::string& file) {
   if (log.fixes.size() >= 2) return;
   throw Error(

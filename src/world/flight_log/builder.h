@@ -18,6 +18,10 @@ void add_rates(FlightLog& log, const Rates& rates, const Where& where);
 // The log with its times counted from its first record of any kind.
 FlightLog from_first_record(FlightLog log);
 
+// At most 40 bytes of a file's text for a message of one line: other than printable ASCII becomes
+// '?'.
+std::string printable(std::string_view text);
+
 // Throws Error where a log has fewer than two positions.
 void require_positions(const FlightLog& log, const std::string& file);
 

@@ -55,13 +55,14 @@ Places places_of(std::string_view header, const std::string& file) {
     if (found == kNames.end()) {
       const auto near = nearest_spelling(cells[i], kNames);
       throw Error(fmt::format("unknown column '{}'; {}",
-                              cells[i].substr(0, 60),
+                              printable(cells[i]),
                               near ? "did you mean '" + *near + "'?"
                                    : fmt::format("expected {}", fmt::join(kNames, ","))),
                   {file, 1});
     }
     std::size_t& place = places[static_cast<std::size_t>(found - kNames.begin())];
-    if (place != kAbsent) throw Error("column '" + cells[i] + "' stands twice", {file, 1});
+    if (place != kAbsent)
+      throw Error("column '" + printable(cells[i]) + "' stands twice", {file, 1});
     place = i;
   }
   const auto require_together = [&](std::vector<Column> columns) {

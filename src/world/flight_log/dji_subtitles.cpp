@@ -147,7 +147,7 @@ class SubtitleReader {
         time_s = time_of(line.substr(0, arrow));
         if (!time_s)
           throw Error(fmt::format("time is '{}'; expected one such as 00:01:02,033",
-                                  line.substr(0, std::min<std::size_t>(arrow, 40))),
+                                  printable(line.substr(0, arrow))),
                       {file_, number});
       } else {
         block.append(line).push_back(' ');

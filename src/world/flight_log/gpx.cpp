@@ -92,7 +92,7 @@ class GpxReader {
   double number(const pugi::xml_node& point, std::string_view text, const char* what) const {
     const auto value = number_in<double>(trimmed(text));
     if (!value)
-      fail(point, fmt::format("{} is '{}'; expected a number", what, trimmed(text).substr(0, 40)));
+      fail(point, fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text))));
     return *value;
   }
 
@@ -108,7 +108,7 @@ class GpxReader {
     if (!seconds)
       fail(point,
            fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
-                       time.substr(0, 40)));
+                       printable(time)));
     // Times are kept from the first point on: seconds since 1970 would lose the microseconds.
     if (!first_s_) first_s_ = *seconds;
     fix.time_s = *seconds - *first_s_;

@@ -130,7 +130,7 @@ class UlogReader {
     if (const std::size_t size = size_of_type(field.type)) return size * field.count;
     const auto format = formats_.find(field.type);
     if (format == formats_.end() || depth > kMaxNesting)
-      fail(fmt::format("a field has the unknown type '{}'", field.type.substr(0, 40)), at);
+      fail(fmt::format("a field has the unknown type '{}'", printable(field.type)), at);
     std::size_t size = 0;
     for (const Field& part : format->second) size += size_of(part, depth + 1, at);
     if (size > kMaxCount * 8) fail("a format is too large", at);
@@ -142,7 +142,7 @@ class UlogReader {
     const std::string name(body.substr(3));
     const auto format = formats_.find(name);
     if (format == formats_.end())
-      fail(fmt::format("subscribes '{}' before its format", name.substr(0, 40)), at);
+      fail(fmt::format("subscribes '{}' before its format", printable(name)), at);
     // Topics beyond the first instance come from spare sensors.
     if (body[0] != 0) return;
     Topic topic;

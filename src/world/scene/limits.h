@@ -39,8 +39,7 @@ inline constexpr Limits kPinholeView{
 // Positions, times and speeds. The bound 1e9 is also that of path files (trajectory/path_file.cpp).
 inline constexpr Limits kPosition{.expected = "metres from -1e9 to 1e9", .low = -1e9, .high = 1e9};
 inline constexpr Limits kTime{.expected = "seconds from -1e9 to 1e9", .low = -1e9, .high = 1e9};
-inline constexpr Limits kWeight{
-    .expected = "a number from 1e-12 to 1e12", .low = 1e-12, .high = 1e12};
+inline constexpr Limits kWeight{.expected = "a number from 1e-9 to 1e9", .low = 1e-9, .high = 1e9};
 inline constexpr Limits kVelocity{
     .expected = "metres a second from -1e4 to 1e4", .low = -1e4, .high = 1e4};
 inline constexpr Limits kSpeed{
