@@ -207,6 +207,8 @@ def print_memory(bench):
 
 def check(rows):
     """1 where a ratio is more than 10 % above the stored one, else 0; prints each that is."""
+    if not os.path.exists(STORED):
+        sys.exit(f"benchmark: {STORED} is missing; --store writes it")
     with open(STORED) as file:
         stored = json.load(file)
     worse = 0
