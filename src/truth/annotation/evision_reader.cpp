@@ -9,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/line_of.h"
+#include "foundation/base/trimmed.h"
 #include "truth/annotation/evision.h"
 
 namespace airtruth::annotation {
@@ -24,12 +25,6 @@ std::string short_name(const pugi::xml_node& node) {
   for (char& c : name)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
   return name;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 class Reader {

@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/line_of.h"
+#include "foundation/base/trimmed.h"
 #include "world/flight_log/builder.h"
 #include "world/flight_log/formats.h"
 
@@ -24,12 +25,6 @@ std::optional<Number> number_in(std::string_view text) {
   const auto [rest, failed] = std::from_chars(text.data(), end, value);
   if (failed != std::errc() || rest != end) return std::nullopt;
   return value;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 // The minutes by which a zone "+02:00" is ahead of UTC; empty where the text is no zone.
