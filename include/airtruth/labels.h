@@ -52,6 +52,9 @@ struct Label {
   std::optional<bool> above_horizon;
   // The file labels.jsonl does not store it.
   std::optional<PixelMask> mask;
+  // As IntruderTruth::object_class in <airtruth/truth.h>. "ignore" marks a region in which
+  // detections count neither way.
+  std::string object_class = "aircraft";
   bool operator==(const Label&) const = default;
 };
 

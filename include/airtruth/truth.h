@@ -109,6 +109,9 @@ struct IntruderTruth {
   double hidden_by_own_aircraft = 0;
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
+  // "aircraft", or what a detector may take for one: "bird", "multirotor", "balloon", "glint",
+  // "dirt" or "insect".
+  std::string object_class = "aircraft";
 
   bool operator==(const IntruderTruth&) const = default;
 };

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "camera/lens/lens.h"
+#include "detection/detections/detections.h"
+#include "foundation/geometry/transform.h"
+#include "foundation/image/picture.h"
+
+// The interface that every detector has: built-in ones, a network, an external program.
+namespace airtruth::detection {
+
+// How the camera turned from one frame to the next, as measured from the video.
+struct CameraTurn {
+  // Rotation that carries a direction in the previous frame's camera into this frame's camera.
+  Quaternion this_from_previous = Quaternion::Identity();
+  // Standard error of that rotation as a shift in the picture, px.
+  double error_px = 0;
+};
+
+// One frame as a detector receives it.
+struct FrameInput {
+  std::int64_t index = 0;  // in the sequence, from 0
+  double time_s = 0;
+  const image::Picture* picture = nullptr;
+  // Empty for the first frame of a shot, and where the motion is unknown.
+  std::optional<CameraTurn> turn;
+};
+
+// What is known about a sequence before its first frame.
+struct SequenceInput {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  double frame_rate_hz = 0;
+  // The stated lens, or a guess of 60 degrees across where none is stated.
+  lens::Lens lens;
+};
+
+// Thrown where a detector can give no more answers: its process crashed, did not answer in time,
+// or violated the protocol; its network failed.
+class DetectorFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A detector of one sequence at a time. begin() is called once for each sequence, then detect() for
+// every frame in order.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+  // Forgets the previous sequence. Throws DetectorFailed.
+  virtual void begin(const SequenceInput& sequence) = 0;
+  // Returns the frame's detections, the highest score first. Throws DetectorFailed.
+  virtual std::vector<Detection> detect(const FrameInput& frame) = 0;
+  // True where detect() uses FrameInput::turn; the caller measures the motion only then.
+  virtual bool needs_motion() const = 0;
+  // Output of the detector's process other than its answers.
+  virtual std::string log() const { return {}; }
+};
+
+}  // namespace airtruth::detection
