@@ -75,6 +75,8 @@ std::vector<Block> blocks_of(const image::Picture& picture,
   }
   const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
   std::vector<Block> blocks;
+  blocks.reserve(
+      static_cast<std::size_t>((picture.width / step + 1) * (picture.height / step + 1)));
   for (int y = step / 2; y < picture.height; y += step) {
     for (int x = step / 2; x < picture.width; x += step) {
       if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
@@ -293,6 +295,7 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   if (all_stated) return with_scene({});
   const std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, near);
   std::vector<Rgb> colours;
+  colours.reserve(blocks.size());
   for (const Block& block : blocks) colours.push_back(block.linear);
   if (begins_shot) smooth_.reset();
   follow_exposure(colours);

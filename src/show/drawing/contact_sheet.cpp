@@ -132,15 +132,33 @@ void draw_insets(cv::Mat& canvas,
   }
 }
 
+// A picture of another size in packed sRGB. To make a picture smaller its planes are reduced first,
+// so that only the small picture is converted.
+image::Rgb8 small_copy(const image::Picture& picture, int width, int height) {
+  if (width >= picture.width)
+    return resized(image::rgb8_from_picture(picture), width, height, cv::INTER_CUBIC);
+  image::Picture small = image::make_picture(width, height, picture.colour);
+  for (int p = 0; p < picture.plane_count; ++p) {
+    const image::Plane& from = picture.planes[static_cast<std::size_t>(p)];
+    image::Plane& to = small.planes[static_cast<std::size_t>(p)];
+    const cv::Mat source(from.height,
+                         from.width,
+                         CV_8UC1,
+                         from.samples.get(),
+                         static_cast<std::size_t>(from.stride));
+    cv::Mat target(
+        to.height, to.width, CV_8UC1, to.samples.get(), static_cast<std::size_t>(to.stride));
+    cv::resize(source, target, target.size(), 0, 0, cv::INTER_AREA);
+  }
+  return image::rgb8_from_picture(small);
+}
+
 // The picture with a line of text below it.
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
   const double scale = static_cast<double>(kTileWidthPx) / picture.width;
   const int height = std::max(1, static_cast<int>(picture.height * scale));
   cv::Mat tile(height + kCaptionPx, kTileWidthPx, CV_8UC3, kDarkPaper);
-  image::Rgb8 small = resized(image::rgb8_from_picture(picture),
-                              kTileWidthPx,
-                              height,
-                              scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  image::Rgb8 small = small_copy(picture, kTileWidthPx, height);
   cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
   view(small).copyTo(canvas);
   const std::vector<PixelBox> boxes = outline_intruders(canvas, truth, scale);
