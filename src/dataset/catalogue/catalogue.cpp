@@ -125,6 +125,7 @@ Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
 Product product_from(const TableReader& table, const Catalogue& catalogue) {
   Product product;
   product.name = table.file_name("name").value_or("{background}{trajectory}{aircraft}");
+  expect_parts(table, product.name, {"{background}", "{trajectory}", "{aircraft}"});
   product.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   product.trajectories = places_of(table, "trajectories", catalogue.trajectories, "trajectory");
   product.aircraft = places_of(table, "aircraft", catalogue.aircraft, "aircraft");

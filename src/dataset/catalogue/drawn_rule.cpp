@@ -151,6 +151,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   Drawn drawn;
   drawn.where = table.where();
   drawn.name = table.file_name("name").value_or("r{index}");
+  expect_parts(table, drawn.name, {"{index}"});
   if (drawn.name.find("{index}") == std::string::npos)
     table.fail("name", "name has no {index}; every sequence needs its own");
   drawn.count = table.whole("count", 1, kMost).value_or(1);

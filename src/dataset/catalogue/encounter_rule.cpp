@@ -130,6 +130,7 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   EncounterRule rule;
   rule.where = table.where();
   rule.name = table.file_name("name").value_or("e{index}");
+  expect_parts(table, rule.name, {"{index}"});
   if (rule.name.find("{index}") == std::string::npos)
     table.fail("name", "name has no {index}; every sequence needs its own");
   rule.seed = Seed(catalogue.seed).stream("encounters of " + rule.name)();

@@ -200,6 +200,8 @@ TEST_F(EncounterModel, EachFaultNamesItsLine) {
               HasSubstr("outside of the clip"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nnegatives = 2\n"), HasSubstr("a share from 0 to 1"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nname = \"e\"\n"), HasSubstr("name has no {index}"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nname = \"{background}-{index}\"\n"),
+              HasSubstr("name has the part '{background}'; expected {index}"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nspeed = 2\n"), HasSubstr("unknown key 'speed'"));
 }
 

@@ -62,4 +62,20 @@ std::vector<std::size_t> places_of(const scene::TableReader& table,
   return result;
 }
 
+// Throws Error where the pattern of names at the key `name` has a part in braces that is not one of
+// `known`, such as "{index}".
+inline void expect_parts(const scene::TableReader& table,
+                         const std::string& pattern,
+                         const std::vector<std::string>& known) {
+  for (std::size_t from = pattern.find('{'); from != std::string::npos;
+       from = pattern.find('{', from + 1)) {
+    const std::size_t end = pattern.find('}', from);
+    const std::string part = pattern.substr(from, end == std::string::npos ? end : end + 1 - from);
+    if (std::find(known.begin(), known.end(), part) != known.end()) continue;
+    std::string expected;
+    for (const std::string& one : known) expected += (expected.empty() ? "" : ", ") + one;
+    table.fail("name", "name has the part '" + part + "'; expected " + expected);
+  }
+}
+
 }  // namespace airtruth::dataset
