@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/suggest.h"
+#include "foundation/base/trimmed.h"
 
 namespace airtruth::encounter {
 namespace {
@@ -23,12 +24,6 @@ const std::vector<std::string> kFields = {"labels_initial",
                                           "boundaries",
                                           "resample_rates"};
 constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 // Takes the first word of `rest` away from it; empty where there is none.
 std::string_view next_word(std::string_view& rest) {

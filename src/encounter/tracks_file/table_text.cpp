@@ -8,17 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/trimmed.h"
+
 namespace airtruth::encounter {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::size_t kMaxNameBytes = 60;
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 }  // namespace
 

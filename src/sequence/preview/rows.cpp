@@ -18,10 +18,6 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-bool is_in_frame(const Box& box, const lens::ImageSize& size) {
-  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
-}
-
 PreviewRow row_of(const World& world, const Moment& moment, std::size_t actor) {
   const trajectory::State& state = *moment.states[actor];
   const encounter::Measures m =
@@ -30,7 +26,7 @@ PreviewRow row_of(const World& world, const Moment& moment, std::size_t actor) {
   row.time_s = moment.time_s;
   row.intruder = world.actors[actor].id;
   const auto& box = moment.boxes[actor].box;
-  if (box && is_in_frame(*box, world.lens.size())) row.box_px = box;
+  if (box && meets_frame(*box, world.lens.size())) row.box_px = box;
   row.range_m = m.range_m;
   row.bearing_deg = m.relative_bearing_deg;
   row.above_m = m.above_m;

@@ -18,10 +18,6 @@ constexpr double kMetresPerSecondInKnots = 1.943844;
 constexpr double kMetresInFeet = 3.280840;
 constexpr double kSearchMarginPx = 1.5;
 
-bool meets_frame(const Box& box, const lens::ImageSize& size) {
-  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
-}
-
 Box grown(const Box& box, double margin) {
   return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
 }
@@ -71,6 +67,10 @@ Loaded load_actor(const scene::Intruder& intruder,
 }
 
 }  // namespace
+
+bool meets_frame(const Box& box, const lens::ImageSize& size) {
+  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
+}
 
 aircraft::LoadOptions load_options(const scene::Intruder& intruder,
                                    const trajectory::Path& path,

@@ -48,6 +48,9 @@ struct World {
   double lookahead_s = 180;
 };
 
+// True where a part of the box is in the picture.
+bool meets_frame(const Box& box, const lens::ImageSize& size);
+
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
 // beginning of its path.
 aircraft::LoadOptions load_options(const scene::Intruder& intruder,
