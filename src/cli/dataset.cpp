@@ -131,7 +131,8 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
 
 // Frames and bytes are rounded, because the cost of a sequence is known only after it is made.
 void plan(const DatasetArguments& arguments, Context& context) {
-  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  const dataset::Catalogue catalogue = dataset::with_videos(
+      dataset::read_catalogue(arguments.catalogue), videos_of(arguments.backgrounds));
   dataset::check_sources(catalogue, {});
   constexpr std::int64_t kMaxListed = 50;
   Console& console = context.console();
@@ -221,6 +222,11 @@ void add_folder_size(CLI::App& command, std::int64_t& max_in_a_folder) {
       ->check(CLI::Range(1, 1'000'000));
 }
 
+void add_backgrounds(CLI::App& command, std::vector<std::string>& backgrounds) {
+  command.add_option(
+      "--background", backgrounds, "NAME=VIDEO: a video in place of a background of the catalogue");
+}
+
 void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command.add_option("CATALOGUE", arguments.catalogue, "Catalogue file (.toml); see catalogues/")
       ->required();
@@ -232,9 +238,7 @@ void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command
       .add_option("--jobs,-j", arguments.build.jobs, "Sequences at a time (default: one per core)")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--background",
-                     arguments.backgrounds,
-                     "NAME=VIDEO: a video in place of a background of the catalogue");
+  add_backgrounds(command, arguments.backgrounds);
   add_folder_size(command, arguments.build.max_in_a_folder);
 }
 
@@ -273,6 +277,7 @@ void add_plan(CLI::App& group, Context& context) {
   auto* command =
       group.add_subcommand("plan", "Say what a catalogue would make, how long and how large");
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
+  add_backgrounds(*command, arguments->backgrounds);
   command->callback([arguments, &context] { plan(*arguments, context); });
 }
 

@@ -212,14 +212,8 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
   const Stopwatch watch;
   // Sequence records hold full background paths, because virtual flights lie in the data set.
   require_utf8(fs::absolute(out));
-  for (const auto& [name, video] : options.videos) {
-    require_utf8(fs::absolute(video));
-    const bool known = std::any_of(catalogue.backgrounds.begin(),
-                                   catalogue.backgrounds.end(),
-                                   [&, n = name](const Background& b) { return b.name == n; });
-    if (!known)
-      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
-  }
+  for (const auto& [name, video] : options.videos) require_utf8(fs::absolute(video));
+  expect_backgrounds(catalogue, options.videos);
   check_sources(catalogue, options.videos);
   const Folder folder = open_folder(catalogue, out, options.max_in_a_folder);
   const FolderLock lock(folder, options.shares > 1);

@@ -8,6 +8,7 @@
 
 #include "dataset/build/build.h"
 #include "dataset/build/verify.h"
+#include "dataset/catalogue/check.h"
 #include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/small_catalogue.h"
 #include "foundation/base/error.h"
@@ -69,6 +70,14 @@ TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   // The items do not depend on the order of the calls.
   const Item again = Expansion(catalogue).at(1000003);
   EXPECT_EQ(again.scene.intruders[0].waypoints_ned_m, last.scene.intruders[0].waypoints_ned_m);
+}
+
+TEST(Catalogue, AVideoTakesThePlaceOfABackgroundByItsName) {
+  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  const Catalogue changed = with_videos(catalogue, {{"sky", "/clips/own.mp4"}});
+  EXPECT_EQ(std::get<fs::path>(changed.backgrounds.at(0).source), "/clips/own.mp4");
+  EXPECT_FALSE(changed.backgrounds.at(0).mask);
+  EXPECT_THROW(with_videos(catalogue, {{"sjy", "/clips/own.mp4"}}), Error);
 }
 
 // At some moment of the clip a random intruder is at the requested range in the requested

@@ -117,6 +117,7 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   };
   if (std::any_of(options.partition.begin(), options.partition.end(), odd))
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
+  expect_backgrounds(catalogue, options.videos);
   check_sources(catalogue, options.videos);
   const std::int64_t sequences = Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0

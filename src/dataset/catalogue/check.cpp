@@ -91,4 +91,25 @@ void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::p
   check_names(catalogue);
 }
 
+void expect_backgrounds(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos) {
+  for (const auto& [name, video] : videos) {
+    const bool known = std::any_of(catalogue.backgrounds.begin(),
+                                   catalogue.backgrounds.end(),
+                                   [&, n = name](const Background& b) { return b.name == n; });
+    if (!known)
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+  }
+}
+
+Catalogue with_videos(Catalogue catalogue, const std::map<std::string, fs::path>& videos) {
+  expect_backgrounds(catalogue, videos);
+  for (Background& background : catalogue.backgrounds) {
+    const auto given = videos.find(background.name);
+    if (given == videos.end()) continue;
+    background.source = given->second;
+    background.mask.reset();
+  }
+  return catalogue;
+}
+
 }  // namespace airtruth::dataset

@@ -16,4 +16,11 @@ namespace airtruth::dataset {
 // line of the catalogue.
 void check_sources(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos);
 
+// Throws Error where `videos` names a background that the catalogue lacks.
+void expect_backgrounds(const Catalogue& catalogue, const std::map<std::string, fs::path>& videos);
+
+// The catalogue with these videos, by the background's name, in place of its own; the masks of
+// these backgrounds are left out. Throws Error as expect_backgrounds() does.
+Catalogue with_videos(Catalogue catalogue, const std::map<std::string, fs::path>& videos);
+
 }  // namespace airtruth::dataset
