@@ -68,22 +68,24 @@ class OnnxDetector : public Detector {
     try {
       start();
     } catch (const Error& error) {
-      throw DetectorFailed(model_.string() + ": " + error.message());
+      throw DetectorFailed("cannot begin: " + model_.filename().string() + " " + error.message());
     }
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
-    if (!child_) throw DetectorFailed(model_.string() + ": has failed before");
+    if (!child_) throw DetectorFailed("has failed before");
     try {
       return found_in(*frame.picture);
     } catch (const Error& error) {
       child_.reset();
-      throw DetectorFailed(
-          fmt::format("{}: frame {}: {}", model_.string(), frame.index, error.message()));
+      throw DetectorFailed(fmt::format(
+          "failed in frame {}: {} {}", frame.index, model_.filename().string(), error.message()));
     }
   }
 
   bool needs_motion() const override { return false; }
+
+  std::optional<double> confident_score() const override { return description_.confident_score; }
 
  private:
   void start() { child_ = std::make_unique<NetworkChild>(job_, options_.threads, options_.stop); }
@@ -116,8 +118,8 @@ class OnnxDetector : public Detector {
 
 }  // namespace
 
-NetworkDetector make_network_detector(const std::filesystem::path& model,
-                                      const NetworkOptions& options) {
+std::unique_ptr<Detector> make_network_detector(const std::filesystem::path& model,
+                                                const NetworkOptions& options) {
   std::string onnx = read_file(model, kMostModelBytes);
   if (onnx.empty()) throw Error("is empty; expected an ONNX network", {model.string()});
   const std::filesystem::path json = description_path(model);
@@ -128,14 +130,8 @@ NetworkDetector make_network_detector(const std::filesystem::path& model,
                 {model.string()});
   }
   ModelDescription description = read_description(json);
-  NetworkDetector made;
-  made.confident_score = description.confident_score;
-  made.model_sha256 = sha256_of(onnx);
-  made.description_sha256 = sha256_of_file(json);
   NetworkJob job = job_of(description, std::move(onnx));
-  made.detector =
-      std::make_unique<OnnxDetector>(model, std::move(description), std::move(job), options);
-  return made;
+  return std::make_unique<OnnxDetector>(model, std::move(description), std::move(job), options);
 }
 
 }  // namespace airtruth::detection

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <stop_token>
 
 #include "detection/detector/detector.h"
@@ -17,19 +16,10 @@ struct NetworkOptions {
   std::stop_token stop;
 };
 
-struct NetworkDetector {
-  std::unique_ptr<Detector> detector;
-  // ModelDescription::confident_score.
-  std::optional<double> confident_score;
-  // Of the model and its description: they decide the answers.
-  std::string model_sha256;
-  std::string description_sha256;
-};
-
 // Reads both files, loads the network and runs it once. Throws Error where that fails or its
 // outputs are not as described. The detector's begin() and detect() throw DetectorFailed where the
 // network fails later; begin() then starts it anew.
-NetworkDetector make_network_detector(const std::filesystem::path& model,
-                                      const NetworkOptions& options = {});
+std::unique_ptr<Detector> make_network_detector(const std::filesystem::path& model,
+                                                const NetworkOptions& options = {});
 
 }  // namespace airtruth::detection

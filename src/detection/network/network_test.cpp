@@ -52,10 +52,12 @@ class Networks : public testing::Test {
   }
   ~Networks() override { fs::remove_all(folder_); }
 
-  std::unique_ptr<Detector> make(const std::string& onnx, const std::string& json) {
+  std::unique_ptr<Detector> make(const std::string& onnx,
+                                 const std::string& json,
+                                 int threads = 2) {
     write_file(folder_ / "a.onnx", onnx);
     write_file(folder_ / "a.json", json);
-    return make_network_detector(folder_ / "a.onnx", {.threads = 2}).detector;
+    return make_network_detector(folder_ / "a.onnx", {.threads = threads});
   }
   std::string fault(const std::string& onnx, const std::string& json) {
     try {
@@ -92,6 +94,22 @@ TEST_F(Networks, AHeatMapIsReadFromTheWholeFrame) {
   larger.planes[0].row(200)[300] = 255;
   EXPECT_EQ(detect(*detector, larger).size(), 1u);
   EXPECT_EQ(detect(*detector, picture).size(), 1u);
+}
+
+TEST_F(Networks, TheNumberOfThreadsChangesNothing) {
+  image::Picture picture = black(640, 480);
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>((x * 37 + y * 101) % 251);
+    }
+  }
+  const auto found = [&](int threads) {
+    const auto detector =
+        make(onnx::brightness_model(64, 96, 2), description(kWholeFrame, kHeatOutput), threads);
+    return detect(*detector, picture);
+  };
+  EXPECT_FALSE(found(1).empty());
+  EXPECT_EQ(found(1), found(4));
 }
 
 TEST_F(Networks, TilesFindEachPointOnce) {
