@@ -42,11 +42,12 @@ cv::Mat BearingGrid::turn(const Quaternion& this_from_previous) {
   cam_from_anchor_ = (this_from_previous * cam_from_anchor_).normalized();
   const double shift_px = largest_shift_px();
   if (shift_px <= kLargestTurnPx) {
-    cells_in_picture_ = shift_px < kStandsStillPx ? cv::Mat() : map(cam_from_anchor_);
+    cells_in_picture_ =
+        shift_px < kStandsStillPx ? cv::Mat() : cells_after_turn(lens_, size_, cam_from_anchor_);
     return {};
   }
   // A cell of the new grid looks where the former grid has the camera's direction.
-  const cv::Mat former_from_new = map(cam_from_anchor_.conjugate());
+  const cv::Mat former_from_new = cells_after_turn(lens_, size_, cam_from_anchor_.conjugate());
   cam_from_anchor_ = Quaternion::Identity();
   cells_in_picture_.release();
   return former_from_new;
@@ -59,25 +60,26 @@ cv::Mat BearingGrid::seen_by_cells(const cv::Mat& samples) const {
   return seen;
 }
 
-// For each cell of the grid, where the other camera has it, in cells whose first has its centre at
-// 0 (OpenCV's positions).
-cv::Mat BearingGrid::map(const Quaternion& other_from_grid) const {
-  const cv::Size nodes(size_.width / kNodeStep + 2, size_.height / kNodeStep + 2);
+cv::Mat cells_after_turn(const lens::Lens& lens,
+                         const cv::Size& size,
+                         const Quaternion& other_from_this) {
+  constexpr int kCellPx = BearingGrid::kCellPx;
+  const cv::Size nodes(size.width / kNodeStep + 2, size.height / kNodeStep + 2);
   cv::Mat exact(nodes, CV_32FC2);
   for (int j = 0; j < nodes.height; ++j)
     for (int i = 0; i < nodes.width; ++i) {
       const Pixel pixel(kCellPx * (kNodeStep * i + 0.5), kCellPx * (kNodeStep * j + 0.5));
-      const auto moved = pixel_after_turn(lens_, other_from_grid, pixel);
+      const auto moved = pixel_after_turn(lens, other_from_this, pixel);
       exact.at<cv::Vec2f>(j, i) = moved ? cv::Vec2f(static_cast<float>(moved->x() / kCellPx - 0.5),
                                                     static_cast<float>(moved->y() / kCellPx - 0.5))
                                         : cv::Vec2f(kNowhere, kNowhere);
     }
-  cv::Mat cells(size_, CV_32FC2);
-  for (int y = 0; y < size_.height; ++y) {
+  cv::Mat cells(size, CV_32FC2);
+  for (int y = 0; y < size.height; ++y) {
     const int j = y / kNodeStep;
     const float v = static_cast<float>(y % kNodeStep) / kNodeStep;
     auto* row = cells.ptr<cv::Vec2f>(y);
-    for (int x = 0; x < size_.width; x += kNodeStep) {
+    for (int x = 0; x < size.width; x += kNodeStep) {
       const int i = x / kNodeStep;
       const cv::Vec2f left =
           exact.at<cv::Vec2f>(j, i) * (1 - v) + exact.at<cv::Vec2f>(j + 1, i) * v;
@@ -85,7 +87,7 @@ cv::Mat BearingGrid::map(const Quaternion& other_from_grid) const {
           exact.at<cv::Vec2f>(j, i + 1) * (1 - v) + exact.at<cv::Vec2f>(j + 1, i + 1) * v;
       const cv::Vec2f step = (right - left) * (1.0F / kNodeStep);
       cv::Vec2f here = left;
-      for (int k = 0; k < kNodeStep && x + k < size_.width; ++k, here += step) row[x + k] = here;
+      for (int k = 0; k < kNodeStep && x + k < size.width; ++k, here += step) row[x + k] = here;
     }
   }
   return cells;

@@ -35,7 +35,6 @@ class BearingGrid {
   std::optional<Pixel> pixel_of(const cv::Point& cell) const;
 
  private:
-  cv::Mat map(const Quaternion& other_from_grid) const;
   double largest_shift_px() const;
 
   lens::Lens lens_;
@@ -43,5 +42,12 @@ class BearingGrid {
   Quaternion cam_from_anchor_ = Quaternion::Identity();
   cv::Mat cells_in_picture_;  // empty: the camera stands as the anchor does
 };
+
+// For each cell of a camera's picture, where a camera of the same lens that was turned otherwise
+// has it: CV_32FC2, in cells, as cv::remap takes it (the first cell's centre is at 0). Far outside
+// where that camera does not see it. Bilinear between exact nodes.
+cv::Mat cells_after_turn(const lens::Lens& lens,
+                         const cv::Size& cells,
+                         const Quaternion& other_from_this);
 
 }  // namespace airtruth::detection

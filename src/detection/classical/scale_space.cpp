@@ -19,16 +19,6 @@ constexpr double kMeanResponse = 0.8;
 // it makes patches of one level that no smoothing removes.
 const double kLeastTypical = kMeanResponse * kGreyScale / std::sqrt(12.0);
 
-cv::Mat luma_of(const image::Picture& picture) {
-  const image::Plane& luma = picture.luma();
-  // OpenCV has no matrix of constant samples; nothing writes to it.
-  return cv::Mat(luma.height,
-                 luma.width,
-                 CV_8U,
-                 const_cast<std::uint8_t*>(luma.row(0)),
-                 static_cast<std::size_t>(luma.stride));
-}
-
 cv::Mat smoothed(const cv::Mat& picture) {
   cv::Mat result;
   cv::GaussianBlur(picture, result, {3, 3}, 0);
@@ -187,6 +177,16 @@ double Level::relative_response_near(const cv::Point& sample, int radius) const 
     for (int x = -radius; x <= radius; ++x)
       largest_there = std::max(largest_there, relative_response({sample.x + x, sample.y + y}));
   return largest_there;
+}
+
+cv::Mat luma_of(const image::Picture& picture) {
+  const image::Plane& luma = picture.luma();
+  // OpenCV has no matrix of constant samples; nothing writes to it.
+  return cv::Mat(luma.height,
+                 luma.width,
+                 CV_8U,
+                 const_cast<std::uint8_t*>(luma.row(0)),
+                 static_cast<std::size_t>(luma.stride));
 }
 
 std::vector<Level> scale_space(const image::Picture& picture) {
