@@ -58,8 +58,9 @@ void add_options(CLI::App& command, Detect& arguments) {
   command
       .add_option("--detector,-d",
                   options.detectors,
-                  fmt::format("One or more of {}; NAME=DETECTOR names its results",
-                              fmt::join(detection::detector_names(), ", ")))
+                  fmt::format("One or more of {}, {}; NAME=DETECTOR names its results",
+                              fmt::join(detection::detector_names(), ", "),
+                              fmt::join(detection::detector_forms(), ", ")))
       ->required();
   command
       .add_option("--out,-o",

@@ -8,11 +8,14 @@
 #include <fmt/ranges.h>
 
 #include "detection/classical/classical.h"
+#include "detection/external/external.h"
 #include "foundation/base/error.h"
 #include "foundation/base/suggest.h"
 
 namespace airtruth::detection {
 namespace {
+
+constexpr std::string_view kExec = "exec:";
 
 bool is_file_name(const std::string& name) {
   return !name.empty() && name.size() <= 80 && name.front() != '.' &&
@@ -22,24 +25,37 @@ bool is_file_name(const std::string& name) {
          });
 }
 
+// "exec" for exec:COMMAND: two of them need names.
+std::string usual_name(const std::string& command) { return command.substr(0, command.find(':')); }
+
 }  // namespace
 
 std::vector<std::string> detector_names() { return classical_names(); }
 
+std::vector<std::string> detector_forms() {
+  return {"exec:COMMAND for a program that speaks docs/detector-protocol.md"};
+}
+
 DetectorName named_detector(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.find(':');
-  DetectorName named{text, text};
-  if (equals != std::string::npos && (colon == std::string::npos || equals < colon))
-    named = {text.substr(0, equals), text.substr(equals + 1)};
-  if (!is_file_name(named.name))
-    throw Error("'" + named.name.substr(0, 80) +
+  const bool is_named =
+      equals != std::string::npos && (colon == std::string::npos || equals < colon);
+  const std::string command = is_named ? text.substr(equals + 1) : text;
+  const std::string name = is_named ? text.substr(0, equals) : usual_name(command);
+  if (!is_file_name(name))
+    throw Error("'" + name.substr(0, 80) +
                 "' is no name for a detector's results; expected letters, digits, - _ .");
-  return named;
+  return {name, command};
 }
 
 std::unique_ptr<Detector> make_detector(std::string_view command, const DetectorOptions& options) {
-  (void)options;
+  if (command.starts_with(kExec)) {
+    const std::string program(command.substr(kExec.size()));
+    if (program.find_first_not_of(' ') == std::string::npos)
+      throw Error("'" + std::string(command) + "' names no command");
+    return make_external({program, options.start_s, options.answer_s, options.stop});
+  }
   if (auto classical = make_classical(command)) return classical;
   const std::vector<std::string> names = detector_names();
   const auto near = nearest_spelling(command, names);
