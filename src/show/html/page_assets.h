@@ -12,6 +12,7 @@ std::string_view common_js();
 // Of a data set's report.
 std::string_view page_body();
 std::string_view page_js();
+std::string_view encounters_js();
 // Of an evaluation.
 std::string_view evaluation_body();
 std::string_view evaluation_js();
