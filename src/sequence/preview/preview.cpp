@@ -15,6 +15,7 @@
 #include "sequence/preview/rows.h"
 #include "sequence/sequence/frame_maker.h"
 #include "sequence/sequence/resolve.h"
+#include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "show/drawing/draw.h"
@@ -45,9 +46,11 @@ class Previewer {
         rate_hz_(reader_.info().frame_rate.value()),
         duration_s_(static_cast<double>(std::max<std::int64_t>(0, frame_count() - 1)) / rate_hz_) {
     check_camera_path(world_.camera, used_stream(reader_.info(), scene_.background));
+    check_seen();
   }
 
   Preview make() {
+    warn_not_flyable();
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.rows = preview_rows(world_, times, rate_hz_);
@@ -66,6 +69,30 @@ class Previewer {
     scene.composite.method = scene::CompositeMethod::kMatte;
     scene.camera_model.codec_step.reset();
     return scene;
+  }
+  // The clip's length is its container's; render() refuses what no frame is at.
+  void check_seen() const {
+    const video::StreamInfo& info = reader_.info();
+    if (frame_count() <= 0 || info.variable_frame_rate) return;
+    for (const scene::Intruder& intruder : scene_.intruders)
+      for (const scene::Seen& seen : intruder.seen)
+        if (seen.time_s > duration_s_ + 1 / rate_hz_)
+          throw Error(fmt::format("time_s is {:.3f}, where the clip has no frame: it ends at "
+                                  "{:.3f} s; expected a time within the clip",
+                                  seen.time_s,
+                                  duration_s_),
+                      seen.where);
+  }
+  // What an aircraft cannot fly is said before it is rendered.
+  void warn_not_flyable() const {
+    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
+      const Actor& actor = world_.actors[i];
+      const std::string words = words_beyond_limits(actor.aircraft, actor.path, 0, duration_s_);
+      if (!words.empty())
+        warn(options_.warn,
+             fmt::format(
+                 "{}: intruder '{}': {}", to_string(scene_.intruders[i].where), actor.id, words));
+    }
   }
   const image::Mask* own_aircraft() const { return mask_ ? &*mask_ : nullptr; }
   std::int64_t frame_count() const {

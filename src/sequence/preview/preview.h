@@ -40,7 +40,8 @@ struct Preview {
 // Decodes only the frames that are shown. The camera stands at its nominal, unshaken pose, since
 // the motion would take a pass over the clip: an intruder is rendered some pixels from where it is
 // shown. Values of the camera model that would be measured are left out. Throws Error as render()
-// does for faults of the scene, and Interrupted on options.stop.
+// does for faults of the scene, and Interrupted on options.stop. A path that its aircraft cannot
+// fly is a warning.
 Preview preview(const scene::Scene& scene, const Options& options);
 
 // The rows as lines of text with a heading.

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "foundation/base/error.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/world.h"
@@ -66,6 +67,27 @@ TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {
   const Preview made = preview(head_on(video), {});
   EXPECT_GT(made.picture.width, 1900);
   ASSERT_EQ(made.rows.size(), 5u);
+
+  scene::Scene seen = head_on(video);
+  seen.intruders[0].encounter.reset();
+  seen.intruders[0].seen = {{.time_s = 0, .pixel = {100, 100}, .range_m = 900},
+                            {.time_s = 4, .pixel = {500, 100}, .range_m = 100}};
+  std::vector<std::string> warnings;
+  Options options;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  preview(seen, options);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0],
+              testing::HasSubstr("c172/g-boix (light piston) cannot fly its path: at "));
+  seen.intruders[0].seen[1].time_s = 4.4;  // the last frame is at 4.3 s
+  try {
+    preview(seen, options);
+    ADD_FAILURE() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(
+        error.what(),
+        testing::HasSubstr("time_s is 4.400, where the clip has no frame: it ends at 4.300"));
+  }
   fs::remove(video);
 }
 
