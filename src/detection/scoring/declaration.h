@@ -41,7 +41,7 @@ struct Declaration {
 enum class InTime {
   kUnknown,      // no volume was asked for, or nothing is known of it
   kNoViolation,  // the aircraft never violates the volume
-  kImpossible,   // the clip begins, or first shows the aircraft's world, later than the manoeuvre
+  kImpossible,   // the clip begins later than the manoeuvre would have to
   kYes,
   kNo,
 };
@@ -94,16 +94,26 @@ std::int64_t false_tracks(const SequenceDetections& detections,
                           const std::vector<std::vector<Verdict>>& verdicts,
                           std::optional<double> score);
 
+// A sequence with the results for it.
+struct TrackedSequence {
+  const TruthSequence* truth = nullptr;
+  const SequenceDetections* detections = nullptr;
+  const std::vector<std::vector<Verdict>>* verdicts = nullptr;
+};
+
 // The system operating curve (Lai et al. 2011, DICTA): declaration range against false tracks an
-// hour, as the threshold on the score falls.
+// hour, as the threshold on the score of detections falls.
 struct OperatingPoint {
   double score = 0;
   double false_tracks_per_hour = 0;
   Share declared;
   // Over the declared encounters with a range.
   std::optional<MeanOf> range_m;
-  // Over all encounters with a range; 0 m where not declared.
-  std::optional<double> range_all_m;
+  // Over all encounters of aircraft with ranges; 0 m where not declared.
+  std::optional<MeanOf> range_all_m;
 };
+// By falling score, at most `most` points: quantiles of the scores of detections with a track.
+std::vector<OperatingPoint> operating_curve(std::span<const TrackedSequence> sequences,
+                                            std::size_t most = 40);
 
 }  // namespace airtruth::detection

@@ -21,6 +21,15 @@
 // detection may be 30 px away.
 namespace airtruth::detection {
 
+// Distance between the centres of two boxes.
+double centre_distance_px(const Box& a, const Box& b);
+// How far the centre of a detection may be from that of this aircraft.
+double found_radius_px(const Box& truth_px, double centre_px);
+bool centre_is_in(const Box& detection_px, const Box& region_px);
+
+// Verdict::what of a false alarm on nothing that the truth knows.
+constexpr const char* kBackground = "background";
+
 enum class Fate {
   kFound,       // it finds an aircraft that counts
   kIgnored,     // it is on an aircraft that does not count, or in an ignored region
@@ -32,8 +41,8 @@ struct Verdict {
   // The object that the detection is on: the aircraft found, also one that does not count, or what
   // it mistakes for one. Empty where there is nothing, and in an ignored region.
   std::optional<std::int64_t> object;
-  // Of a false alarm: the class of that object ("bird"), or "background" where there is none.
-  // Shared text: "aircraft" for a find, "ignore" in an ignored region.
+  // Class of that object ("aircraft", "bird"), "ignore" in an ignored region, kBackground where
+  // there is nothing, and the detection's own category where it does not claim an aircraft.
   std::string what;
 };
 
@@ -47,7 +56,7 @@ Verdict verdict_of(const Box& detection_px, const TruthFrame& truth, double cent
 bool claims_aircraft(const std::string& category);
 
 // The verdicts of a sequence, in the order of its detections. A detection that claims something
-// else is kIgnored. Frames beyond either list have none.
+// else than an aircraft is kIgnored. Frames that only one of the two has get none.
 std::vector<std::vector<Verdict>> verdicts_of(const SequenceDetections& detections,
                                               const TruthSequence& truth,
                                               double centre_px);

@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "detection/detections/detections.h"
+#include "detection/scoring/found.h"
+#include "detection/scoring/truth.h"
+
 // The false alarms and misses that are worth a look. What goes on over frames is listed once.
 namespace airtruth::detection {
 
@@ -35,9 +39,32 @@ struct Miss {
   // else the largest box. Indices in TruthSequence::frames and TruthFrame::objects.
   std::size_t frame = 0;
   std::size_t index = 0;
+  // What it was chosen by.
+  std::optional<double> contrast_to_noise;
+  double size_px = 0;
 };
 
 constexpr std::size_t kGallerySize = 100;
-constexpr std::int64_t kGalleryGap = 5;
+constexpr std::size_t kGalleryGap = 5;
+constexpr double kGalleryReach_px = 20;
+
+// Of one sequence, detections with `score` or more; the strongest first.
+std::vector<FalseAlarm> false_alarms_of(std::size_t sequence,
+                                        const TruthSequence& truth,
+                                        const SequenceDetections& detections,
+                                        const std::vector<std::vector<Verdict>>& verdicts,
+                                        double score);
+
+// Of one sequence, in which no detection with `score` or more finds the aircraft; that which should
+// have been easiest first.
+std::vector<Miss> misses_of(std::size_t sequence,
+                            const TruthSequence& truth,
+                            const SequenceDetections& detections,
+                            const std::vector<std::vector<Verdict>>& verdicts,
+                            double score);
+
+// Of all sequences, in the same orders, at most kGallerySize.
+std::vector<FalseAlarm> strongest(std::vector<FalseAlarm> alarms);
+std::vector<Miss> easiest(std::vector<Miss> misses);
 
 }  // namespace airtruth::detection
