@@ -23,9 +23,9 @@ TEST(AveragePrecision, TheExampleOfTheHeader) {
 }
 
 TEST(AveragePrecision, IsNotDefinedWithoutATruth) {
-  EXPECT_EQ(ap_of({{}, {{kFirst, 1}}}), -1);
-  EXPECT_EQ(ap_of({{{kFirst, true}}, {{kFirst, 1}}}), -1);
-  EXPECT_EQ(ap_of({{{kFirst}}, {}}), 0);
+  EXPECT_NEAR(ap_of({{}, {{kFirst, 1}}}), -1, 1e-9);
+  EXPECT_NEAR(ap_of({{{kFirst, true}}, {{kFirst, 1}}}), -1, 1e-9);
+  EXPECT_NEAR(ap_of({{{kFirst}}, {}}), 0, 1e-9);
 }
 
 TEST(AveragePrecision, TheSecondDetectionOfOneTruthIsFalse) {
@@ -39,8 +39,8 @@ TEST(AveragePrecision, TheSecondDetectionOfOneTruthIsFalse) {
 TEST(AveragePrecision, AnExactOverlapOfTheThresholdIsEnough) {
   // 20 x 10 against 10 x 10 of it: overlap 0.5.
   const ScoredImage half{{{kFirst}}, {{{10, 10, 10, 10}, 1}}};
-  EXPECT_EQ(ap_of(half), 1);
-  EXPECT_EQ(ap_of(half, {Likeness::kOverlap, 0.51}), 0);
+  EXPECT_NEAR(ap_of(half), 1, 1e-9);
+  EXPECT_NEAR(ap_of(half, {Likeness::kOverlap, 0.51}), 0, 1e-9);
 }
 
 TEST(AveragePrecision, CrowdsTakeAnyNumberAndCountNeitherWay) {
@@ -57,22 +57,22 @@ TEST(AveragePrecision, AreasSelectTruthsAndUnmatchedDetections) {
   // count for medium.
   const Box medium{0, 0, 40, 40};
   const ScoredImage image{{{medium}}, {{kNowhere, 0.9}, {medium, 0.5}}};
-  EXPECT_EQ(ap_of(image, {Likeness::kOverlap, 0.5, kSmall}), -1);
-  EXPECT_EQ(ap_of(image, {Likeness::kOverlap, 0.5, kMedium}), 1);
-  EXPECT_EQ(ap_of(image), 0.5);
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kSmall}), -1, 1e-9);
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kMedium}), 1, 1e-9);
+  EXPECT_NEAR(ap_of(image), 0.5, 1e-9);
 }
 
 TEST(AveragePrecision, OnlyTheBestDetectionsAreTaken) {
   const ScoredImage image{{{kFirst}}, {{kNowhere, 0.9}, {kFirst, 0.8}}};
-  EXPECT_EQ(ap_of(image, {Likeness::kOverlap, 0.5, kAllAreas, 1}), 0);
-  EXPECT_EQ(ap_of(image, {Likeness::kOverlap, 0.5, kAllAreas, 2}), 0.5);
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kAllAreas, 1}), 0, 1e-9);
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kAllAreas, 2}), 0.5, 1e-9);
 }
 
 TEST(AveragePrecision, ByCentreASmallAircraftIsFoundBesideItsBox) {
   const ScoredImage image{{{{100, 100, 6, 3}}}, {{{108, 100, 6, 3}, 1}}};
-  EXPECT_EQ(ap_of(image), 0);
-  EXPECT_EQ(ap_of(image, {Likeness::kCentre, 10}), 1);
-  EXPECT_EQ(ap_of(image, {Likeness::kCentre, 7.9}), 0);
+  EXPECT_NEAR(ap_of(image), 0, 1e-9);
+  EXPECT_NEAR(ap_of(image, {Likeness::kCentre, 10}), 1, 1e-9);
+  EXPECT_NEAR(ap_of(image, {Likeness::kCentre, 7.9}), 0, 1e-9);
 }
 
 TEST(AveragePrecision, MeansOverOverlapsAndSequences) {
@@ -81,13 +81,13 @@ TEST(AveragePrecision, MeansOverOverlapsAndSequences) {
       {{{{{0, 0, 40, 10}}}, {{{0, 0, 30, 10}, 1}}}}, {{{{{0, 0, 40, 10}}}, {{{0, 0, 30, 10}, 1}}}}};
   const AveragePrecision result = average_precision(sequences, 10);
   EXPECT_NEAR(*result.ap, 0.6, 1e-9);
-  EXPECT_EQ(*result.ap_50, 1);
-  EXPECT_EQ(*result.ap_75, 1);
+  EXPECT_NEAR(*result.ap_50, 1, 1e-9);
+  EXPECT_NEAR(*result.ap_75, 1, 1e-9);
   EXPECT_NEAR(*result.ap_small, 0.6, 1e-9);
   EXPECT_FALSE(result.ap_large);
   EXPECT_NEAR(*result.ar_1, 0.6, 1e-9);
-  EXPECT_EQ(*result.ap_centre, 1);
-  EXPECT_EQ(result.ap_50_interval->low, 1);
+  EXPECT_NEAR(*result.ap_centre, 1, 1e-9);
+  EXPECT_NEAR(result.ap_50_interval->low, 1, 1e-9);
 }
 
 TEST(AveragePrecision, TheIntervalIsThatOfTheSequences) {
