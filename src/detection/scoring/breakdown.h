@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "detection/scoring/share.h"
+#include "detection/scoring/truth.h"
 
 // Probability of detection by a quantity.
 namespace airtruth::detection {
 
 // One aircraft in one frame.
 struct Sighting {
+  // Index in DetectorScore::sequences.
   std::size_t sequence = 0;
   std::size_t frame = 0;   // index in TruthSequence::frames
   std::size_t object = 0;  // index in TruthFrame::objects
@@ -49,6 +51,10 @@ struct Quantity {
   const char* key;
   const char* title;          // for plots: "range, m"
   std::vector<double> edges;  // empty: by name
+  // The first for quantities with edges, the second for those by name.
+  std::optional<double> (*value_of)(const TruthObject& object) = nullptr;
+  std::optional<std::string> (*name_of)(const TruthSequence& sequence,
+                                        const TruthObject& object) = nullptr;
 };
 const std::vector<Quantity>& quantities();
 

@@ -48,6 +48,7 @@ enum class InTime {
 
 // One aircraft of one sequence.
 struct EncounterScore {
+  // Index in DetectorScore::sequences.
   std::size_t sequence = 0;
   std::int64_t object = 0;  // TruthObject::id
   // Of the frames that show the aircraft and count.

@@ -2,15 +2,12 @@
 #include "detection/scoring/found.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
+
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::detection {
 namespace {
-
-constexpr std::array<std::string_view, 7> kOtherClasses = {
-    "bird", "multirotor", "balloon", "glint", "dirt", "insect", "ignore"};
 
 // The nearest object within its radius, of those that `which` selects.
 template <typename Which>
@@ -61,7 +58,8 @@ Verdict verdict_of(const Box& detection_px, const TruthFrame& truth, double cent
 }
 
 bool claims_aircraft(const std::string& category) {
-  return std::find(kOtherClasses.begin(), kOtherClasses.end(), category) == kOtherClasses.end();
+  return annotation::is_aircraft(category) ||
+         (!annotation::is_object_class(category) && category != "ignore");
 }
 
 std::vector<std::vector<Verdict>> verdicts_of(const SequenceDetections& detections,

@@ -16,6 +16,7 @@ namespace airtruth::detection {
 // Detections that are false alarms in frames after each other, at most kGalleryGap frames apart and
 // within their own size or 20 px of each other.
 struct FalseAlarm {
+  // Index in DetectorScore::sequences.
   std::size_t sequence = 0;
   // The strongest: indices in TruthSequence::frames and in that frame's detections.
   std::size_t frame = 0;
@@ -31,6 +32,7 @@ struct FalseAlarm {
 
 // Frames after each other in which one aircraft is not found.
 struct Miss {
+  // Index in DetectorScore::sequences.
   std::size_t sequence = 0;
   std::int64_t object = 0;  // TruthObject::id
   std::size_t first_frame = 0;
