@@ -17,9 +17,10 @@ namespace airtruth::detection {
 
 namespace fs = std::filesystem;
 
-// True for results of a detector: a folder with detector.json, a COCO results file, or a folder
-// with det.txt files or MOTChallenge text. False for a tracker's results and anything else.
-bool holds_detections(const fs::path& results);
+// True for results of a detector: a folder with detector.json, a COCO results file or a folder with
+// one alone, a folder with det.txt files, and MOTChallenge text without tracks. MOTChallenge text
+// with tracks is a tracker's unless `is_mot_of_detector`. False for anything else.
+bool holds_detections(const fs::path& results, bool is_mot_of_detector = false);
 
 struct AssessOptions {
   // Radius of found.h.
@@ -50,8 +51,8 @@ Assessment assess(const fs::path& set,
                   const std::vector<fs::path>& results,
                   const AssessOptions& options);
 
-// Writes detection.json, detectors.csv, detection_sequences.csv, detection_breakdown.csv and
-// detection_curves.csv into a folder.
+// Writes detection.json, detectors.csv, and detection_sequences.csv, detection_encounters.csv,
+// detection_breakdown.csv and detection_curves.csv into a folder.
 void write_tables(const Assessment& assessment, const fs::path& out);
 
 }  // namespace airtruth::detection
