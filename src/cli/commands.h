@@ -37,6 +37,7 @@ void add_evision(CLI::App& app, Context& context);
 void add_dataset(CLI::App& app, Context& context);
 void add_dataset_exchange(CLI::App& group, Context& context);  // `dataset export` and `import`
 void add_track(CLI::App& app, Context& context);
+void add_detect(CLI::App& app, Context& context);
 void add_evaluate(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_judge(CLI::App& app, Context& context);

@@ -116,6 +116,7 @@ void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_encounter(app, context);
   cli::add_dataset(app, context);
   cli::add_track(app, context);
+  cli::add_detect(app, context);
   cli::add_evaluate(app, context);
   cli::add_compare(app, context);
   cli::add_judge(app, context);

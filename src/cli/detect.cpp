@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/commands.h"
+#include "detection/run/run.h"
+#include "foundation/base/output_check.h"
+
+namespace airtruth::cli {
+namespace {
+
+struct Detect {
+  std::string source;
+  std::string out;
+  std::string lens;
+  detection::RunOptions options;
+};
+
+void tell(const detection::RunSummary& summary, Context& context) {
+  const double rate =
+      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
+  context.console().result(
+      fmt::format("{}: {} detections in {} frames of {} sequences{}{}{}",
+                  summary.folder.string(),
+                  summary.detections,
+                  summary.frames,
+                  summary.made,
+                  rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "",
+                  summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "",
+                  summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : ""));
+  if (summary.broken > 0) context.exit_code = 1;
+}
+
+void run_detect(Detect arguments, Context& context) {
+  Console& console = context.console();
+  detection::RunOptions& options = arguments.options;
+  options.warn = console.warn();
+  options.stop = context.stop;
+  if (!arguments.lens.empty()) options.lens = arguments.lens;
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    console.progress("detecting", done, total, "done");
+  };
+  check_output_folder(arguments.out);
+  for (const detection::RunSummary& summary :
+       detection::run(arguments.source, arguments.out, options))
+    tell(summary, context);
+}
+
+void add_options(CLI::App& command, Detect& arguments) {
+  detection::RunOptions& options = arguments.options;
+  command
+      .add_option("DIR|VIDEO",
+                  arguments.source,
+                  "A data set, made or imported; or a video or folder of images")
+      ->required();
+  command
+      .add_option("--detector,-d",
+                  options.detectors,
+                  fmt::format("One or more of {}; NAME=DETECTOR names its results",
+                              fmt::join(detection::detector_names(), ", ")))
+      ->required();
+  command
+      .add_option("--out,-o",
+                  arguments.out,
+                  "Results, a folder for each detector; a run that was stopped goes on in it")
+      ->required();
+  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  command.add_option(
+      "--min-score", options.min_score, "Leave out detections with a lower score (default: none)");
+  command
+      .add_option("--max-per-frame",
+                  options.max_per_frame,
+                  "Keep only so many of a frame, those of the highest scores (default: 100)")
+      ->check(CLI::Range(1, 100'000));
+  command.add_option("--lens",
+                     arguments.lens,
+                     "Calibration file for what states no lens (default: a guess of 60 degrees)");
+  command
+      .add_option("--timeout",
+                  options.answer_s,
+                  "Longest that a program may take for a frame, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
+  command
+      .add_option(
+          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
+      ->check(CLI::Range(0.001, 86'400.0));
+  command.add_option("--jobs,-j", options.jobs, "Sequences at a time (default: 1)")
+      ->check(CLI::Range(1, 1024));
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Detect>();
+  auto* command = app.add_subcommand("detect", "Run detectors over a data set or a video");
+  add_options(*command, *arguments);
+  command->callback([arguments, &context] { run_detect(*arguments, context); });
+}
+
+}  // namespace airtruth::cli

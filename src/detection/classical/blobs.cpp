@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/classical/blobs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "foundation/base/median.h"
+
+namespace airtruth::detection {
+namespace {
+
+// Half sides of the ring around an object, in samples of its level: from beyond what the elements
+// let through to as much again.
+constexpr int kRingFrom = kElement;
+constexpr int kRingTo = 2 * kElement - 2;
+// A ring with fewer samples, at the picture's border, tells too little.
+constexpr std::size_t kLeastRing = 60;
+// What belongs to the object differs by this share of its contrast: low enough for wings thinner
+// than a sample, of which a third is left.
+constexpr double kBoxShare = 0.3;
+constexpr double kBoxNoise = 3;
+// Standard deviation of normal noise over its median absolute deviation (Rousseeuw and Croux 1993).
+constexpr double kSigmaOfMad = 1.4826;
+// The rounding to whole grey levels, smoothed.
+const double kLeastNoise = kGreyScale * kNoiseShare / std::sqrt(12.0);
+
+// v(x, y) = middle + x * along_x + y * along_y around a sample.
+struct Surroundings {
+  double middle = 0, along_x = 0, along_y = 0;
+  double noise = 0;
+  double at(double x, double y) const { return middle + along_x * x + along_y * y; }
+};
+
+double median_of(std::vector<float>& values) {
+  const auto half = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), half, values.end());
+  return *half;
+}
+
+// The plane's slope is by least squares and its height by the median, which other objects in the
+// ring do not lift.
+std::optional<Surroundings> surroundings_of(const cv::Mat& picture, const cv::Point& centre) {
+  static thread_local std::vector<float> values;
+  static thread_local std::vector<cv::Point> places;
+  values.clear();
+  places.clear();
+  double sum_x = 0, sum_y = 0, sum_v = 0;
+  for (int dy = -kRingTo; dy <= kRingTo; ++dy) {
+    const int y = centre.y + dy;
+    if (y < 0 || y >= picture.rows) continue;
+    const short* row = picture.ptr<short>(y);
+    const bool crosses = std::abs(dy) < kRingFrom;
+    for (int dx = -kRingTo; dx <= kRingTo; ++dx) {
+      if (crosses && dx == -kRingFrom + 1) dx = kRingFrom;
+      const int x = centre.x + dx;
+      if (x < 0 || x >= picture.cols) continue;
+      values.push_back(row[x]);
+      places.push_back({dx, dy});
+      sum_x += dx;
+      sum_y += dy;
+      sum_v += row[x];
+    }
+  }
+  if (values.size() < kLeastRing) return std::nullopt;
+  const double n = static_cast<double>(values.size());
+  double xx = 0, yy = 0, xy = 0, xv = 0, yv = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double x = places[i].x - sum_x / n, y = places[i].y - sum_y / n;
+    const double v = values[i] - sum_v / n;
+    xx += x * x;
+    yy += y * y;
+    xy += x * y;
+    xv += x * v;
+    yv += y * v;
+  }
+  Surroundings around;
+  if (const double det = xx * yy - xy * xy; det > 0) {
+    around.along_x = (xv * yy - yv * xy) / det;
+    around.along_y = (yv * xx - xv * xy) / det;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] -= static_cast<float>(around.along_x * places[i].x + around.along_y * places[i].y);
+  around.middle = median_of(values);
+  for (float& value : values) value = std::abs(value - static_cast<float>(around.middle));
+  around.noise = std::max(kLeastNoise, kSigmaOfMad * median_of(values));
+  return around;
+}
+
+// Bounds of the connected samples around a seed whose excess over the surroundings is at least
+// `least`; empty where they reach beyond `reach` samples from the seed, or the picture's border.
+class Region {
+ public:
+  Region(const Level& level, const cv::Point& seed, int reach)
+      : level_(level), seed_(seed), reach_(reach), side_(2 * reach + 1) {}
+
+  std::optional<cv::Rect> grown(const auto& excess, double least) {
+    static thread_local std::vector<char> seen;
+    static thread_local std::vector<cv::Point> open;
+    seen.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
+    open.assign(1, seed_);
+    mark(seen, seed_);
+    cv::Point low = seed_, high = seed_;
+    while (!open.empty()) {
+      const cv::Point at = open.back();
+      open.pop_back();
+      low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+      high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const cv::Point next{at.x + dx, at.y + dy};
+          if (!is_inside(next)) continue;
+          if (excess(next) < least || !mark(seen, next)) continue;
+          if (std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) >= reach_)
+            return std::nullopt;
+          open.push_back(next);
+        }
+    }
+    return cv::Rect(low, high + cv::Point(1, 1));
+  }
+
+ private:
+  bool is_inside(const cv::Point& p) const {
+    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows;
+  }
+  // False where it was marked.
+  bool mark(std::vector<char>& seen, const cv::Point& p) const {
+    char& cell =
+        seen[static_cast<std::size_t>(p.y - seed_.y + reach_) * static_cast<std::size_t>(side_) +
+             static_cast<std::size_t>(p.x - seed_.x + reach_)];
+    const bool is_new = cell == 0;
+    cell = 1;
+    return is_new;
+  }
+
+  const Level& level_;
+  cv::Point seed_;
+  int reach_;
+  int side_;
+};
+
+Box box_of(const cv::Rect& samples, int step) {
+  const double half = 0.5 * step;
+  return {step * samples.x + 0.5 - half,
+          step * samples.y + 0.5 - half,
+          double(step) * samples.width,
+          double(step) * samples.height};
+}
+
+// The sample of the finer level with the strongest excess under a sample of the coarser one.
+cv::Point strongest_under(const Level& fine, const cv::Point& coarse, double sign) {
+  cv::Point best{-1, -1};
+  double most = -1e9;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const cv::Point p{2 * coarse.x + dx, 2 * coarse.y + dy};
+      if (p.x < 0 || p.y < 0 || p.x >= fine.picture.cols || p.y >= fine.picture.rows) continue;
+      const double value = sign * fine.picture.at<short>(p);
+      if (value > most) {
+        most = value;
+        best = p;
+      }
+    }
+  return best;
+}
+
+cv::Point strongest_in_block(const Level& level, int bx, int by) {
+  const cv::Mat block = level.response({bx * kBlock, by * kBlock, kBlock, kBlock});
+  cv::Point at;
+  cv::minMaxLoc(block, nullptr, nullptr, nullptr, &at);
+  return {bx * kBlock + at.x, by * kBlock + at.y};
+}
+
+}  // namespace
+
+std::optional<Blob> blob_at(const std::vector<Level>& levels,
+                            std::size_t number,
+                            const cv::Point& sample) {
+  const Level& level = levels[number];
+  const auto around = surroundings_of(level.picture, sample);
+  if (!around) return std::nullopt;
+  const double contrast = level.picture.at<short>(sample) - around->middle;
+  const double sign = contrast < 0 ? -1 : 1;
+  Blob blob;
+  blob.contrast_to_noise = std::abs(contrast) / around->noise;
+  blob.is_dark = contrast < 0;
+  blob.level = number;
+  blob.sample = sample;
+  const double least = std::max(kBoxShare * std::abs(contrast),
+                                std::min(0.5 * std::abs(contrast), kBoxNoise * around->noise));
+  const bool has_finer = number > 0;
+  const Level& fine = has_finer ? levels[number - 1] : level;
+  const cv::Point seed = has_finer ? strongest_under(fine, sample, sign) : sample;
+  const double scale = has_finer ? 0.5 : 1;
+  const auto excess = [&](const cv::Point& p) {
+    const double x = scale * p.x - sample.x, y = scale * p.y - sample.y;
+    return sign * (fine.picture.at<short>(p) - around->at(x, y));
+  };
+  const int reach = has_finer ? 2 * kRingFrom : kRingFrom;
+  const auto samples = Region(fine, seed, reach).grown(excess, least);
+  if (!samples) return std::nullopt;
+  blob.box_px = box_of(*samples, fine.step);
+  return blob;
+}
+
+bool is_same_object(const Box& a, const Box& b) {
+  const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  if (width <= 0 || height <= 0) return false;
+  return width * height >= 0.5 * std::min(a.area(), b.area());
+}
+
+std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& options) {
+  std::vector<Blob> blobs;
+  for (std::size_t number = 0; number < levels.size(); ++number) {
+    const Level& level = levels[number];
+    std::vector<std::pair<double, cv::Point>> blocks;
+    for (int by = 0; by < level.largest.rows; ++by)
+      for (int bx = 0; bx < level.largest.cols; ++bx) {
+        const double relative =
+            level.largest.at<short>(by, bx) / static_cast<double>(level.typical.at<float>(by, bx));
+        if (relative >= options.least_response) blocks.push_back({-relative, {bx, by}});
+      }
+    const auto order = [](const auto& a, const auto& b) {
+      return std::tie(a.first, a.second.y, a.second.x) < std::tie(b.first, b.second.y, b.second.x);
+    };
+    std::sort(blocks.begin(), blocks.end(), order);
+    if (blocks.size() > options.most_of_a_level) blocks.resize(options.most_of_a_level);
+    for (const auto& [relative, block] : blocks)
+      if (auto blob = blob_at(levels, number, strongest_in_block(level, block.x, block.y)))
+        blobs.push_back(*blob);
+  }
+  std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
+    return a.contrast_to_noise > b.contrast_to_noise;
+  });
+  return blobs;
+}
+
+}  // namespace airtruth::detection

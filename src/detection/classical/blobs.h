@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "detection/classical/scale_space.h"
+#include "foundation/geometry/box.h"
+
+// Isolated objects in a scale space, with their boxes and how they stand out.
+namespace airtruth::detection {
+
+struct Blob {
+  Box box_px;
+  // Contrast of the object's strongest sample to its surroundings over the noise there: both in the
+  // level's smoothed picture.
+  double contrast_to_noise = 0;
+  bool is_dark = false;
+  std::size_t level = 0;  // on which it was found
+  cv::Point sample;       // of its strongest response, on that level
+};
+
+// The blob at a sample of a level. Its surroundings are a square ring; a plane is fitted to them,
+// so that a slope of the sky is neither contrast nor noise, and the noise is 1.4826 times the
+// median absolute deviation from it. The box bounds the connected samples, on the next finer level,
+// that differ from the surroundings as the object does by kBoxShare of its contrast and by
+// kBoxNoise times the noise. Empty where the object reaches the ring: it is larger than the level's
+// objects, or part of something else.
+std::optional<Blob> blob_at(const std::vector<Level>& levels,
+                            std::size_t level,
+                            const cv::Point& sample);
+
+// The blobs of all levels, with one at most for each block of a level, whose response exceeds
+// `least` times the typical one. The strongest first.
+struct BlobOptions {
+  double least_response = 6;
+  // The blocks with the strongest relative responses are looked at.
+  std::size_t most_of_a_level = 300;
+};
+std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& options);
+
+// True where both boxes are of one object: the smaller one lies by half within the other.
+bool is_same_object(const Box& a, const Box& b);
+
+}  // namespace airtruth::detection

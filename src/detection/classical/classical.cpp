@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/classical/classical.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "detection/classical/kinds.h"
+
+namespace airtruth::detection {
+namespace {
+
+struct Kind {
+  const char* name;
+  std::unique_ptr<Detector> (*make)();
+};
+
+constexpr Kind kKinds[] = {{"cmo", make_close_minus_open}};
+
+}  // namespace
+
+std::vector<Detection> detections_of(std::vector<Blob> blobs, double least) {
+  std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
+    return a.contrast_to_noise > b.contrast_to_noise;
+  });
+  std::vector<Detection> detections;
+  for (const Blob& blob : blobs) {
+    if (blob.contrast_to_noise < least) break;
+    const bool is_taken =
+        std::any_of(detections.begin(), detections.end(), [&](const Detection& stronger) {
+          return is_same_object(stronger.box_px, blob.box_px);
+        });
+    if (is_taken) continue;
+    Detection detection;
+    detection.box_px = blob.box_px;
+    detection.score = std::round(blob.contrast_to_noise * 1000) / 1000;
+    detections.push_back(detection);
+  }
+  return detections;
+}
+
+std::vector<std::string> classical_names() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+std::unique_ptr<Detector> make_classical(std::string_view name) {
+  for (const Kind& kind : kKinds)
+    if (kind.name == name) return kind.make();
+  return nullptr;
+}
+
+}  // namespace airtruth::detection

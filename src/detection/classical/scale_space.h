@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "foundation/geometry/transform.h"
+#include "foundation/image/picture.h"
+
+// A picture at octaves of scale, and the response of close-minus-open at each.
+namespace airtruth::detection {
+
+// Samples hold grey levels times this, so that the mean of many pixels keeps its fractions.
+inline constexpr int kGreyScale = 16;
+// Side of the square blocks over which noise is measured, in samples of a level.
+inline constexpr int kBlock = 8;
+// Length of the structuring elements, in samples. Close-minus-open responds to objects of at most
+// this length less one; the smoothing makes them two samples longer. So a level of n times fewer
+// samples per side responds to objects of up to 4 n px.
+inline constexpr int kElement = 7;
+// Samples of level 0 keep this share of the noise of the picture's pixels: the norm of the kernel
+// [1 2 1; 2 4 2; 1 2 1] / 16.
+inline constexpr double kNoiseShare = 0.375;
+
+struct Level {
+  // Side of a sample in pixels of the picture: 1, 2, 4, ...
+  int step = 1;
+  // CV_16S, grey levels times kGreyScale, smoothed by [1 2 1] / 4 in both directions.
+  cv::Mat picture;
+  // CV_16S, at least 0: how much darker (or brighter) a sample is than what closing (opening) by
+  // the elements leaves, in the direction in which that is less. Soille (2003), "Morphological
+  // Image Analysis", section 4: bottom-hat and top-hat; Lai, Ford, Mejias and O'Shea (2013) join
+  // them as close-minus-open. Lines and edges respond in one direction alone, and so not at all.
+  cv::Mat response;
+  // CV_32F, one value for each block: the mean response of the block's surroundings, which follows
+  // the noise and the clutter there.
+  cv::Mat typical;
+  // CV_16S, one value for each block: its largest response.
+  cv::Mat largest;
+
+  // Where the centre of a sample lies in the picture, and the sample that is nearest to a position.
+  Pixel pixel_of(double x, double y) const { return {step * x + 0.5, step * y + 0.5}; }
+  cv::Point sample_at(const Pixel& pixel) const;
+  // Response in units of the typical response there; 0 outside of the picture.
+  double relative_response(const cv::Point& sample) const;
+  // The largest relative response within `radius` samples.
+  double relative_response_near(const cv::Point& sample, int radius) const;
+};
+
+// The levels of a picture's luma: as many as needed for objects of kLargestPx, as far as its size
+// allows.
+inline constexpr int kLargestPx = 128;
+std::vector<Level> scale_space(const image::Picture& picture);
+
+}  // namespace airtruth::detection

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "detection/detector/detector.h"
+
+// A detector by its name: the one place where kinds of detectors plug in.
+namespace airtruth::detection {
+
+struct DetectorOptions {
+  // External programs: time limit for a program's start, and for each answer.
+  double start_s = 30;
+  double answer_s = 30;
+  std::stop_token stop;
+};
+
+// The names of the built-in detectors, and the forms of the others: what --help and errors list.
+std::vector<std::string> detector_names();
+
+// "mine=exec:./mine --fast" is the command "exec:./mine --fast" whose results are named "mine".
+struct DetectorName {
+  std::string name;  // a plain file name
+  std::string command;
+};
+// Throws Error for a name that is no file name, and for an unknown detector; it offers the nearest.
+DetectorName named_detector(const std::string& text);
+
+// Throws Error for what is no detector.
+std::unique_ptr<Detector> make_detector(std::string_view command, const DetectorOptions& options);
+
+}  // namespace airtruth::detection

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/run/results.h"
+
+#include <algorithm>
+
+#include <airtruth/version.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::detection {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecord = "detector.json";
+constexpr const char* kCoco = "detections.json";
+
+// What decides the bytes of the results.
+Json settings_of(const DetectorName& detector, const RunOptions& options) {
+  Json settings = {{"detector", detector.command}, {"max_per_frame", options.max_per_frame}};
+  settings["min_score"] = options.min_score ? Json(*options.min_score) : Json();
+  settings["lens"] = options.lens ? Json(sha256_of_file(*options.lens)) : Json();
+  return settings;
+}
+
+}  // namespace
+
+Results::Results(const DetectorName& detector, const fs::path& out, const RunOptions& options)
+    : detector_(detector), options_(options) {
+  summary_.name = detector.name;
+  summary_.folder = out / detector.name;
+  is_open();
+}
+
+bool Results::is_open() const {
+  const fs::path file = summary_.folder / kRecord;
+  if (!fs::exists(file)) return false;
+  const Json mine = settings_of(detector_, options_);
+  try {
+    const Json there = Json::parse(read_file(file));
+    for (const auto& [key, value] : mine.items())
+      if (there.at(key) != value)
+        throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out or "
+                                "remove the folder",
+                                key,
+                                there.at(key).dump(),
+                                value.dump()),
+                    {summary_.folder.string()});
+  } catch (const Json::exception&) {
+    throw Error("is not a record that airtruth wrote", {file.string()});
+  }
+  return true;
+}
+
+void Results::open() const {
+  if (is_open()) return;
+  std::error_code failed;
+  fs::create_directories(summary_.folder, failed);
+  if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+  Json record = settings_of(detector_, options_);
+  record["name"] = detector_.name;
+  record["format"] = "airtruth detections 1";
+  record["version"] = kVersion;
+  write_file(summary_.folder / kRecord, record.dump(1) + "\n");
+}
+
+bool Results::keeps(const std::string& sequence) {
+  if (!has_sequence(summary_.folder, sequence)) return false;
+  const std::lock_guard lock(mutex_);
+  ++summary_.kept;
+  return true;
+}
+
+void Results::add(const SequenceDetections& detections, const std::string& log) {
+  write_log(detections.name, log);
+  write_sequence(summary_.folder, detections);
+  const std::lock_guard lock(mutex_);
+  ++summary_.made;
+  summary_.frames += std::ssize(detections.frames);
+  for (const auto& frame : detections.frames) summary_.detections += std::ssize(frame);
+  for (const double s : detections.seconds) summary_.seconds += s;
+}
+
+void Results::add_broken(const std::string& sequence,
+                         const std::string& fault,
+                         const std::string& log) {
+  write_log(sequence, log + "airtruth: the detector " + fault + "\n");
+  const std::lock_guard lock(mutex_);
+  ++summary_.broken;
+  airtruth::warn(options_.warn,
+                 fmt::format("{} on {}: the detector {}", detector_.name, sequence, fault));
+}
+
+void Results::finish(std::span<const ExpectedSequence> set) const {
+  const bool is_whole = std::all_of(set.begin(), set.end(), [&](const ExpectedSequence& one) {
+    return has_sequence(summary_.folder, one.name);
+  });
+  const fs::path file = summary_.folder / kCoco;
+  if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
+  write_coco_results(file, summary_.folder, set);
+}
+
+void Results::write_log(const std::string& sequence, const std::string& log) const {
+  if (log.empty()) return;
+  fs::create_directories(summary_.folder / "logs");
+  write_file(summary_.folder / "logs" / (sequence + ".log"), log);
+}
+
+}  // namespace airtruth::detection

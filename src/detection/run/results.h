@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <span>
+#include <string>
+
+#include "detection/detections/results_folder.h"
+#include "detection/run/run.h"
+
+namespace airtruth::detection {
+
+// The results of one detector in its folder: what is there, what is added. Thread-safe.
+class Results {
+ public:
+  // Throws Error where the folder holds results of other settings.
+  Results(const DetectorName& detector, const fs::path& out, const RunOptions& options);
+
+  // Creates the folder and its record.
+  void open() const;
+  // Counts a sequence that is there.
+  bool keeps(const std::string& sequence);
+  void add(const SequenceDetections& detections, const std::string& log);
+  void add_broken(const std::string& sequence, const std::string& fault, const std::string& log);
+  // Writes detections.json where every sequence is there.
+  void finish(std::span<const ExpectedSequence> set) const;
+
+  const std::string& command() const { return detector_.command; }
+  const RunSummary& summary() const { return summary_; }
+
+ private:
+  bool is_open() const;
+  void write_log(const std::string& sequence, const std::string& log) const;
+
+  DetectorName detector_;
+  const RunOptions& options_;
+  std::mutex mutex_;
+  RunSummary summary_;
+};
+
+}  // namespace airtruth::detection

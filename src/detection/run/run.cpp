@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/run/run.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "camera/lens/calibration_file.h"
+#include "dataset/labelled/labelled_set.h"
+#include "dataset/sequences/sequence_folders.h"
+#include "detection/detections/fault.h"
+#include "detection/run/clips.h"
+#include "detection/run/frames.h"
+#include "detection/run/results.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/stopwatch.h"
+
+namespace airtruth::detection {
+namespace {
+
+// One detector within one sequence.
+class Following {
+ public:
+  Following(Results& results, const DetectorOptions& options)
+      : results_(&results), detector_(make_detector(results.command(), options)) {}
+
+  bool needs_motion() const { return detector_->needs_motion(); }
+  bool is_broken() const { return !detector_; }
+
+  void begin(const SequenceInput& sequence) {
+    found_.name = sequence.name;
+    found_.width = sequence.width;
+    found_.height = sequence.height;
+    guarded([&] { detector_->begin(sequence); });
+  }
+
+  void detect(const FrameInput& frame, const RunOptions& options) {
+    guarded([&] {
+      const Stopwatch watch;
+      std::vector<Detection> detections = detector_->detect(frame);
+      const double took_s = watch.seconds();
+      for (const Detection& detection : detections)
+        if (const auto fault = fault_of(detection, found_.width, found_.height))
+          throw DetectorFailed(
+              fmt::format("answered what is no detection for frame {}: {}", frame.index, *fault));
+      std::stable_sort(detections.begin(),
+                       detections.end(),
+                       [](const Detection& a, const Detection& b) { return a.score > b.score; });
+      if (options.min_score)
+        std::erase_if(detections, [&](const Detection& d) { return d.score < *options.min_score; });
+      if (std::ssize(detections) > options.max_per_frame)
+        detections.resize(static_cast<std::size_t>(options.max_per_frame));
+      found_.frames.push_back(std::move(detections));
+      found_.seconds.push_back(took_s);
+    });
+  }
+
+  void finish() {
+    if (!is_broken()) results_->add(found_, detector_->log());
+  }
+
+ private:
+  void guarded(const auto& work) {
+    if (is_broken()) return;
+    try {
+      work();
+    } catch (const DetectorFailed& error) {
+      const std::string log = detector_->log();
+      detector_.reset();
+      results_->add_broken(found_.name, error.what(), log);
+    }
+  }
+
+  Results* results_;
+  std::unique_ptr<Detector> detector_;
+  SequenceDetections found_;
+};
+
+class Running {
+ public:
+  Running(const fs::path& out, const RunOptions& options)
+      : options_(options), detector_options_{options.start_s, options.answer_s, options.stop} {
+    std::set<std::string> names;
+    for (const std::string& text : options.detectors) {
+      require_utf8(text);
+      const DetectorName named = named_detector(text);
+      if (!names.insert(named.name).second)
+        throw Error("two detectors are named '" + named.name +
+                    "'; expected NAME=DETECTOR with a name for each");
+      // An Error for what is no detector, before anything is made.
+      make_detector(named.command, detector_options_);
+      results_.push_back(std::make_unique<Results>(named, out, options));
+    }
+  }
+
+  std::vector<RunSummary> over(const dataset::LabelledSet& set) {
+    std::vector<std::string> names;
+    for (const std::string& name : set.names())
+      if (matches(options_.only, name)) names.push_back(name);
+    if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
+    open();
+    in_parallel(
+        names.size(),
+        options_.jobs,
+        [&](std::size_t i) { over(names[i], [&] { return clip_of(set, names[i]); }, {}); },
+        options_.progress,
+        options_.stop);
+    return summaries(sequences_of(set));
+  }
+
+  std::vector<RunSummary> over(const fs::path& video) {
+    const DetectionClip clip = clip_of(video);
+    ClipFrames(with_lens(clip), false, options_.warn);  // an Error before anything is made
+    open();
+    over(
+        clip.name, [&] { return clip; }, options_.progress);
+    return summaries(std::vector<ExpectedSequence>{{clip.name, 0, 0, 0}});
+  }
+
+ private:
+  using Progress = std::function<void(std::int64_t, std::int64_t)>;
+
+  void open() const {
+    for (const auto& results : results_) results->open();
+  }
+
+  // The lens that the user states, for a clip that states none.
+  DetectionClip with_lens(DetectionClip clip) const {
+    if (clip.lens || !options_.lens) return clip;
+    const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}).info();
+    clip.lens = lens::read_calibration(*options_.lens, {info.width, info.height});
+    return clip;
+  }
+
+  void over(const std::string& name, const auto& make_clip, const Progress& progress) {
+    std::vector<Following> detectors;
+    for (const auto& results : results_)
+      if (!results->keeps(name)) detectors.emplace_back(*results, detector_options_);
+    if (detectors.empty()) return;
+    const DetectionClip clip = with_lens(make_clip());
+    const bool with_motion =
+        std::any_of(detectors.begin(), detectors.end(), [](const Following& detector) {
+          return detector.needs_motion();
+        });
+    ClipFrames frames(clip, with_motion, options_.warn);
+    for (Following& detector : detectors) detector.begin(frames.sequence());
+    while (const auto frame = frames.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      for (Following& detector : detectors) detector.detect(*frame, options_);
+      if (std::all_of(detectors.begin(), detectors.end(), [](const Following& detector) {
+            return detector.is_broken();
+          }))
+        break;
+      if (progress) progress(frame->index + 1, std::max(frame->index + 1, frames.count_estimate()));
+    }
+    for (Following& detector : detectors) detector.finish();
+  }
+
+  std::vector<RunSummary> summaries(std::span<const ExpectedSequence> set) const {
+    std::vector<RunSummary> all;
+    for (const auto& results : results_) {
+      results->finish(set);
+      all.push_back(results->summary());
+    }
+    return all;
+  }
+
+  const RunOptions& options_;
+  DetectorOptions detector_options_;
+  std::vector<std::unique_ptr<Results>> results_;
+};
+
+}  // namespace
+
+std::vector<RunSummary> run(const fs::path& source,
+                            const fs::path& out,
+                            const RunOptions& options) {
+  Running running(out, options);
+  if (!fs::exists(source) && source.string().find('%') == std::string::npos)
+    throw Error("does not exist", {source.string()});
+  // A folder without sequences is one of pictures, unless it is a set that is still empty.
+  const bool is_set = fs::is_directory(source) &&
+                      (fs::exists(source / "dataset.json") || fs::exists(source / "sequences") ||
+                       !dataset::sequence_folders(source).names.empty());
+  if (is_set) return running.over(dataset::LabelledSet(source));
+  return running.over(source);
+}
+
+}  // namespace airtruth::detection
