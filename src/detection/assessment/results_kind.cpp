@@ -15,7 +15,7 @@ bool has_ending(const fs::path& file, const char* ending) {
 
 // MOTChallenge's lines have an id as their second cell of seven or more; a detection without a
 // track has the id -1.
-bool is_untracked_mot(const fs::path& file) {
+bool is_mot(const fs::path& file, bool with_tracks) {
   std::ifstream text(file);
   std::string line;
   while (std::getline(text, line)) {
