@@ -57,7 +57,7 @@ std::string row_of(const detection::DetectorScore& detector) {
              has_trials ? between(point.detection.low, point.detection.high) : "-",
              has_point ? fmt::format("{:.3g}", point.false_alarms_per_image) : "-",
              has_point && detector.froc.hours > 0
-                 ? fmt::format("{:.4g}", point.false_alarms_per_hour)
+                 ? fmt::format("{:.0f}", point.false_alarms_per_hour)
                  : "-");
 }
 
@@ -105,7 +105,7 @@ void print_tracks(const detection::DetectorScore& detector,
                              tracks.identity.idf1(),
                              tracks.false_tracks,
                              detector.froc.hours > 0
-                                 ? fmt::format(" ({:.4g} an hour)", tracks.false_tracks_per_hour)
+                                 ? fmt::format(" ({:.1f} an hour)", tracks.false_tracks_per_hour)
                                  : ""));
   print_declarations("declares", detector.name, tracks.declarations, assessment, console);
   if (tracks.weighted_declarations)
