@@ -9,6 +9,7 @@
 #include "benchmark/experiment/figures.h"
 #include "cli/commands.h"
 #include "cli/evaluate_detections.h"
+#include "detection/detection_page/detection_page.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 
@@ -173,6 +174,14 @@ void evaluate_detectors(const Evaluate& arguments,
   const detection::Assessment assessment =
       detection::assess(arguments.set, results, arguments.detections.options);
   detection::write_tables(assessment, arguments.out);
+  if (arguments.options.with_film)
+    detection::write_page(assessment,
+                          arguments.out,
+                          {.jobs = arguments.options.jobs,
+                           .progress = arguments.options.progress,
+                           .stop = arguments.options.stop});
+  if (!arguments.figures.empty())
+    detection::write_figures(assessment, arguments.out, arguments.figures);
   console.end_progress();
   print_detections(assessment, console);
 }
@@ -226,9 +235,10 @@ void add_evaluate(CLI::App& app, Context& context) {
                    "a detector's may be a COCO results file")
       ->required();
   command
-      ->add_option("--out,-o",
-                   arguments->out,
-                   "Folder for evaluation.json, detection.json, the tables and report.html")
+      ->add_option(
+          "--out,-o",
+          arguments->out,
+          "Folder for evaluation.json, detection.json, the tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
   add_detection_options(*command, arguments->detections);
@@ -237,9 +247,8 @@ void add_evaluate(CLI::App& app, Context& context) {
                       "Another evaluation.json: how far do the two rankings agree?");
   command->add_option(
       "--figures", arguments->figures, "Also the plots as files for a paper: png, pdf or svg");
-  command->add_flag("--no-page",
-                    arguments->no_page,
-                    "No report.html, and no results by contrast: videos are not read");
+  command->add_flag(
+      "--no-page", arguments->no_page, "No pages, and no results by contrast: videos are not read");
   command->add_option("--jobs,-j", arguments->options.jobs, "Videos read at a time")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &context] { run_evaluate(*arguments, context); });
