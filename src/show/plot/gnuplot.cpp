@@ -101,10 +101,12 @@ std::string tics_of(const char* axis, const Axis& a) {
   return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
 }
 
-bool has_bounds(const Series& series) { return !series.low.empty(); }
-
 bool has_band(const Series& series) {
-  return has_bounds(series) && (series.mark == Mark::kLine || series.mark == Mark::kLineAndPoints);
+  return !series.low.empty() && (series.mark == Mark::kLine || series.mark == Mark::kLineAndPoints);
+}
+
+bool has_whiskers(const Series& series) {
+  return !series.low.empty() && series.mark == Mark::kBars;
 }
 
 std::string drawn_as(const Series& series) {
@@ -119,8 +121,7 @@ std::string drawn_as(const Series& series) {
     case Mark::kLineAndPoints:
       return "using 1:2 with linespoints pt 7 ps 0.6 " + line;
     case Mark::kBars:
-      return has_bounds(series) ? "using 1:2:3:4 with boxerrorbars " + colour
-                                : "using 1:2 with boxes " + colour;
+      return "using 1:2 with boxes " + colour;
     case Mark::kIntervals:
       return "using 1:2:3:4 with xerrorbars pt 7 ps 1 " + colour;
     case Mark::kAbove:
@@ -168,6 +169,8 @@ class Script {
                         hex(series.style.colour)),
             "notitle");
       add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
+      if (has_whiskers(series))
+        add("using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '#333333'", "notitle");
     }
     // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";

@@ -106,6 +106,33 @@ TEST(Gnuplot, ALogarithmicAxisAndABand) {
   EXPECT_EQ(int{picture.at(x, border.back() - static_cast<int>(0.4 * axis))[0]}, 255);
 }
 
+// A bar is as high as its value, and its whisker reaches from bound to bound.
+TEST(Gnuplot, ABarHasItsInterval) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Plot plot{.x = {.names = {"one"}}, .y = {.min = 0, .max = 1}};
+  plot.series.push_back({.mark = Mark::kBars,
+                         .style = style_of(0),
+                         .x = {0},
+                         .y = {0.5},
+                         .low = {0.25},
+                         .high = {0.75}});
+  const image::Rgb8 picture = picture_of({.plots = {plot}, .legend = Legend::kNone});
+  const auto bar = rows_of(picture, kColours[0], 500);
+  const auto border = rows_of(picture, {85, 85, 85}, 900);
+  ASSERT_FALSE(bar.empty() || border.size() < 2);
+  const double axis = border.back() - border.front();
+  EXPECT_NEAR(border.back() - bar.front(), 0.5 * axis, 4);
+  // Dark from 0.25 to 0.75 in the middle, and not beyond.
+  const auto is_dark_at = [&](double value) {
+    const int y = border.back() - static_cast<int>(value * axis);
+    for (int x = 0; x < picture.width; ++x)
+      if (is_near(picture.at(x, y), {51, 51, 51}) && picture.at(x, y)[0] < 70) return true;
+    return false;
+  };
+  for (const double value : {0.28, 0.45, 0.6, 0.73}) EXPECT_TRUE(is_dark_at(value)) << value;
+  for (const double value : {0.2, 0.8}) EXPECT_FALSE(is_dark_at(value)) << value;
+}
+
 TEST(Gnuplot, APlotWithoutDataHasAxes) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   Sheet sheet;

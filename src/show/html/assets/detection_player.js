@@ -89,20 +89,22 @@ airtruth.detectionPlayer = (data, dotOf) => {
   };
 
   // The detections of the picture, the strongest first.
+  const mostRows = 8;
   const drawTable = () => {
     const table = byId('boxes');
     table.replaceChildren();
     table.createTHead().insertRow().append(...['detector', 'score', 'track', 'fate'].map((text) => element('th', text)));
     const body = table.createTBody();
     for (const one of shown()) {
-      for (const [, score, track, fate, what] of one.drawn[at] || []) {
-        if (!isStrong(one.detector, score) && !byId('weak').checked) continue;
+      const listed = (one.drawn[at] || []).filter(([, score]) => isStrong(one.detector, score) || byId('weak').checked);
+      for (const [, score, track, fate, what] of listed.slice(0, mostRows)) {
         const row = body.insertRow();
         const name = row.insertCell();
         name.append(dotOf(detectors[one.detector]), document.createTextNode(detectors[one.detector].name));
         const said = fate === 'found' || what === '' ? fate : `${fate}: ${what}`;
         for (const text of [number(score, 3), track === null ? '–' : String(track), said]) row.append(element('td', text));
       }
+      if (listed.length > mostRows) body.insertRow().append(element('td', `and ${listed.length - mostRows} more`));
     }
   };
 
