@@ -70,7 +70,7 @@ function(add_module_test target label module sources libraries)
   endif()
   set_tests_properties(${target} PROPERTIES
     LABELS ${label} TIMEOUT ${limit_s}
-    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1;AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader")
+    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1;AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader;AIRTRUTH_NETWORK_RUNNER=${PROJECT_BINARY_DIR}/src/cli/airtruth-network-runner")
   if(label STREQUAL slow)
     set_tests_properties(${target} PROPERTIES COST 100)  # begun first, so that none is left alone at the end
   endif()

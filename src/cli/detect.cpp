@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
 #include "detection/run/run.h"
+#include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 
 namespace airtruth::cli {
@@ -15,6 +19,9 @@ struct Detect {
   std::string source;
   std::string out;
   std::string lens;
+  bool associate = false;
+  std::string declare;
+  std::optional<double> confident;
   detection::RunOptions options;
 };
 
@@ -33,12 +40,40 @@ void tell(const detection::RunSummary& summary, Context& context) {
   if (summary.broken > 0) context.exit_code = 1;
 }
 
+// "3/5"
+void read_declare(const std::string& text, detection::AssociationOptions& association) {
+  const std::size_t slash = text.find('/');
+  const auto number = [&](std::string_view digits) {
+    int value = 0;
+    const auto [end, fault] = std::from_chars(digits.begin(), digits.end(), value);
+    if (fault != std::errc{} || end != digits.end() || digits.empty())
+      throw Error("--declare is '" + text + "'; expected M/N, such as 3/5");
+    return value;
+  };
+  if (slash == std::string::npos) number("");
+  association.declare_m = number(std::string_view(text).substr(0, slash));
+  association.declare_n = number(std::string_view(text).substr(slash + 1));
+}
+
+std::optional<detection::AssociationOptions> association_of(const Detect& arguments) {
+  if (!arguments.associate) {
+    if (!arguments.declare.empty() || arguments.confident)
+      throw Error("--declare and --confident are for --associate");
+    return std::nullopt;
+  }
+  detection::AssociationOptions association;
+  if (!arguments.declare.empty()) read_declare(arguments.declare, association);
+  association.confident_score = arguments.confident;
+  return association;
+}
+
 void run_detect(Detect arguments, Context& context) {
   Console& console = context.console();
   detection::RunOptions& options = arguments.options;
   options.warn = console.warn();
   options.stop = context.stop;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
+  options.association = association_of(arguments);
   options.progress = [&](std::int64_t done, std::int64_t total) {
     console.progress("detecting", done, total, "done");
   };
@@ -77,6 +112,14 @@ void add_options(CLI::App& command, Detect& arguments) {
   command.add_option("--lens",
                      arguments.lens,
                      "Calibration file for what states no lens (default: a guess of 60 degrees)");
+  command.add_flag(
+      "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
+  command.add_option("--declare",
+                     arguments.declare,
+                     "M/N: a track is declared with M detections in N frames (default: 3/5)");
+  command.add_option("--confident",
+                     arguments.confident,
+                     "Least score that may begin a track (default: the detector's, else any)");
   command
       .add_option("--timeout",
                   options.answer_s,

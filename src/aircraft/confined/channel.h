@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "aircraft/model/load_options.h"
-#include "foundation/base/error.h"
+#include "foundation/helper/channel.h"
+#include "foundation/helper/wire.h"
 
 // The protocol between the program and airtruth-model-reader over one socket. A message has a kind,
 // a length and bytes. The reader requests each file by name and receives its bytes; it never opens
 // a file.
 namespace airtruth::aircraft {
+
+using helper::bytes_of;
+using helper::Channel;
+using helper::error_from_bytes;
 
 enum class Message : std::uint8_t {
   kJob = 1,  // to the reader: bytes_of(ReaderJob)
@@ -33,31 +37,5 @@ struct ReaderJob {
 
 std::string bytes_of(const ReaderJob& job);
 ReaderJob job_from_bytes(std::string_view bytes);
-std::string bytes_of(const Error& error);
-Error error_from_bytes(std::string_view bytes);
-
-// Either end of the socket.
-class Channel {
- public:
-  virtual ~Channel() = default;
-  struct Received {
-    Message message{};
-    std::string bytes;
-    bool closed = false;  // whether the other end has closed the connection
-  };
-  // Throws Error for a message longer than `most`.
-  Received receive(std::size_t most);
-  // Returns false where the other end has closed the connection.
-  bool send(Message message, std::string_view bytes);
-
- protected:
-  // Reads at least one byte. Returns 0 where the other end has closed the connection.
-  virtual std::size_t read_some(char* data, std::size_t size) = 0;
-  virtual std::size_t write_some(const char* data, std::size_t size) = 0;
-
- private:
-  bool read_all(char* data, std::size_t size);
-  bool write_all(const char* data, std::size_t size);
-};
 
 }  // namespace airtruth::aircraft

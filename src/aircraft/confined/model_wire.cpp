@@ -105,29 +105,6 @@ RawPicture get_picture(WireReader& in) {
 
 }  // namespace
 
-void WireReader::get_raw(void* data, std::size_t size) {
-  if (size > bytes_.size()) throw Error("the model's reader handed back too few bytes");
-  if (size > 0) std::memcpy(data, bytes_.data(), size);
-  bytes_.remove_prefix(size);
-}
-
-std::size_t WireReader::get_count(std::size_t most, std::size_t bytes_each) {
-  const auto count = get<std::uint64_t>();
-  if (count > most || count > bytes_.size() / bytes_each)
-    throw Error("the model's reader handed back a count that is too large");
-  return static_cast<std::size_t>(count);
-}
-
-std::string WireReader::get_text(std::size_t most) {
-  std::string text(get_count(most, 1), '\0');
-  get_raw(text.data(), text.size());
-  return text;
-}
-
-void WireReader::expect_end() const {
-  if (!bytes_.empty()) throw Error("the model's reader handed back too many bytes");
-}
-
 std::string bytes_of(const RawModel& model) {
   WireWriter out;
   put_vectors(out, model.mesh.positions);

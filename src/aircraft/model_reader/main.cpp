@@ -2,7 +2,6 @@
 // airtruth-model-reader reads one 3D model for the program that started it and returns plain
 // arrays. Its standard input is a socket, through which it requests files by name and receives
 // them.
-#include <cerrno>
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -12,10 +11,10 @@
 
 #include "aircraft/confined/channel.h"
 #include "aircraft/confined/model_wire.h"
-#include "aircraft/model_reader/confine.h"
 #include "aircraft/model_reader/other_formats.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/helper/confine.h"
 
 namespace {
 
@@ -24,24 +23,6 @@ using namespace airtruth::aircraft;
 
 // The largest message from the parent: the limit of all files of a model together.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
-
-class ToParent : public Channel {
- protected:
-  std::size_t read_some(char* data, std::size_t size) override {
-    for (;;) {
-      const ssize_t got = ::read(0, data, size);
-      if (got >= 0) return static_cast<std::size_t>(got);
-      if (errno != EINTR) return 0;
-    }
-  }
-  std::size_t write_some(const char* data, std::size_t size) override {
-    for (;;) {
-      const ssize_t put = ::write(0, data, size);
-      if (put >= 0) return static_cast<std::size_t>(put);
-      if (errno != EINTR) return 0;
-    }
-  }
-};
 
 // The parent's files, requested by name.
 class AskedFiles : public ModelFiles {
@@ -67,8 +48,8 @@ class AskedFiles : public ModelFiles {
   std::string answered(Message wanted) {
     Channel::Received received = parent_.receive(kMaxMessageBytes);
     if (received.closed) ::_exit(0);
-    if (received.message == Message::kError) throw error_from_bytes(received.bytes);
-    if (received.message != wanted) throw Error("gets an answer that it did not ask for");
+    if (received.is(Message::kError)) throw error_from_bytes(received.bytes);
+    if (!received.is(wanted)) throw Error("gets an answer that it did not ask for");
     return std::move(received.bytes);
   }
 
@@ -77,9 +58,9 @@ class AskedFiles : public ModelFiles {
 
 void do_job(Channel& parent) {
   try {
-    model_reader::confine({});
+    helper::confine({});
     const Channel::Received received = parent.receive(kMaxMessageBytes);
-    if (received.closed || received.message != Message::kJob) return;
+    if (received.closed || !received.is(Message::kJob)) return;
     const ReaderJob job = job_from_bytes(received.bytes);
     AskedFiles files(parent, job);
     parent.send(
@@ -102,8 +83,8 @@ int main(int argc, char** argv) {
     constexpr char kHint[] = "airtruth-model-reader is started by airtruth alone\n";
     return ::write(2, kHint, sizeof(kHint) - 1) < 0 ? 1 : 2;
   }
-  model_reader::end_with_parent(std::atoi(argv[1]));
-  ToParent parent;
+  helper::end_with_parent(std::atoi(argv[1]));
+  helper::ToParent parent;
   do_job(parent);
   ::_exit(0);  // skips destructors, since sanitizers would open files at exit
 }

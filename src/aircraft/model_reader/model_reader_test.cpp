@@ -1,52 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "aircraft/fleet/fleet.h"
-#include "aircraft/model_reader/confine.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::model_reader {
 namespace {
-
-// Each bit is something that a confined process managed to do.
-int what_is_possible() {
-  int possible = 0;
-  if (::open("/etc/passwd", O_RDONLY) >= 0) possible |= 1;
-  if (::open("/tmp/airtruth_confined", O_WRONLY | O_CREAT, 0600) >= 0) possible |= 2;
-  if (::socket(AF_INET, SOCK_STREAM, 0) >= 0) possible |= 4;
-  if (::fork() >= 0) possible |= 8;
-  ::execl("/bin/true", "true", nullptr);  // on success the code is 0, which no bit says
-  if (::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
-      MAP_FAILED)
-    possible |= 16;
-  if (::kill(::getppid(), 0) == 0) possible |= 32;
-  // What it needs is there: memory.
-  void* const memory =
-      ::mmap(nullptr, 1 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  return memory == MAP_FAILED ? 128 : possible | 64;
-}
-
-TEST(Confine, LeavesNothingButMemory) {
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    confine({});
-    ::_exit(what_is_possible());
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 64);
-}
 
 class Formats : public testing::Test {
  protected:

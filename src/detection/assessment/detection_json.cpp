@@ -270,6 +270,7 @@ Json json_of(const FalseAlarm& alarm, const DetectorScore& detector, const Asses
           {"box_px", {box.x, box.y, box.width, box.height}},
           {"what", alarm.what},
           {"frames", alarm.frames},
+          {"sequences", alarm.sequences},
           {"to_aircraft_px", or_null(alarm.to_aircraft_px)}};
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "detection/assessment/first_violation.h"
 #include "encounter/separation/volumes.h"
 #include "foundation/json/json_object.h"
@@ -182,6 +184,9 @@ RenderedTruth rendered_truth(const fs::path& folder,
   TruthSequence& truth = rendered.truth;
   truth.media = finished.video;
   truth.background = finished.scene->background.video.filename().string();
+  truth.background_cut = fmt::format("{} from {}",
+                                     finished.scene->background.video.string(),
+                                     finished.scene->background.first_frame);
   truth.width = finished.truth.lens.width;
   truth.height = finished.truth.lens.height;
   truth.lens = annotation::lens_of(finished.truth.lens);

@@ -59,6 +59,9 @@ class Detector {
   virtual std::vector<Detection> detect(const FrameInput& frame) = 0;
   // True where detect() uses FrameInput::turn; the caller measures the motion only then.
   virtual bool needs_motion() const = 0;
+  // The least score with which a detection may begin a track; empty where the detector has no
+  // opinion, and every detection may.
+  virtual std::optional<double> confident_score() const { return {}; }
   // Output of the detector's process other than its answers.
   virtual std::string log() const { return {}; }
 };

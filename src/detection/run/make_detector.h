@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -16,6 +17,7 @@ struct DetectorOptions {
   // External programs: time limit for a program's start, and for each answer.
   double start_s = 30;
   double answer_s = 30;
+  int threads = 1;  // of a network
   std::stop_token stop;
 };
 
@@ -29,6 +31,9 @@ struct DetectorName {
 };
 // Throws Error for a name that is no file name, and for an unknown detector; it offers the nearest.
 DetectorName named_detector(const std::string& text);
+
+// The files beside the command that decide a detector's answers: a network and its description.
+std::vector<std::filesystem::path> files_of(std::string_view command);
 
 // Throws Error for what is no detector.
 std::unique_ptr<Detector> make_detector(std::string_view command, const DetectorOptions& options);

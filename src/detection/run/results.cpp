@@ -18,11 +18,22 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kRecord = "detector.json";
 constexpr const char* kCoco = "detections.json";
 
+Json settings_of(const AssociationOptions& association) {
+  const auto& score = association.confident_score;
+  return {{"declare", fmt::format("{}/{}", association.declare_m, association.declare_n)},
+          {"confident_score", score ? Json(*score) : Json()}};
+}
+
 // What decides the bytes of the results.
 Json settings_of(const DetectorName& detector, const RunOptions& options) {
   Json settings = {{"detector", detector.command}, {"max_per_frame", options.max_per_frame}};
   settings["min_score"] = options.min_score ? Json(*options.min_score) : Json();
   settings["lens"] = options.lens ? Json(sha256_of_file(*options.lens)) : Json();
+  settings["association"] = options.association ? settings_of(*options.association) : Json();
+  settings["files"] = Json::object();
+  for (const fs::path& file : files_of(detector.command)) {
+    settings["files"][file.filename().string()] = sha256_of_file(file);
+  }
   return settings;
 }
 

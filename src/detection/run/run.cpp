@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -26,16 +27,23 @@ namespace {
 // One detector within one sequence.
 class Following {
  public:
-  Following(Results& results, const DetectorOptions& options)
-      : results_(&results), detector_(make_detector(results.command(), options)) {}
+  Following(Results& results,
+            const DetectorOptions& options,
+            std::optional<AssociationOptions> association)
+      : results_(&results), detector_(make_detector(results.command(), options)) {
+    if (!association) return;
+    if (!association->confident_score) association->confident_score = detector_->confident_score();
+    associator_.emplace(*association);
+  }
 
-  bool needs_motion() const { return detector_->needs_motion(); }
+  bool needs_motion() const { return associator_ || detector_->needs_motion(); }
   bool is_broken() const { return !detector_; }
 
   void begin(const SequenceInput& sequence) {
     found_.name = sequence.name;
     found_.width = sequence.width;
     found_.height = sequence.height;
+    if (associator_) associator_->begin(sequence);
     guarded([&] { detector_->begin(sequence); });
   }
 
@@ -55,6 +63,7 @@ class Following {
         std::erase_if(detections, [&](const Detection& d) { return d.score < *options.min_score; });
       if (std::ssize(detections) > options.max_per_frame)
         detections.resize(static_cast<std::size_t>(options.max_per_frame));
+      if (associator_) detections = associator_->step(frame, std::move(detections));
       found_.frames.push_back(std::move(detections));
       found_.seconds.push_back(took_s);
     });
@@ -78,13 +87,21 @@ class Following {
 
   Results* results_;
   std::unique_ptr<Detector> detector_;
+  std::optional<Associator> associator_;
   SequenceDetections found_;
 };
+
+// The threads of each of `jobs` sequences at a time.
+int threads_of(const RunOptions& options) {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.jobs);
+}
 
 class Running {
  public:
   Running(const fs::path& out, const RunOptions& options)
-      : options_(options), detector_options_{options.start_s, options.answer_s, options.stop} {
+      : options_(options),
+        detector_options_{options.start_s, options.answer_s, threads_of(options), options.stop} {
+    if (options.association) validate(*options.association);
     std::set<std::string> names;
     for (const std::string& text : options.detectors) {
       require_utf8(text);
@@ -140,7 +157,8 @@ class Running {
   void over(const std::string& name, const auto& make_clip, const Progress& progress) {
     std::vector<Following> detectors;
     for (const auto& results : results_)
-      if (!results->keeps(name)) detectors.emplace_back(*results, detector_options_);
+      if (!results->keeps(name))
+        detectors.emplace_back(*results, detector_options_, options_.association);
     if (detectors.empty()) return;
     const DetectionClip clip = with_lens(make_clip());
     const bool with_motion =

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "detection/association/associator.h"
 #include "detection/run/make_detector.h"
 #include "foundation/base/log.h"
 
@@ -29,6 +30,9 @@ struct RunOptions {
   int max_per_frame = 100;
   // Calibration file for clips that state no lens.
   std::optional<fs::path> lens;
+  // Tracks made of the detections; empty: the detector's own, if it has any. Without a confident
+  // score it is the detector's.
+  std::optional<AssociationOptions> association;
   double start_s = 30;
   double answer_s = 30;
   Warn warn;

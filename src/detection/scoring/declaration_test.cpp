@@ -188,6 +188,17 @@ TEST(Galleries, RunsAreListedOnce) {
   EXPECT_EQ(misses[0].first_frame, 0u);
   EXPECT_EQ(misses[0].frames, 20);
   EXPECT_TRUE(false_alarms_of(0, truth, detections, verdicts, 10).empty());
+  // Two sequences over one background repeat it; over others they do not.
+  std::vector<FalseAlarm> twice = alarms;
+  for (FalseAlarm alarm : alarms) {
+    alarm.sequence = 1;
+    twice.push_back(alarm);
+  }
+  EXPECT_EQ(strongest(twice, std::vector<std::string>{"a", "b"}).size(), 4u);
+  EXPECT_EQ(strongest(twice, std::vector<std::string>{"", ""}).size(), 4u);
+  const auto merged = strongest(twice, std::vector<std::string>{"a", "a"});
+  ASSERT_EQ(merged.size(), 2u);
+  EXPECT_EQ(merged[0].sequences, 2);
 }
 
 }  // namespace

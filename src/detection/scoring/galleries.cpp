@@ -44,6 +44,20 @@ bool is_stronger(const FalseAlarm& a, const FalseAlarm& b) {
          std::tuple(-b.score, b.sequence, b.frame, b.detection);
 }
 
+// Whether two sequences over one background have the same false alarm: on nothing known, at the
+// same time and place.
+bool is_repeated(const FalseAlarm& a,
+                 const FalseAlarm& b,
+                 std::span<const std::string> backgrounds) {
+  const std::string& background = backgrounds[a.sequence];
+  if (background.empty() || background != backgrounds[b.sequence] || a.sequence == b.sequence)
+    return false;
+  if (a.object || b.object) return false;
+  const std::size_t frames = a.frame > b.frame ? a.frame - b.frame : b.frame - a.frame;
+  const double reach = std::max(kGalleryReach_px, std::max(a.box_px.width, a.box_px.height));
+  return frames <= kGalleryGap && centre_distance_px(a.box_px, b.box_px) <= reach;
+}
+
 bool is_easier(const Miss& a, const Miss& b) {
   const auto ease = [](const Miss& miss) {
     return std::tuple(-miss.contrast_to_noise.value_or(0),
@@ -118,14 +132,17 @@ std::vector<FalseAlarm> false_alarms_of(std::size_t sequence,
                  verdict.what,
                  verdict.object,
                  nearest_aircraft_px(detection.box_px, truth.frames[i]),
-                 frames};
+                 frames,
+                 1,
+                 detection.box_px};
       }
       group->last_frame = i;
       group->last_px = detection.box_px;
     }
   }
   for (const Group& group : open) alarms.push_back(group.alarm);
-  return strongest(std::move(alarms));
+  std::sort(alarms.begin(), alarms.end(), is_stronger);
+  return alarms;
 }
 
 std::vector<Miss> misses_of(std::size_t sequence,
@@ -158,10 +175,24 @@ std::vector<Miss> misses_of(std::size_t sequence,
   return easiest(std::move(misses));
 }
 
-std::vector<FalseAlarm> strongest(std::vector<FalseAlarm> alarms) {
+std::vector<FalseAlarm> strongest(std::vector<FalseAlarm> alarms,
+                                  std::span<const std::string> backgrounds) {
   std::sort(alarms.begin(), alarms.end(), is_stronger);
-  if (alarms.size() > kGallerySize) alarms.resize(kGallerySize);
-  return alarms;
+  std::vector<FalseAlarm> kept;
+  std::vector<std::set<std::size_t>> sequences;
+  for (const FalseAlarm& alarm : alarms) {
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const FalseAlarm& other) {
+      return is_repeated(alarm, other, backgrounds);
+    });
+    if (same != kept.end()) {
+      sequences[static_cast<std::size_t>(same - kept.begin())].insert(alarm.sequence);
+    } else if (kept.size() < kGallerySize) {
+      kept.push_back(alarm);
+      sequences.push_back({alarm.sequence});
+    }
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i].sequences = std::ssize(sequences[i]);
+  return kept;
 }
 
 std::vector<Miss> easiest(std::vector<Miss> misses) {

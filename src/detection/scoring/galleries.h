@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct FalseAlarm {
   // To the centre of the nearest aircraft in that frame, px; empty where there is none.
   std::optional<double> to_aircraft_px;
   std::int64_t frames = 0;  // with a detection of this group
+  // That have this one: sequences over one background repeat its false alarms.
+  std::int64_t sequences = 1;
+  // Of the strongest detection.
+  Box box_px;
 };
 
 // Frames after each other in which one aircraft is not found.
@@ -65,8 +70,11 @@ std::vector<Miss> misses_of(std::size_t sequence,
                             const std::vector<std::vector<Verdict>>& verdicts,
                             double score);
 
-// Of all sequences, in the same orders, at most kGallerySize.
-std::vector<FalseAlarm> strongest(std::vector<FalseAlarm> alarms);
+// Of all sequences, in the same orders, at most kGallerySize. `backgrounds`: of each sequence, its
+// background video and first frame, or empty where it has no other. At one place of one background,
+// the strongest alarm stands for those of all sequences.
+std::vector<FalseAlarm> strongest(std::vector<FalseAlarm> alarms,
+                                  std::span<const std::string> backgrounds);
 std::vector<Miss> easiest(std::vector<Miss> misses);
 
 }  // namespace airtruth::detection

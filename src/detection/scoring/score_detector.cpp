@@ -119,10 +119,17 @@ class Scoring {
       append(result_.misses, misses_of(i, of, scored.detections, scored.verdicts, score));
     }
     result_.bearing = bearing_error(samples);
-    result_.false_alarms = strongest(std::move(result_.false_alarms));
+    result_.false_alarms = strongest(std::move(result_.false_alarms), backgrounds());
     result_.misses = easiest(std::move(result_.misses));
     break_down(sightings);
     count_false_alarms(score);
+  }
+
+  std::vector<std::string> backgrounds() const {
+    std::vector<std::string> names;
+    for (const ScoredDetections& scored : result_.sequences)
+      names.push_back(truth(scored).background_cut);
+    return names;
   }
 
   template <typename T>

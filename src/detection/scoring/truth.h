@@ -74,6 +74,8 @@ struct TruthSequence {
   std::string name;
   // File name of the background video; for an imported clip, of its own video.
   std::string background;
+  // The same for sequences over the same frames of one background; empty for an imported clip.
+  std::string background_cut;
   // The video that detectors see; may be empty for an imported clip.
   std::filesystem::path media;
   int width = 0;  // px; 0: unknown

@@ -6,10 +6,12 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/files.h"
 #include "foundation/base/line_of.h"
+#include "foundation/base/suggest.h"
 
 namespace airtruth {
 namespace {
@@ -234,6 +236,19 @@ std::vector<JsonObject> JsonObject::objects(const std::string& key) const {
   for (const Json& value : list(key, "a list"))
     result.emplace_back(value, where_, path_of(element(key, result.size())));
   return result;
+}
+
+void JsonObject::expect_keys_among(const std::vector<std::string>& known) const {
+  for (const std::string& key : keys()) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    const auto near = nearest_spelling(key.substr(0, kMaxShownBytes), known);
+    throw Error(fmt::format("{}unknown key {}; {}",
+                            place_.empty() ? "" : place_ + ": ",
+                            shown(Json(key)),
+                            near ? fmt::format("did you mean \"{}\"?", *near)
+                                 : fmt::format("expected one of {}", fmt::join(known, ", "))),
+                where_of(key));
+  }
 }
 
 std::vector<std::string> JsonObject::keys() const {

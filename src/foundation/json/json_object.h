@@ -77,6 +77,10 @@ class JsonObject {
   // In the order of the text.
   std::vector<std::string> keys() const;
 
+  // Throws Error where a key is none of `known`; it names the nearest one, or all where none is
+  // near.
+  void expect_keys_among(const std::vector<std::string>& known) const;
+
   // The value as it is, for a copy or a comparison. Throws Error where the key is missing.
   const nlohmann::ordered_json& value(const std::string& key) const;
 

@@ -96,5 +96,22 @@ TEST(JsonObject, DeepValuesAreRefused) {
             "a.json: a is a list; expected a number");
 }
 
+TEST(JsonObject, AnUnknownKeyIsNamedAtItsLineWithTheNearest) {
+  const std::string text = "{\n\"width\": 1,\n\"hieght\": 2}";
+  const JsonDocument document(text, {"a.json"});
+  const auto fault = [&](const std::vector<std::string>& known) -> std::string {
+    try {
+      document.with_lines_of(text).expect_keys_among(known);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(fault({"width", "hieght"}), "no error");
+  EXPECT_EQ(fault({"width", "height"}),
+            "a.json:3: unknown key \"hieght\"; did you mean \"height\"?");
+  EXPECT_EQ(fault({"width", "x"}), "a.json:3: unknown key \"hieght\"; expected one of width, x");
+}
+
 }  // namespace
 }  // namespace airtruth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/model_reader/confine.h"
+#include "foundation/helper/confine.h"
 
 #include <cerrno>
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::model_reader {
+namespace airtruth::helper {
 namespace {
 
 #if defined(__x86_64__)
@@ -30,7 +30,7 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
 #elif defined(__riscv) && __riscv_xlen == 64
 constexpr std::uint32_t kMachine = AUDIT_ARCH_RISCV64;
 #else
-#error "state this machine's AUDIT_ARCH, so that the model reader's system calls can be filtered"
+#error "state this machine's AUDIT_ARCH, so that a helper's system calls can be filtered"
 #endif
 
 // System calls that reach nothing outside the process, whatever their arguments are.
@@ -46,7 +46,10 @@ constexpr int kFreeCalls[] = {__NR_brk,
                               __NR_rt_sigreturn,
                               __NR_sigaltstack,
                               __NR_rt_sigprocmask,
-                              __NR_gettid};
+                              __NR_gettid,
+                              // A thread that was started before the filter begins with these two.
+                              __NR_rseq,
+                              __NR_set_robust_list};
 
 using Program = std::vector<sock_filter>;
 
@@ -124,7 +127,8 @@ Program filter() {
 void limit(int what, unsigned long value) {
   const rlimit both{value, value};
   if (::setrlimit(static_cast<__rlimit_resource_t>(what), &both) != 0)
-    throw Error(std::string("the reader of 3D models cannot be limited: ") + std::strerror(errno));
+    throw Error(std::string("the reader of untrusted files cannot be limited: ") +
+                std::strerror(errno));
 }
 
 }  // namespace
@@ -138,7 +142,7 @@ void confine(const Limits& limits) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(AIRTRUTH_SANITIZED)
   limit(RLIMIT_AS, limits.memory_bytes);
 #endif
-  limit(RLIMIT_CPU, limits.processor_s);
+  if (limits.processor_s > 0) limit(RLIMIT_CPU, limits.processor_s);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_NOFILE, 1);
@@ -146,10 +150,10 @@ void confine(const Limits& limits) {
   Program program = filter();
   const sock_fprog code{static_cast<unsigned short>(program.size()), program.data()};
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
-      ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &code) != 0)
-    throw Error(std::string("3D models of strangers cannot be read here: this kernel does not "
-                            "confine their reader (seccomp): ") +
+      ::syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &code) != 0)
+    throw Error(std::string("untrusted files cannot be read here: this kernel does not confine "
+                            "their reader (seccomp): ") +
                 std::strerror(errno));
 }
 
-}  // namespace airtruth::model_reader
+}  // namespace airtruth::helper

@@ -1,0 +1,305 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Trains a small aircraft detector on data sets that airtruth made, and writes it as ONNX for `airtruth detect`.
+
+    python3 benchmarks/train_detector.py SET... -o aircraft.onnx [--minutes 12]
+
+Needs python3-torch, python3-onnx and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
+it answers, for every cell of 4 x 4 px, how likely an aircraft's centre lies there, where in the cell, and how large it is
+(Zhou, Wang and Kraehenbuehl 2019, "Objects as Points"). Beside aircraft.onnx it writes aircraft.json, which says how its input and
+output are to be read (docs/formats/detector-model.md). The labels are the covered boxes of the sequences' truth.
+"""
+
+import argparse
+import glob
+import json
+import math
+import os
+import sys
+import time
+
+import cv2
+import numpy as np
+import torch
+from torch import nn
+from torch.nn import functional
+
+STRIDE = 4          # px in a cell of the output
+MULTIPLE = 8        # the input's sides are multiples of it: the network halves them three times
+CROP = 192          # px: side of the square that a training step sees; twice the largest aircraft that it learns
+MIN_SIGMA = 0.7     # cells: width of the peak of the smallest aircraft, so that a peak is wider than its sampling
+MOST_PX = 128       # px: aircraft that are longer are left out of training
+
+
+def block(inputs, outputs, stride=1, dilation=1):
+    return nn.Sequential(nn.Conv2d(inputs, outputs, 3, stride, dilation, dilation, bias=False), nn.BatchNorm2d(outputs))
+
+
+class Residual(nn.Module):
+    def __init__(self, channels, dilation=1):
+        super().__init__()
+        self.first = block(channels, channels, dilation=dilation)
+        self.second = block(channels, channels)
+
+    def forward(self, x):
+        return functional.relu(x + self.second(functional.relu(self.first(x))))
+
+
+class Network(nn.Module):
+    """Grey pictures (n, 1, h, w) in 0..1 to heat (n, 1, h/4, w/4) as logits, offset (n, 2, ...) in cells, log of size in px."""
+
+    def __init__(self, fine=24, coarse=48):
+        super().__init__()
+        self.to_2 = block(1, 12, stride=2)
+        self.to_4 = block(12, fine, stride=2)
+        self.fine = Residual(fine)
+        self.to_8 = block(fine, coarse, stride=2)
+        self.context = nn.Sequential(*[Residual(coarse, dilation) for dilation in (1, 2, 4)])
+        self.narrow = nn.Conv2d(coarse, fine, 1)
+        self.joined = Residual(fine)
+        self.head = nn.Conv2d(fine, fine, 3, padding=1)
+        self.heat = nn.Conv2d(fine, 1, 1)
+        self.offset = nn.Conv2d(fine, 2, 1)
+        self.size = nn.Conv2d(fine, 2, 1)
+        nn.init.constant_(self.heat.bias, -math.log(99))  # a peak in one cell of a hundred at first (Lin et al. 2017)
+        nn.init.constant_(self.size.bias, math.log(20))
+
+    def forward(self, x):
+        fine = self.fine(functional.relu(self.to_4(functional.relu(self.to_2(x)))))
+        coarse = self.context(functional.relu(self.to_8(fine)))
+        x = self.joined(fine + functional.interpolate(self.narrow(coarse), scale_factor=2, mode="nearest"))
+        x = functional.relu(self.head(x))
+        return self.heat(x), self.offset(x), self.size(x)
+
+
+class ForExport(nn.Module):
+    def __init__(self, network):
+        super().__init__()
+        self.network = network
+
+    def forward(self, x):
+        heat, offset, size = self.network(x)
+        return torch.sigmoid(heat), offset, size
+
+
+class Frames:
+    """Grey frames with the boxes of their aircraft, and boxes of what counts neither as aircraft nor as background."""
+
+    def __init__(self):
+        self.pictures, self.boxes, self.ignored = [], [], []
+
+    def add_set(self, folder, every):
+        found = sorted(glob.glob(os.path.join(folder, "sequences", "**", "truth.jsonl"), recursive=True))
+        if not found:
+            sys.exit(f"train_detector: {folder} holds no sequences; expected the folder of `airtruth dataset build`")
+        for path in found:
+            self.add_sequence(os.path.dirname(path), every)
+
+    def add_sequence(self, folder, every):
+        name = os.path.basename(folder)
+        videos = [v for v in glob.glob(os.path.join(glob.escape(folder), glob.escape(name) + ".*"))
+                  if v.endswith((".mp4", ".mkv", ".avi"))]
+        if not videos:
+            sys.exit(f"train_detector: {folder} holds no video {name}.mp4, .mkv or .avi")
+        video = cv2.VideoCapture(videos[0])
+        with open(os.path.join(folder, "truth.jsonl"), encoding="utf-8") as lines:
+            for number, line in enumerate(lines):
+                whole, picture = video.read()
+                if not whole:
+                    sys.exit(f"train_detector: {videos[0]} ends at frame {number}, before its truth")
+                if number % every == 0:
+                    self.add(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), json.loads(line))
+
+    def add(self, picture, truth):
+        boxes, ignored = [], []
+        for intruder in truth["intruders"]:
+            if intruder["state"] != "visible" or intruder.get("object_class", "aircraft") != "aircraft":
+                continue
+            box = intruder.get("covered_box_px")
+            if box is None or max(box[2:]) > MOST_PX or intruder.get("cut_by_frame", 0) > 0.5:
+                ignored.append(box or intruder.get("visible_box_px"))
+            else:
+                boxes.append(box)
+        self.pictures.append(picture)
+        self.boxes.append(np.array(boxes, np.float32).reshape(-1, 4))
+        self.ignored.append(np.array([b for b in ignored if b], np.float32).reshape(-1, 4))
+
+
+def crop_of(frames, random):
+    """A square of a frame at a random scale, mirrored at random: half of them about an aircraft."""
+    with_aircraft = random.random() < 0.5
+    for _ in range(20):
+        index = random.integers(len(frames.pictures))
+        if not with_aircraft or len(frames.boxes[index]):
+            break
+    picture, boxes, ignored = frames.pictures[index], frames.boxes[index], frames.ignored[index]
+    scale = math.exp(random.uniform(math.log(0.7), math.log(1.4)))
+    side = int(round(CROP / scale))
+    side = min(side, *picture.shape)
+    scale = CROP / side
+    high = np.array([picture.shape[1] - side, picture.shape[0] - side])
+    corner = random.integers(0, high + 1)
+    if with_aircraft and len(boxes):
+        box = boxes[random.integers(len(boxes))]
+        centre = box[:2] + box[2:] / 2
+        corner = np.clip(np.round(centre - side * random.uniform(0.1, 0.9, 2)).astype(int), 0, high)
+    x, y = corner
+    pixels = cv2.resize(picture[y:y + side, x:x + side], (CROP, CROP),
+                        interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR).astype(np.float32) / 255
+
+    def moved(some):
+        some = some.copy()
+        some[:, :2] -= corner
+        return some * scale
+    boxes, ignored = moved(boxes), moved(ignored)
+    if random.random() < 0.5:
+        pixels = pixels[:, ::-1]
+        for some in (boxes, ignored):
+            some[:, 0] = CROP - some[:, 0] - some[:, 2]
+    return other_camera(pixels, random), boxes, ignored
+
+
+def other_camera(pixels, random):
+    """Another exposure, tone curve, sharpness and noise: one camera should not be learned."""
+    pixels = np.clip(pixels, 0, 1) ** math.exp(random.uniform(-0.4, 0.4))
+    pixels = pixels * random.uniform(0.6, 1.3) + random.uniform(-0.1, 0.1)
+    if random.random() < 0.3:
+        pixels = cv2.GaussianBlur(pixels, (0, 0), random.uniform(0.3, 0.9))
+    if random.random() < 0.5:
+        pixels = pixels + random.normal(0, random.uniform(0.001, 0.015), pixels.shape)
+    return np.clip(pixels, 0, 1).astype(np.float32)
+
+
+class Targets:
+    """What the network should answer for the boxes of a crop."""
+
+    def __init__(self, boxes, ignored):
+        cells = CROP // STRIDE
+        self.heat = np.zeros((cells, cells), np.float32)
+        self.weight = np.ones((cells, cells), np.float32)
+        self.places, self.offsets, self.sizes = [], [], []
+        ys, xs = np.mgrid[0:cells, 0:cells]
+        for x, y, w, h in ignored:
+            self.without(x, y, w, h)
+        for x, y, w, h in boxes:
+            cx, cy = (x + w / 2) / STRIDE, (y + h / 2) / STRIDE
+            column, row = int(math.floor(cx)), int(math.floor(cy))
+            if not (0 <= column < cells and 0 <= row < cells):
+                self.without(x, y, w, h)
+                continue
+            sigma_x, sigma_y = (max(MIN_SIGMA, side / STRIDE / 6) for side in (w, h))
+            peak = np.exp(-((xs - column) / sigma_x) ** 2 / 2 - ((ys - row) / sigma_y) ** 2 / 2)
+            self.heat = np.maximum(self.heat, peak.astype(np.float32))
+            self.places.append((row, column))
+            self.offsets.append((cx - column, cy - row))
+            self.sizes.append((math.log(max(w, 1)), math.log(max(h, 1))))
+
+    def without(self, x, y, w, h):
+        low = [max(0, int(v // STRIDE)) for v in (x, y)]
+        high = [max(0, int(math.ceil(v / STRIDE))) for v in (x + w, y + h)]
+        self.weight[low[1]:high[1], low[0]:high[0]] = 0
+
+
+def loss_of(network, batch):
+    pixels, targets = batch
+    logits, offset, size = network(torch.from_numpy(pixels))
+    logits = logits[:, 0]
+    heat = torch.from_numpy(np.stack([t.heat for t in targets]))
+    weight = torch.from_numpy(np.stack([t.weight for t in targets]))
+    # Penalty-reduced focal loss: Law and Deng 2018, equation 1, with alpha 2 and beta 4.
+    p = torch.sigmoid(logits)
+    at_peak = (heat == 1).float()
+    positive = at_peak * (1 - p) ** 2 * functional.logsigmoid(logits)
+    negative = (1 - at_peak) * (1 - heat) ** 4 * p ** 2 * functional.logsigmoid(-logits)
+    peaks = max(1.0, float(at_peak.sum()))
+    focal = -((positive + negative) * weight).sum() / peaks
+    index = [(n, *place) for n, t in enumerate(targets) for place in t.places]
+    if not index:
+        return focal
+    n, rows, columns = (torch.tensor(i) for i in zip(*index))
+    told_offset = torch.tensor([o for t in targets for o in t.offsets], dtype=torch.float32)
+    told_size = torch.tensor([s for t in targets for s in t.sizes], dtype=torch.float32)
+    return (focal + functional.l1_loss(offset[n, :, rows, columns], told_offset)
+            + functional.l1_loss(size[n, :, rows, columns], told_size))
+
+
+def batch_of(frames, random, size):
+    pixels, targets = [], []
+    for _ in range(size):
+        crop, boxes, ignored = crop_of(frames, random)
+        pixels.append(crop[None])
+        targets.append(Targets(boxes, ignored))
+    return np.stack(pixels), targets
+
+
+def train(network, frames, options):
+    random = np.random.default_rng(options.seed)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-4)
+    begun, step, shown, mean = time.process_time(), 0, 0.0, None
+    network.train()
+    while (spent := (time.process_time() - begun) / 60 / options.threads) < options.minutes:
+        share = spent / options.minutes
+        for group in optimiser.param_groups:  # a short rise, then half a cosine
+            group["lr"] = 2e-3 * min(1, (step + 1) / 50) * (0.5 + 0.5 * math.cos(math.pi * share))
+        loss = loss_of(network, batch_of(frames, random, options.batch))
+        optimiser.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(network.parameters(), 5)
+        optimiser.step()
+        step += 1
+        mean = loss.item() if mean is None else 0.98 * mean + 0.02 * loss.item()
+        if spent - shown >= 0.5:
+            shown = spent
+            print(f"{spent:5.1f} min  step {step:5d}  loss {mean:.3f}", flush=True)
+    network.eval()
+    return step
+
+
+def write(network, path):
+    name = os.path.splitext(path)[0]
+    unfinished = path + ".part"
+    torch.onnx.export(ForExport(network), torch.zeros(1, 1, 480, 640), unfinished, opset_version=11,
+                      input_names=["grey"], output_names=["heat", "offset", "size"])
+    description = {
+        "format": "airtruth detector model 1",
+        "input": {"layout": "grey", "scale": 1 / 255, "fit": "frame", "multiple_px": MULTIPLE},
+        "output": {"kind": "heat_map", "heat": "heat", "offset": "offset", "size": "size", "size_scale": "log"},
+        "classes": ["aircraft"],
+        "score_threshold": 0.1,
+        "confident_score": 0.4,
+        "nms_iou": 0.3,
+    }
+    with open(name + ".json", "w", encoding="utf-8") as out:
+        json.dump(description, out, indent=2)
+        out.write("\n")
+    os.replace(unfinished, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`")
+    parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it")
+    parser.add_argument("--minutes", type=float, default=12, help="processor time to train for, on each thread (default 12)")
+    parser.add_argument("--every", type=int, default=2, help="take every n-th frame (default 2): neighbours are alike")
+    parser.add_argument("--batch", type=int, default=24, help="crops in a step (default 24)")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    if not options.output.endswith(".onnx"):
+        parser.error(f"the output is {options.output}; expected a name that ends in .onnx")
+    torch.set_num_threads(options.threads)
+    cv2.setNumThreads(1)
+    torch.manual_seed(options.seed)
+    frames = Frames()
+    for folder in options.sets:
+        frames.add_set(folder, options.every)
+    network = Network()
+    print(f"{len(frames.pictures)} frames, {sum(map(len, frames.boxes))} boxes, "
+          f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
+    step = train(network, frames, options)
+    write(network, options.output)
+    print(f"{step} steps; wrote {options.output}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/classical/classical.h"
+
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "detection/classical/blobs.h"
+#include "detection/classical/scale_space.h"
+#include "detection/classical/turned.h"
+
+namespace airtruth::detection {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+
+// An elliptic Gaussian blob, as of a blurred aircraft.
+struct Target {
+  Pixel centre_px{0, 0};
+  double contrast = 0;  // grey levels at its middle; negative: darker
+  Pixel sigma_px{1.3, 0.9};
+};
+
+// A sky of 120 grey levels that rises downwards, with white noise.
+image::Picture sky(const std::vector<Target>& targets,
+                   double noise,
+                   std::mt19937& random,
+                   int width = kWidth,
+                   int height = kHeight) {
+  image::Picture picture = image::make_picture(width, height, {image::Chroma::kNone});
+  std::normal_distribution<double> normal(0, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double value = 120 + 0.05 * y + noise * normal(random);
+      for (const Target& target : targets) {
+        const double u = (x + 0.5 - target.centre_px.x()) / target.sigma_px.x();
+        const double v = (y + 0.5 - target.centre_px.y()) / target.sigma_px.y();
+        value += target.contrast * std::exp(-0.5 * (u * u + v * v));
+      }
+      picture.planes[0].row(y)[x] =
+          static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+    }
+  return picture;
+}
+
+SequenceInput sequence_of(int width = kWidth, int height = kHeight) {
+  return {"test", width, height, 30, lens::pinhole_from_vertical_fov(45, {width, height})};
+}
+
+bool hits(const Detection& detection, const Pixel& centre, double within_px = 3) {
+  const Box& box = detection.box_px;
+  return std::hypot(box.x + box.width / 2 - centre.x(), box.y + box.height / 2 - centre.y()) <=
+         within_px;
+}
+
+// A target that moves slowly over the sky as a shaking, turning camera sees it.
+class Flight {
+ public:
+  Flight(double contrast, double noise, double turn_deg, std::uint32_t seed = 1)
+      : contrast_(contrast), noise_(noise), turn_deg_(turn_deg), random_(seed) {}
+
+  // The next frame, with the turn that led to it.
+  FrameInput next() {
+    const Quaternion cam_from_world = attitude();
+    FrameInput frame;
+    frame.index = index_;
+    frame.time_s = static_cast<double>(index_) / 30;
+    if (index_ > 0) frame.turn = CameraTurn{cam_from_world * before_.conjugate(), 0.02};
+    before_ = cam_from_world;
+    // Where a still camera would see it: 0.55 and 0.30 px a frame.
+    const double k = static_cast<double>(index_);
+    const Pixel still(100.3 + 0.55 * k, 90.7 + 0.30 * k);
+    const auto seen = pixel_after_turn(sequence_.lens, cam_from_world, still);
+    target_px_ = seen.value_or(Pixel(-100, -100));
+    picture_ = sky({{target_px_, contrast_}}, noise_, random_);
+    frame.picture = &picture_;
+    ++index_;
+    return frame;
+  }
+  const Pixel& target_px() const { return target_px_; }
+  const SequenceInput& sequence() const { return sequence_; }
+
+ private:
+  // A steady turn with a shake of some pixels.
+  Quaternion attitude() const {
+    const double k = static_cast<double>(index_);
+    const double yaw = radians(turn_deg_ * (0.1 * k + std::sin(1.7 * k)));
+    const double pitch = radians(turn_deg_ * std::sin(1.1 * k));
+    const double roll = radians(turn_deg_ * std::sin(0.3 * k));
+    return Quaternion(Eigen::AngleAxisd(roll, Vector3::UnitZ()) *
+                      Eigen::AngleAxisd(pitch, Vector3::UnitX()) *
+                      Eigen::AngleAxisd(-yaw, Vector3::UnitY()));
+  }
+
+  double contrast_, noise_, turn_deg_;
+  std::mt19937 random_;
+  SequenceInput sequence_ = sequence_of();
+  std::int64_t index_ = 0;
+  Quaternion before_ = Quaternion::Identity();
+  Pixel target_px_{0, 0};
+  image::Picture picture_;
+};
+
+struct Score {
+  double hit = 0;           // share of frames whose strongest detection is the target
+  double false_alarms = 0;  // a frame, of at least `least`
+  double mean_score = 0;    // of the hits
+};
+
+// Over the frames 20 to 79, as in the table of docs/detection.md.
+Score score_of(
+    const char* name, double contrast, double turn_deg, double least = 0, std::uint32_t seed = 1) {
+  const auto detector = make_classical(name);
+  Flight flight(contrast, 2, turn_deg, seed);
+  detector->begin(flight.sequence());
+  Score score;
+  for (int k = 0; k < 80; ++k) {
+    const FrameInput frame = flight.next();
+    const auto detections = detector->detect(frame);
+    if (k < 20) continue;
+    const bool is_hit = !detections.empty() && hits(detections.front(), flight.target_px());
+    score.hit += is_hit ? 1.0 / 60 : 0;
+    if (is_hit) score.mean_score += detections.front().score;
+    for (const Detection& detection : detections)
+      if (!hits(detection, flight.target_px(), 8) && detection.score >= least)
+        score.false_alarms += 1.0 / 60;
+  }
+  score.mean_score /= std::max(1.0, std::round(score.hit * 60));
+  return score;
+}
+
+TEST(Explore, Table) {
+  for (const char* name : {"cmo", "cmo-hmm"})
+    for (const double turn : {0.0, 0.5})
+      for (const double contrast : {0, 3, 5, 8, 12, 20}) {
+        const Score s = score_of(name, -contrast, turn, 0);
+        std::printf("%s turn %.1f contrast %.0f hit %.2f fa %.2f score %.1f\n",
+                    name,
+                    turn,
+                    contrast,
+                    s.hit,
+                    s.false_alarms,
+                    s.mean_score);
+      }
+  std::mt19937 random(3);
+  const auto levels = scale_space(sky({}, 4, random, 640, 480));
+  for (const Level& level : levels) {
+    const cv::Mat inner = level.picture({8, 8, level.picture.cols - 16, level.picture.rows - 16});
+    cv::Scalar mean, sigma;
+    cv::meanStdDev(inner, mean, sigma);
+    std::printf("step %d sigma %.2f mean response %.2f ratio %.3f\n",
+                level.step,
+                sigma[0] / 16,
+                cv::mean(level.response)[0] / 16,
+                cv::mean(level.response)[0] / sigma[0]);
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::detection

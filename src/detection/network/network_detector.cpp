@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/network/network_detector.h"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "detection/network/model_description.h"
+#include "detection/network/network_child.h"
+#include "detection/network/network_input.h"
+#include "detection/network/network_output.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::detection {
+namespace {
+
+constexpr std::size_t kMostModelBytes = std::size_t{512} << 20;
+constexpr int kTrialPx = 256;  // side of the first input where the network takes frames of any size
+
+NetworkJob job_of(const ModelDescription& description, std::string onnx) {
+  return {description.input.channels(),
+          description.input.mean,
+          description.input.scale,
+          output_names(description),
+          std::move(onnx)};
+}
+
+// A grey input of the size that the network will see.
+Samples trial_of(const NetworkInput& input) {
+  const int multiple = input.multiple_px;
+  const int side = (kTrialPx + multiple - 1) / multiple * multiple;
+  Samples samples = input.fit == NetworkInput::Fit::kFrame
+                        ? make_samples(side, side, input.channels())
+                        : make_samples(input.width, input.height, input.channels());
+  std::ranges::fill(samples.values, std::uint8_t{128});
+  return samples;
+}
+
+bool is_cut(const Box& box, const Samples& piece, const Placement& placement) {
+  return (placement.cut_left && box.x <= 0) || (placement.cut_top && box.y <= 0) ||
+         (placement.cut_right && box.right() >= piece.width) ||
+         (placement.cut_bottom && box.bottom() >= piece.height);
+}
+
+class OnnxDetector : public Detector {
+ public:
+  OnnxDetector(std::filesystem::path model,
+               ModelDescription description,
+               NetworkJob job,
+               const NetworkOptions& options)
+      : model_(std::move(model)),
+        description_(std::move(description)),
+        job_(std::move(job)),
+        options_(options) {
+    try {
+      start();
+      const Samples trial = trial_of(description_.input);
+      decoded(child_->run(trial), description_, trial.width, trial.height);
+    } catch (const Error& error) {
+      throw Error(error.message(), {model_.string()});
+    }
+  }
+
+  void begin(const SequenceInput&) override {
+    if (child_) return;
+    try {
+      start();
+    } catch (const Error& error) {
+      throw DetectorFailed("cannot begin: " + model_.filename().string() + " " + error.message());
+    }
+  }
+
+  std::vector<Detection> detect(const FrameInput& frame) override {
+    if (!child_) throw DetectorFailed("has failed before");
+    try {
+      return found_in(*frame.picture);
+    } catch (const Error& error) {
+      child_.reset();
+      throw DetectorFailed(fmt::format(
+          "failed in frame {}: {} {}", frame.index, model_.filename().string(), error.message()));
+    }
+  }
+
+  bool needs_motion() const override { return false; }
+
+  std::optional<double> confident_score() const override { return description_.confident_score; }
+
+ private:
+  void start() { child_ = std::make_unique<NetworkChild>(job_, options_.threads, options_.stop); }
+
+  std::vector<Detection> found_in(const image::Picture& picture) {
+    std::vector<PieceDetection> all;
+    const std::vector<Piece> pieces = pieces_of(picture, description_.input);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const auto& [samples, placement] = pieces[i];
+      for (Detection& one :
+           decoded(child_->run(samples), description_, samples.width, samples.height)) {
+        const bool cut = is_cut(one.box_px, samples, placement);
+        one.box_px = in_frame(one.box_px, placement);
+        const double x = one.box_px.x + one.box_px.width / 2;
+        const double y = one.box_px.y + one.box_px.height / 2;
+        // What has its centre in the padding is no part of the frame.
+        if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
+        all.push_back({std::move(one), static_cast<int>(i), cut});
+      }
+    }
+    return without_duplicates(std::move(all), description_.nms_iou);
+  }
+
+  std::filesystem::path model_;
+  ModelDescription description_;
+  NetworkJob job_;
+  NetworkOptions options_;
+  std::unique_ptr<NetworkChild> child_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_network_detector(const std::filesystem::path& model,
+                                                const NetworkOptions& options) {
+  std::string onnx = read_file(model, kMostModelBytes);
+  if (onnx.empty()) throw Error("is empty; expected an ONNX network", {model.string()});
+  const std::filesystem::path json = description_path(model);
+  if (!std::filesystem::exists(json)) {
+    throw Error(fmt::format("has no description beside it; expected {}, as docs/formats/"
+                            "detector-model.md has it",
+                            json.filename().string()),
+                {model.string()});
+  }
+  ModelDescription description = read_description(json);
+  NetworkJob job = job_of(description, std::move(onnx));
+  return std::make_unique<OnnxDetector>(model, std::move(description), std::move(job), options);
+}
+
+}  // namespace airtruth::detection

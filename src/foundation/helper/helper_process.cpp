@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/helper/helper_process.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+
+extern "C" char** environ;
+
+namespace airtruth::helper {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kPollMs = 50;       // the interval at which a stop request is noticed
+constexpr int kLowestOwnFd = 10;  // above the standard streams, which may be closed
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { reset(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+  void reset(int fd = -1) {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = fd;
+  }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void fail_to_start(const HelperProgram& program,
+                                int error,
+                                const fs::path& path = {}) {
+  throw Error(std::string(program.what) + " cannot be started: " + std::strerror(error),
+              {path.string()});
+}
+
+// Moves a descriptor away from 0, 1 and 2, which the child's end of the socket is copied to.
+int moved_up(const HelperProgram& program, int fd) {
+  const int moved = ::fcntl(fd, F_DUPFD_CLOEXEC, kLowestOwnFd);
+  const int error = errno;
+  ::close(fd);
+  if (moved < 0) fail_to_start(program, error);
+  return moved;
+}
+
+class SpawnSetup {
+ public:
+  explicit SpawnSetup(int socket) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawnattr_init(&attributes_);
+    posix_spawn_file_actions_adddup2(&actions_, socket, 0);
+    posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, 3);
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    sigaddset(&blocked, SIGINT);
+    sigset_t defaults;
+    sigfillset(&defaults);
+    posix_spawnattr_setsigmask(&attributes_, &blocked);
+    posix_spawnattr_setsigdefault(&attributes_, &defaults);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~SpawnSetup() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSetup(const SpawnSetup&) = delete;
+  SpawnSetup& operator=(const SpawnSetup&) = delete;
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+// The path of the helper where a shared library holds this code, in PREFIX/lib or, as on Debian, in
+// PREFIX/lib/x86_64-linux-gnu. It is empty in a program, whose name need not be a path.
+std::vector<fs::path> beside_library(const char* name) {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&path_of), &info) == 0) return {};
+  const fs::path library = info.dli_fname;
+  if (!library.is_absolute()) return {};
+  const fs::path folder = library.parent_path().lexically_normal();
+  const fs::path place = fs::path("libexec") / "airtruth" / name;
+  return {folder.parent_path() / place, folder.parent_path().parent_path() / place};
+}
+
+bool is_program(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
+fs::path path_of(const HelperProgram& program) {
+  if (const char* stated = std::getenv(program.variable); stated != nullptr && *stated != '\0') {
+    if (!is_program(stated))
+      throw Error(std::string("is what ") + program.variable + " names, but no program", {stated});
+    return stated;
+  }
+  std::error_code ignored;
+  const fs::path own = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  std::vector<fs::path> candidates = beside_library(program.name);
+  candidates.insert(
+      candidates.begin(),
+      {own / program.name, own.parent_path() / "libexec" / "airtruth" / program.name});
+  candidates.push_back(fs::path(AIRTRUTH_LIBEXEC_FOLDER) / program.name);
+  for (const fs::path& candidate : candidates)
+    if (is_program(candidate)) return candidate;
+  throw Error(std::string("the program ") + program.name + ", " + program.what +
+              ", is not installed; install airtruth whole, or set " + program.variable + " to it");
+}
+
+HelperProcess::HelperProcess(const HelperProgram& program,
+                             std::stop_token stop,
+                             const std::vector<std::string>& arguments)
+    : stop_(std::move(stop)) {
+  std::array<int, 2> sockets{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
+    fail_to_start(program, errno);
+  Descriptor ours;
+  Descriptor theirs;
+  try {
+    ours.reset(moved_up(program, sockets[0]));
+  } catch (...) {
+    ::close(sockets[1]);
+    throw;
+  }
+  theirs.reset(moved_up(program, sockets[1]));
+  const std::string path = path_of(program).string();
+  std::vector<std::string> words = {program.name, std::to_string(::getpid())};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const SpawnSetup setup(theirs.get());
+  const int failed = ::posix_spawn(
+      &process_, path.c_str(), setup.actions(), setup.attributes(), pointers.data(), environ);
+  if (failed != 0) {
+    process_ = -1;
+    fail_to_start(program, failed, path);
+  }
+  socket_ = ours.release();
+}
+
+void HelperProcess::set_deadline(double seconds, std::string late) {
+  deadline_ = Clock::now() +
+              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  late_ = std::move(late);
+}
+
+int HelperProcess::end() {
+  if (process_ < 0) return 0;
+  ::close(socket_);
+  socket_ = -1;
+  ::kill(process_, SIGKILL);
+  int status = 0;
+  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+  return status;
+}
+
+template <typename Operation>
+std::size_t HelperProcess::transfer(short event, const Operation& operation) {
+  for (;;) {
+    if (stop_.stop_requested()) throw Interrupted();
+    if (Clock::now() > deadline_) throw Error(late_);
+    pollfd wanted{socket_, event, 0};
+    const int ready = ::poll(&wanted, 1, kPollMs);
+    if (ready <= 0) continue;  // a timeout or a signal: check for a stop again
+    const auto done = operation();
+    if (done >= 0) return static_cast<std::size_t>(done);
+    if (errno != EAGAIN && errno != EINTR) return 0;
+  }
+}
+
+std::size_t HelperProcess::read_some(char* data, std::size_t size) {
+  return transfer(POLLIN, [&] { return ::recv(socket_, data, size, MSG_DONTWAIT); });
+}
+
+std::size_t HelperProcess::write_some(const char* data, std::size_t size) {
+  return transfer(POLLOUT,
+                  [&] { return ::send(socket_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
+}
+
+std::string end_in_words(int status) {
+  if (!WIFSIGNALED(status))
+    return "its reader ended with code " + std::to_string(WEXITSTATUS(status));
+  const int signal = WTERMSIG(status);
+  if (signal == SIGXCPU || signal == SIGKILL)
+    return "its reader took too much time or memory and was ended";
+  return std::string("its reader broke on it (") + ::strsignal(signal) + ")";
+}
+
+}  // namespace airtruth::helper

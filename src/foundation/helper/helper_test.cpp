@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/helper/confine.h"
+#include "foundation/helper/helper_process.h"
+#include "foundation/helper/wire.h"
+
+namespace airtruth::helper {
+namespace {
+
+// Each bit is something that a confined process managed to do.
+int what_is_possible() {
+  int possible = 0;
+  if (::open("/etc/passwd", O_RDONLY) >= 0) possible |= 1;
+  if (::open("/tmp/airtruth_confined", O_WRONLY | O_CREAT, 0600) >= 0) possible |= 2;
+  if (::socket(AF_INET, SOCK_STREAM, 0) >= 0) possible |= 4;
+  if (::fork() >= 0) possible |= 8;
+  ::execl("/bin/true", "true", nullptr);  // on success the code is 0, which no bit says
+  if (::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
+      MAP_FAILED)
+    possible |= 16;
+  if (::kill(::getppid(), 0) == 0) possible |= 32;
+  // What it needs is there: memory.
+  void* const memory =
+      ::mmap(nullptr, 1 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return memory == MAP_FAILED ? 128 : possible | 64;
+}
+
+int code_of_child(const std::function<int()>& work) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(work());
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Confine, LeavesNothingButMemory) {
+  EXPECT_EQ(code_of_child([] {
+              confine({});
+              return what_is_possible();
+            }),
+            64);
+}
+
+TEST(Confine, HoldsForAThreadThatIsThereAlready) {
+  EXPECT_EQ(code_of_child([] {
+              std::mutex mutex;
+              std::condition_variable changed;
+              bool confined = false;
+              int possible = 0;
+              std::thread worker([&] {
+                std::unique_lock lock(mutex);
+                changed.wait(lock, [&] { return confined; });
+                possible = what_is_possible();
+              });
+              confine({});
+              {
+                const std::lock_guard lock(mutex);
+                confined = true;
+              }
+              changed.notify_one();
+              worker.join();
+              return possible;
+            }),
+            64);
+}
+
+TEST(Wire, BytesThatEndEarlyAreRefused) {
+  WireWriter out;
+  out.put(1.5);
+  out.put_text("words");
+  const std::string bytes = out.take();
+  WireReader in(bytes);
+  EXPECT_EQ(in.get<double>(), 1.5);
+  EXPECT_EQ(in.get_text(5), "words");
+  EXPECT_NO_THROW(in.expect_end());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    WireReader cut(std::string_view(bytes).substr(0, size));
+    EXPECT_THROW(
+        {
+          cut.get<double>();
+          cut.get_text(5);
+        },
+        Error);
+  }
+  WireReader longer(bytes);
+  longer.get<double>();
+  EXPECT_THROW(longer.get_text(4), Error);
+}
+
+TEST(Wire, AnErrorKeepsItsPlaceAndItsOneLine) {
+  const Error error = error_from_bytes(bytes_of(Error("two\nlines", {"a.obj", 3})));
+  EXPECT_EQ(std::string(error.what()), "a.obj:3: two?lines");
+}
+
+TEST(HelperProcess, AMissingProgramIsOneLine) {
+  ::setenv("AIRTRUTH_NO_HELPER", "/nowhere/helper", 1);
+  try {
+    path_of({"no-helper", "AIRTRUTH_NO_HELPER", "the reader of nothing"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "/nowhere/helper: is what AIRTRUTH_NO_HELPER names, but no program");
+  }
+  ::unsetenv("AIRTRUTH_NO_HELPER");
+  EXPECT_THROW(path_of({"no-helper", "AIRTRUTH_NO_HELPER", "the reader of nothing"}), Error);
+}
+
+TEST(HelperProcess, EndsInWords) {
+  EXPECT_EQ(end_in_words(SIGSEGV), std::string("its reader broke on it (Segmentation fault)"));
+  EXPECT_EQ(end_in_words(SIGKILL), "its reader took too much time or memory and was ended");
+  EXPECT_EQ(end_in_words(3 << 8), "its reader ended with code 3");
+}
+
+}  // namespace
+}  // namespace airtruth::helper
