@@ -26,6 +26,7 @@ name = "<script><b onclick=x>set"
 name = "sky"
 flight = { seed = 3, frame_count = 6, width = 160, height = 120 }
 lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -150], velocity_ned_mps = [20, 0, 0] }
 [[background]]
 name = "more & <i>more"
 flight = { seed = 4, frame_count = 6, width = 160, height = 120 }
@@ -36,6 +37,8 @@ aircraft = "738/738-Ryanair"
 [[aircraft]]
 name = "c172"
 aircraft = "c172/news"
+[truth]
+volumes = ["nmac", "f3442"]
 [[trajectory]]
 name = "near"
 waypoints_ned_m = [[150, -20, -160], [150, 60, -160]]
@@ -94,6 +97,28 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   await set('find', 'FAR');
   out.far = names();
   await set('find', '');
+  await set('meeting', 'crossing from left');
+  out.crossing = names();
+  await set('violates', 'nmac');
+  out.crossing_nmac = names();
+  await set('violates', '');
+  await set('meeting', '');
+  await set('closest-to', '220');
+  out.closest = names();
+  await set('first-m-from', '220');
+  out.contradiction = names();
+  await set('first-m-from', '');
+  await set('closest-to', '');
+  const chartOf = (plot) => frame.contentWindow.eval('Chart').getChart(page.querySelectorAll('.sequence .plot canvas')[plot]);
+  const plan = () => [chartOf(0).scales.x.options.title.text, chartOf(0).scales.y.options.title.text];
+  out.north_up = plan();
+  await set('plan', 'course');
+  out.course_up = plan();
+  await set('plan', 'north');
+  out.to_closest = chartOf(2).scales.closest.options.title.text;
+  out.facts = page.querySelectorAll('.sequence .encounters tbody tr').length;
+  await set('sort', 'closest_m');
+  out.by_closest = names();
   await set('sort', 'nearest');
   out.nearest = names();
   await set('descending', true);
@@ -122,7 +147,8 @@ const realPause = async () => { await fetch('/pause'); await wait(1); };
   const card = page.querySelector('.sequence');
   const slider = card.querySelector('input[type=range]');
   const pair = () => [Number(/frame (\\d+)/.exec(card.querySelector('.film .note').textContent)[1]), numberOn(card.querySelector('.film canvas'))];
-  const out = { summary: page.getElementById('summary').textContent, most: page.getElementById('most').textContent };
+  const out = { summary: page.getElementById('summary').textContent, most: page.getElementById('most').textContent,
+    encounters: page.querySelectorAll('#of-encounters, .encounters, option[data-encounters], [data-plot=meetings]').length };
   out.pairs = [pair()];
   for (const value of [0, 1, 7, slider.max]) {
     slider.value = value;
@@ -210,6 +236,7 @@ def played(airtruth, browser, root):
             ("negative sequences", len(empty), 2),
             ("with an intruder and without", (len(negatives.get("some", [])), sorted(negatives.get("none", []))), (2, sorted(empty))),
             ("the summary", "negatives: 2 sequences and " in negatives.get("summary", ""), True),
+            ("encounters where nothing is known of any", (numbered["encounters"], negatives["encounters"] > 0), (0, True)),
             ("the file's picture", negatives.get("video"), [160, 120, 1])):
         if got != expected:
             faults.append(f"{what}: {got!r}; expected {expected!r}")
@@ -278,7 +305,7 @@ def main():
             expect("title", out["title"], "<script><b onclick=x>set")
             expect("sequences", len(out["all"]), 8)
             expect("count", out["count"], "8 of 8")
-            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (8 + 4 * 8, True))
+            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 8, True))
             expect("films", out["films"], 8)
             expect("charts with bins that have no label", out["unlabelled"], [])
             expect("markup made of names", out["injected"], 0)
@@ -287,6 +314,15 @@ def main():
             expect("by background", len({n.split("> ")[1][:3] for n in out["background"]}) and len(out["background"]), 4)
             expect("by range", sorted(out["near"]), sorted(n for n in out["all"] if " near " in n))
             expect("by name", sorted(out["far"]), sorted(n for n in out["all"] if " far " in n))
+            expect("crossing", (len(out["crossing"]), all("<b> sky" not in n and "sky" in n for n in out["crossing"])), (4, True))
+            expect("crossing, near collisions", sorted(out["crossing_nmac"]), sorted(n for n in out["crossing"] if " near " in n))
+            expect("closest approach", sorted(out["closest"]), sorted(n for n in out["all"] if " near " in n))
+            expect("no encounter is both", out["contradiction"], [])
+            expect("plans", (out["north_up"], out["course_up"]),
+                   (["east, m", "north, m"], ["right of the own course, m", "along the own course, m"]))
+            expect("time axis", out["to_closest"], "seconds to the closest approach")
+            expect("rows of encounters", out["facts"], 8)
+            expect("by closest approach", [" near " in n for n in out["by_closest"]], [True] * 4 + [False] * 4)
             expect("nearest first", [" near " in n for n in out["nearest"]], [True] * 4 + [False] * 4)
             expect("farthest first", [" far " in n for n in out["farthest"]], [True] * 4 + [False] * 4)
             if faults:

@@ -67,6 +67,7 @@ struct Import {
   std::string format;
   std::string size;
   std::vector<std::string> videos;
+  std::vector<std::string> classes;
   dataset::ImportOptions options;
 };
 
@@ -82,6 +83,8 @@ void run_import(Import arguments, Context& context) {
     else
       options.videos[given.substr(0, equals)] = given.substr(equals + 1);
   }
+  for (const std::string& given : arguments.classes)
+    options.classes.push_back(dataset::object_class_from(given));
   options.warn = console.warn();
   const dataset::ImportSummary summary =
       dataset::import_set(arguments.source, arguments.out, options);
@@ -180,6 +183,12 @@ void add_import(CLI::App& group, Context& context) {
       ->check(CLI::Range(0, 1));
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
+  command->add_option(
+      "--class",
+      in->classes,
+      "What the objects are, where they are no aircraft: bird, multirotor, balloon, "
+      "glint, dirt, insect, or ignore for regions that count neither way; "
+      "CLIP=CLASS for clips whose name fits (* and ?)");
   command->callback([in, &context] { run_import(*in, context); });
 }
 

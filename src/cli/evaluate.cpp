@@ -8,6 +8,8 @@
 #include "benchmark/experiment/evaluation_page.h"
 #include "benchmark/experiment/figures.h"
 #include "cli/commands.h"
+#include "cli/evaluate_detections.h"
+#include "detection/detection_page/detection_page.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 
@@ -25,6 +27,7 @@ struct Evaluate {
   bool no_page = false;
   std::string figures;
   experiment::AssessOptions options;
+  EvaluateDetections detections;
 };
 
 std::string number(const std::optional<double>& value, int digits) {
@@ -123,7 +126,7 @@ void print_agreement(const experiment::Agreement& agreement,
                              number(agreement.tau, 3)));
 }
 
-void run_evaluate(Evaluate arguments, Context& context) {
+void set_options(Evaluate& arguments, Context& context) {
   Console& console = context.console();
   experiment::AssessOptions& options = arguments.options;
   if (!arguments.eao_range.empty()) {
@@ -132,16 +135,25 @@ void run_evaluate(Evaluate arguments, Context& context) {
           "--eao-range {} {} goes backward", arguments.eao_range[0], arguments.eao_range[1]));
     options.eao_range = {arguments.eao_range[0], arguments.eao_range[1]};
   }
-  if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
-  if (!arguments.against.empty()) experiment::check_evaluation(arguments.against);
-  check_output_folder(arguments.out);
   options.with_film = !arguments.no_page;
   options.warn = console.warn();
   options.stop = context.stop;
-  options.progress = [&](std::int64_t done, std::int64_t total) {
+  options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("reading the videos", done, total, "sequences");
   };
-  const std::vector<fs::path> results(arguments.results.begin(), arguments.results.end());
+  detection::AssessOptions& detections = arguments.detections.options;
+  detections.ignore = arguments.detections.ignore;
+  detections.with_film = options.with_film;
+  detections.jobs = options.jobs;
+  detections.warn = options.warn;
+  detections.stop = options.stop;
+  detections.progress = options.progress;
+}
+
+void evaluate_trackers(const Evaluate& arguments,
+                       const std::vector<fs::path>& results,
+                       Console& console) {
+  const experiment::AssessOptions& options = arguments.options;
   const experiment::Assessment assessment = experiment::assess(arguments.set, results, options);
   std::optional<experiment::Agreement> agreement;
   if (!arguments.against.empty()) agreement = experiment::agreement(assessment, arguments.against);
@@ -154,6 +166,39 @@ void run_evaluate(Evaluate arguments, Context& context) {
   print_vot(assessment, console);
   print_comparison(assessment, console);
   if (agreement) print_agreement(*agreement, arguments.against, console);
+}
+
+void evaluate_detectors(const Evaluate& arguments,
+                        const std::vector<fs::path>& results,
+                        Console& console) {
+  const detection::Assessment assessment =
+      detection::assess(arguments.set, results, arguments.detections.options);
+  detection::write_tables(assessment, arguments.out);
+  if (arguments.options.with_film)
+    detection::write_page(assessment,
+                          arguments.out,
+                          {.jobs = arguments.options.jobs,
+                           .progress = arguments.options.progress,
+                           .stop = arguments.options.stop});
+  if (!arguments.figures.empty())
+    detection::write_figures(assessment, arguments.out, arguments.figures);
+  console.end_progress();
+  print_detections(assessment, console);
+}
+
+void run_evaluate(Evaluate arguments, Context& context) {
+  if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
+  if (!arguments.against.empty()) experiment::check_evaluation(arguments.against);
+  check_output_folder(arguments.out);
+  set_options(arguments, context);
+  std::vector<fs::path> of_trackers;
+  std::vector<fs::path> of_detectors;
+  for (const std::string& results : arguments.results)
+    (arguments.detections.holds(results) ? of_detectors : of_trackers).emplace_back(results);
+  if (!arguments.against.empty() && of_trackers.empty())
+    throw Error("--against compares rankings of trackers, and there are no trackers' results");
+  if (!of_detectors.empty()) evaluate_detectors(arguments, of_detectors, context.console());
+  if (!of_trackers.empty()) evaluate_trackers(arguments, of_trackers, context.console());
 }
 
 // The options that change what is measured.
@@ -180,23 +225,30 @@ void add_measure_options(CLI::App* command, Evaluate& arguments) {
 
 void add_evaluate(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Evaluate>();
-  auto* command = app.add_subcommand("evaluate", "Score trackers' results against a data set");
+  auto* command =
+      app.add_subcommand("evaluate", "Score trackers' and detectors' results against a data set");
   command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
-  command->add_option("RESULTS", arguments->results, "Folders of results, one for each tracker")
+  command
+      ->add_option("RESULTS",
+                   arguments->results,
+                   "Folders of results, one for each tracker or detector; "
+                   "a detector's may be a COCO results file")
       ->required();
   command
       ->add_option(
-          "--out,-o", arguments->out, "Folder for evaluation.json, the tables and report.html")
+          "--out,-o",
+          arguments->out,
+          "Folder for evaluation.json, detection.json, the tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
+  add_detection_options(*command, arguments->detections);
   command->add_option("--against",
                       arguments->against,
                       "Another evaluation.json: how far do the two rankings agree?");
   command->add_option(
       "--figures", arguments->figures, "Also the plots as files for a paper: png, pdf or svg");
-  command->add_flag("--no-page",
-                    arguments->no_page,
-                    "No report.html, and no results by contrast: videos are not read");
+  command->add_flag(
+      "--no-page", arguments->no_page, "No pages, and no results by contrast: videos are not read");
   command->add_option("--jobs,-j", arguments->options.jobs, "Videos read at a time")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &context] { run_evaluate(*arguments, context); });

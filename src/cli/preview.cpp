@@ -20,6 +20,7 @@ struct PreviewArguments {
   std::string scene;
   std::string out = "preview.png";
   bool watch = false;
+  bool motion = false;
 };
 
 void draw(const PreviewArguments& arguments, Context& context) {
@@ -27,7 +28,16 @@ void draw(const PreviewArguments& arguments, Context& context) {
   sequence::Options options;
   options.warn = console.warn();
   options.stop = context.stop;
-  const auto made = sequence::preview(scene::read_scene(arguments.scene), options);
+  const scene::Scene scene = scene::read_scene(arguments.scene);
+  if (arguments.motion) {
+    options.progress = [&console](const sequence::Progress& progress) {
+      console.progress(
+          "measuring the camera's motion", progress.frames_done, progress.frames_total);
+    };
+    sequence::measure_ahead(scene, options);
+    console.end_progress();
+  }
+  const auto made = sequence::preview(scene, options);
   video::write_still(arguments.out, made.picture, Flush::kLater);
   std::string text = sequence::table_text(made.rows);
   for (const std::string& line : made.approaches) text += line + "\n";
@@ -78,6 +88,12 @@ void add_preview(CLI::App& app, Context& context) {
       "-o,--out",
       arguments->out,
       "The picture to write (.png or .jpg), replaced where it exists [preview.png]");
+  command->add_flag(
+      "--motion",
+      arguments->motion,
+      "Measure the camera's motion first, a pass over the clip that is kept for later, "
+      "and show each moment as it will be rendered. Without it a motion that is kept "
+      "is used, and else none is shown");
   command->add_flag("--watch", arguments->watch, "Draw anew whenever the scene file is saved");
   command->callback([arguments, &context] { preview(*arguments, context); });
 }

@@ -31,7 +31,7 @@ void new_scene(const NewArguments& arguments, Context& context) {
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("looking for the lens", done, total);
+    console.progress("looking for lens and motion", done, total);
   };
   const std::string text = sequence::new_scene(arguments.video, options);
   console.end_progress();

@@ -10,9 +10,11 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
+#include "foundation/base/pattern.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -109,6 +111,25 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   return unique;
 }
 
+// Gives the objects of each clip their class.
+void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) {
+  for (const ImportOptions::ObjectClass& given : options.classes) {
+    bool fits_any = false;
+    for (exchange::Clip& clip : clips) {
+      if (!matches(given.pattern, clip.name)) continue;
+      fits_any = true;
+      for (exchange::LabelledFrame& frame : clip.frames)
+        for (exchange::Label& label : frame.labels) {
+          label.object_class = given.name;
+          if (label.category == options.read.category) label.category = given.name;
+        }
+    }
+    if (!fits_any)
+      throw Error("--class '" + given.pattern + "=" + given.name + "' fits no clip" +
+                  (clips.empty() ? "" : " (one is '" + clips.front().name + "')"));
+  }
+}
+
 // Gives each clip its video, its numbers of frames and a name of its own.
 void complete(std::vector<exchange::Clip>& clips,
               const fs::path& source,
@@ -143,6 +164,20 @@ Json write_clip(const exchange::Clip& clip, const ImportOptions& options, const 
 
 }  // namespace
 
+ImportOptions::ObjectClass object_class_from(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  ImportOptions::ObjectClass given =
+      equals == std::string::npos
+          ? ImportOptions::ObjectClass{"*", text}
+          : ImportOptions::ObjectClass{text.substr(0, equals), text.substr(equals + 1)};
+  if (!annotation::is_object_class(given.name) && given.name != "ignore")
+    throw Error(
+        "--class is '" + text +
+        "'; expected aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore, or "
+        "CLIP=CLASS");
+  return given;
+}
+
 ImportSummary import_set(const fs::path& source,
                          const fs::path& out,
                          const ImportOptions& options) {
@@ -157,6 +192,7 @@ ImportSummary import_set(const fs::path& source,
   std::vector<exchange::Clip> clips =
       exchange::read_clips(options.format, source, read, options.warn);
   complete(clips, source, options);
+  classify(clips, options);
   // All input is read before the first file is written.
   const fs::path sequences = out / "sequences";
   const Layout layout = layout_for(std::ssize(clips), options.max_in_a_folder);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "dataset/sequences/layout.h"
 #include "foundation/base/log.h"
@@ -19,6 +20,14 @@ struct ImportOptions {
   // Maps a clip's name to its video, for videos that do not lie beside the labels. The name ""
   // stands for the only clip.
   std::map<std::string, fs::path> videos;
+  // The class of the objects of clips whose name fits a pattern (foundation/base/pattern.h); the
+  // last that fits counts. Clips without one hold aircraft. Objects without a category take the
+  // class as theirs.
+  struct ObjectClass {
+    std::string pattern;
+    std::string name;
+  };
+  std::vector<ObjectClass> classes;
   // More clips lie in numbered folders with as many each (dataset/sequences/layout.h).
   std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
   Warn warn;
@@ -30,10 +39,14 @@ struct ImportSummary {
   std::int64_t labels = 0;
 };
 
+// "bird" is the class of all clips ({"*", "bird"}), and "V_BIRD*=bird" that of those whose name
+// fits. Throws Error for a class that is none.
+ImportOptions::ObjectClass object_class_from(const std::string& text);
+
 // Reads labelled video of another format and writes out/sequences/NAME/labels.jsonl and
 // sequence.json (docs/formats/labels.md). `overlay`, `dataset export` and the evaluation read these
 // like rendered sequences. The videos stay where they are. Throws Error where `out` exists and is
-// not empty.
+// not empty, for a class that is none, and for a pattern that fits no clip.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
 }  // namespace airtruth::dataset

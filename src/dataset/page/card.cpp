@@ -125,6 +125,22 @@ std::string labels_text(const std::vector<Portrait>& portraits, const Scenes& sc
       with_masks == 0 ? "none" : fmt::format("in {} of {} sequences", with_masks, scenes.size()));
 }
 
+void add_encounters(const std::vector<Portrait>& portraits, const Scenes& scenes, Card& card) {
+  std::vector<sequence::EncounterRecord> records;
+  for (const Portrait& portrait : portraits)
+    for (const Encountered& one : portrait.encounters) records.push_back(one.record);
+  std::vector<std::string> volumes;
+  const auto add = [&](const std::string& name) {
+    if (std::find(volumes.begin(), volumes.end(), name) == volumes.end()) volumes.push_back(name);
+  };
+  for (const Scene& s : scenes) {
+    for (const std::string& name : s.truth.volumes) add(name);
+    for (const scene::TruthVolume& volume : s.truth.own_volumes) add(volume.name);
+  }
+  const std::string text = encounters_text(records, volumes);
+  if (!text.empty()) card.emplace_back("encounters", text);
+}
+
 }  // namespace
 
 std::string camera_sentence(const std::vector<Scene>& scenes) {
@@ -182,6 +198,7 @@ Card card_of(const std::filesystem::path& set, const std::vector<Portrait>& port
   card.emplace_back("rendering", rendering_text(scenes));
   card.emplace_back("aircraft", aircraft_text(scenes));
   card.emplace_back("labels", labels_text(portraits, scenes));
+  add_encounters(portraits, scenes, card);
   card.emplace_back("on the intruder's light", camera_sentence(scenes));
   card.emplace_back("the camera's motion", motion_sentence(scenes));
   return card;

@@ -17,6 +17,12 @@ namespace {
 
 std::array<double, 3> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
+std::optional<double> closest_s(const std::vector<Encountered>& encounters, const std::string& id) {
+  for (const Encountered& one : encounters)
+    if (one.record.id == id && one.record.closest) return one.record.closest->time_s;
+  return std::nullopt;
+}
+
 Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intruder& intruder) {
   Portrait::Point point;
   point.frame = frame.frame;
@@ -81,7 +87,10 @@ void add_series(const sequence::Finished& finished, Portrait& portrait) {
     for (const annotation::Intruder& intruder : frames[i].intruders) {
       const auto [place, is_new] = places.emplace(intruder.id, portrait.intruders.size());
       if (is_new) portrait.intruders.push_back({intruder.id, intruder.aircraft, {}});
-      portrait.intruders[place->second].points.push_back(point_of(frames[i], intruder));
+      Portrait::Point point = point_of(frames[i], intruder);
+      if (const auto closest = closest_s(portrait.encounters, intruder.id))
+        point.to_closest_s = *closest - point.time_s;
+      portrait.intruders[place->second].points.push_back(point);
     }
     if (finished.scene)
       portrait.camera.push_back(camera_of(frames[i], portrait.width, portrait.height));
@@ -116,6 +125,7 @@ Portrait portrait_of(const LabelledSet& set,
     portrait.motion_model = enum_name(scene.motion.model);
     portrait.scene = scene;
   }
+  portrait.encounters = encounters_of(finished);
   count(finished, portrait);
   add_series(finished, portrait);
   portrait.ids = sequence::intruder_ids(finished.truth);

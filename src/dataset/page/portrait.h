@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
+#include "dataset/page/encounters.h"
 #include "dataset/page/film.h"
 #include "world/scene/scene.h"
 
@@ -29,6 +30,8 @@ struct Portrait {
     std::int64_t frame = 0;
     double time_s = 0;
     std::optional<double> range_m, azimuth_deg, elevation_deg;
+    // Negative after the closest approach; empty where the sequence has no record of it.
+    std::optional<double> to_closest_s;
     std::optional<std::array<double, 3>> position_ned_m;
     // Size of the covered box, or of the visible box where there is no covered one.
     std::optional<double> width_px, height_px;
@@ -59,6 +62,8 @@ struct Portrait {
   std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
   std::vector<Intruder> intruders;
   std::vector<Camera> camera;
+  // In the order of the scene; empty for an imported clip and an older sequence.
+  std::vector<Encountered> encounters;
   // Frames with the state visible, hidden, outside, behind and ended, in this order.
   std::array<std::int64_t, 5> frames_by_state{};
   // Number of visible states that have a covered box.

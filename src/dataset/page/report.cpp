@@ -47,7 +47,7 @@ Json rounded(const std::optional<double>& value, double unit) {
 // points.
 Json series_of(const Portrait::Intruder& intruder) {
   Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
-       east = frame, down = frame, state = frame;
+       east = frame, down = frame, state = frame, to_closest = frame;
   for (const Portrait::Point& p : intruder.points) {
     frame.push_back(p.frame);
     range.push_back(rounded(p.range_m, 0.1));
@@ -60,6 +60,7 @@ Json series_of(const Portrait::Intruder& intruder) {
     east.push_back(at(1));
     down.push_back(at(2));
     state.push_back(p.state);
+    to_closest.push_back(rounded(p.to_closest_s, 0.001));
   }
   return {{"id", intruder.id},
           {"aircraft", intruder.aircraft},
@@ -70,7 +71,22 @@ Json series_of(const Portrait::Intruder& intruder) {
           {"north_m", north},
           {"east_m", east},
           {"down_m", down},
-          {"state", state}};
+          {"state", state},
+          {"to_closest_s", to_closest}};
+}
+
+// The records as sequence.json has them, with the places of the closest approach.
+Json encounters_json(const Portrait& portrait) {
+  std::vector<sequence::EncounterRecord> records;
+  for (const Encountered& one : portrait.encounters) records.push_back(one.record);
+  Json list = sequence::json_of(records);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto& closest = portrait.encounters[i].closest;
+    if (!closest) continue;
+    list[i]["own_ned_m"] = closest->own_ned_m;
+    list[i]["intruder_ned_m"] = closest->intruder_ned_m;
+  }
+  return list;
 }
 
 Json camera_of(const Portrait& portrait) {
@@ -158,6 +174,7 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
                                              : Json()},
           {"intruders", intruders_json(portrait)},
           {"camera", camera_of(portrait)},
+          {"encounters", encounters_json(portrait)},
           {"files", files}};
 }
 
@@ -268,7 +285,7 @@ void write_report(const fs::path& set, const fs::path& out, const ReportOptions&
                            html::page_body(),
                            data.dump(-1, ' ', false, Json::error_handler_t::replace),
                            pictures_of(shown),
-                           html::page_js()));
+                           std::string(html::encounters_js()) + std::string(html::page_js())));
 }
 
 }  // namespace airtruth::dataset

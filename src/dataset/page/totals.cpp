@@ -32,6 +32,35 @@ plot::Plot bars(const Histogram& histogram) {
   return bars(names, histogram.counts);
 }
 
+// Every name of the enum in its order, and those that occur without a value.
+template <typename Enum>
+plot::Plot bars(const std::map<std::string, std::int64_t>& counts, const std::string& without) {
+  std::vector<std::string> names = all_enum_names<Enum>();
+  if (counts.contains(without)) names.push_back(without);
+  std::vector<std::int64_t> heights;
+  for (const std::string& name : names)
+    heights.push_back(counts.contains(name) ? counts.at(name) : 0);
+  return bars(names, heights);
+}
+
+constexpr const char* kNoMeeting = "hovering";
+constexpr const char* kNeverSeen = "never seen";
+
+template <typename Enum>
+std::string name_or(const std::optional<Enum>& value, const char* without) {
+  return value ? enum_name(*value) : without;
+}
+
+void add_encounter(const sequence::EncounterRecord& record, Totals& totals) {
+  ++totals.encounters;
+  ++totals.meetings[name_or(record.meeting, kNoMeeting)];
+  ++totals.horizons_when_first_seen[name_or(record.horizon_when_first_seen, kNeverSeen)];
+  if (record.closest) totals.closest_m.add(record.closest->distance_m);
+  if (!record.first_seen) return;
+  totals.first_seen_m.add(record.first_seen->range_m);
+  if (record.closest) totals.first_seen_s.add(record.closest->time_s - record.first_seen->time_s);
+}
+
 }  // namespace
 
 void Histogram::add(double value) {
@@ -53,8 +82,10 @@ void Totals::add(const Portrait& portrait) {
       if (!point.width_px) continue;
       size_px.add(std::max(*point.width_px, *point.height_px));
       if (point.range_m) range_m.add(*point.range_m);
+      if (point.to_closest_s) to_closest_s.add(*point.to_closest_s);
       if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
     }
+  for (const Encountered& one : portrait.encounters) add_encounter(one.record, *this);
   for (const double value : portrait.film.contrasts) contrast.add(value);
 }
 
@@ -66,7 +97,7 @@ std::vector<OverviewPlot> overview_plots(const Totals& totals) {
     boxes.push_back(count);
   }
   const std::int64_t without = totals.frames - totals.frames_with_intruder;
-  return {
+  std::vector<OverviewPlot> plots = {
       {"range_m", bars(totals.range_m)},
       {"size_px", bars(totals.size_px)},
       {"azimuth_deg", bars(totals.azimuth_deg)},
@@ -76,6 +107,15 @@ std::vector<OverviewPlot> overview_plots(const Totals& totals) {
       {"states",
        bars({"visible", "hidden", "outside", "behind", "ended"},
             {totals.by_state.begin(), totals.by_state.end()})}};
+  if (totals.encounters == 0) return plots;
+  plots.push_back({"to_closest_s", bars(totals.to_closest_s)});
+  plots.push_back({"meetings", bars<encounter::Meeting>(totals.meetings, kNoMeeting)});
+  plots.push_back({"closest_m", bars(totals.closest_m)});
+  plots.push_back({"first_seen_m", bars(totals.first_seen_m)});
+  plots.push_back({"first_seen_s", bars(totals.first_seen_s)});
+  plots.push_back(
+      {"horizon", bars<encounter::AgainstHorizon>(totals.horizons_when_first_seen, kNeverSeen)});
+  return plots;
 }
 
 }  // namespace airtruth::dataset

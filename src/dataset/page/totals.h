@@ -42,6 +42,16 @@ struct Totals {
   Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
   Histogram azimuth_deg{
       {-90, -80, -70, -60, -50, -40, -30, -20, -10, 0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
+  // Of encounters; each intruder of a sequence is one.
+  std::int64_t encounters = 0;
+  std::map<std::string, std::int64_t> meetings, horizons_when_first_seen;
+  Histogram closest_m{{0, 15, 30, 60, 100, 150, 250, 400, 600, 1000, 2000, 5000}};
+  Histogram first_seen_m{
+      {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
+  // From the first frame that shows an intruder to its closest approach.
+  Histogram first_seen_s{{-10, 0, 1, 2, 3, 4, 6, 8, 10, 15, 20, 30, 60, 120}};
+  // Of what is seen, beside range_m.
+  Histogram to_closest_s{{-20, -10, -5, -2, 0, 2, 4, 6, 8, 10, 15, 20, 30, 60, 120}};
   Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
 
   void add(const Portrait& portrait);
@@ -53,7 +63,8 @@ struct OverviewPlot {
 };
 
 // The bar charts at the head of a data set's page: range_m, size_px, azimuth_deg, contrast,
-// classes, negatives and states.
+// classes, negatives and states; where sequences have encounters, also meetings, closest_m,
+// first_seen_m, first_seen_s, to_closest_s and horizon.
 std::vector<OverviewPlot> overview_plots(const Totals& totals);
 
 }  // namespace airtruth::dataset

@@ -137,7 +137,9 @@ Layout layout_of(const std::vector<std::string_view>& headings, const Where& whe
 }
 
 void take_units(Layout& layout, const std::vector<std::string_view>& units, const Where& where) {
-  if (!std::all_of(units.begin(), units.end(), is_unit_word))
+  // A row of states has no word of a unit, but an aircraft may be named 'm'.
+  const auto words = std::count_if(units.begin(), units.end(), is_unit_word);
+  if (2 * static_cast<std::size_t>(words) < units.size())
     throw Error(
         "has no units; expected a row of them below the headings, for example "
         "[none] [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]",
@@ -155,7 +157,7 @@ void take_units(Layout& layout, const std::vector<std::string_view>& units, cons
     if (!factor)
       throw Error(fmt::format("the unit of '{}' is {}; expected one of {}",
                               heading.word,
-                              unit.substr(0, 40),
+                              unit.empty() ? "missing" : unit.substr(0, 40),
                               units_of(heading.dimension)),
                   where);
     layout.factor[heading.column] = *factor;

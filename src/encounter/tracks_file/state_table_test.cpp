@@ -120,6 +120,9 @@ TEST(StateTable, EachFaultNamesTheLineAndWhatWasExpected) {
               StartsWith("a.daa:3: has no units; expected a row of them"));
   EXPECT_THAT(fault_of(changed(kDaa, "[none] [nmi] [nmi]", "[none] [nmi]")),
               StartsWith("a.daa:3: has 7 units for 8 headings"));
+  EXPECT_THAT(fault_of("NAME,sx,sy,sz,trk,gs,vs,time\n"
+                       "[none],[nmi],[nmi],,[deg],[knot],[fpm],[s]\n"),
+              StartsWith("a.daa:2: the unit of 'sz' is missing; expected one of m, km, ft, nmi"));
   EXPECT_THAT(
       fault_of(changed(kDaa, "[knot]", "[furlong]")),
       StartsWith("a.daa:3: the unit of 'gs' is [furlong]; expected one of m/s, km/h, knot"));

@@ -52,7 +52,8 @@ bool is_in_picture(const Pixel& pixel, lens::ImageSize size) {
 int moments_in_view(const scene::Encounter& encounter,
                     const lens::Lens& lens,
                     const trajectory::Path& own,
-                    double duration_s) {
+                    double duration_s,
+                    const std::function<Shake(double)>& shake_at) {
   try {
     const trajectory::Path path = encounter::path_to_approach(encounter, own);
     int count = 0;
@@ -60,7 +61,7 @@ int moments_in_view(const scene::Encounter& encounter,
       const double time_s = std::min(duration_s, kMaxApproachS) * i / kSteps;
       const auto camera = own.at(time_s), state = path.at(time_s);
       if (!camera || !state) continue;
-      const auto sight = sight_of(lens, {}, own, *camera, time_s, {});
+      const auto sight = sight_of(lens, {}, own, *camera, time_s, shake_at(time_s));
       const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
       if (pixel && is_in_picture(*pixel, lens.size())) ++count;
     }
@@ -74,12 +75,14 @@ int moments_in_view(const scene::Encounter& encounter,
 
 std::string first_encounter(const lens::Lens& lens,
                             const scene::Camera& camera,
-                            double duration_s) {
+                            double duration_s,
+                            const std::function<Shake(double)>& shake_at) {
   const trajectory::Path own = camera_path(camera);
   const Candidate* best = kCandidates.data();
   int most = -2;
   for (const Candidate& candidate : kCandidates) {
-    const int count = moments_in_view(encounter_of(candidate, duration_s), lens, own, duration_s);
+    const int count =
+        moments_in_view(encounter_of(candidate, duration_s), lens, own, duration_s, shake_at);
     if (count > most) best = &candidate, most = count;
   }
   const scene::Encounter encounter = encounter_of(*best, duration_s);

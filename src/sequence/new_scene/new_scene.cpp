@@ -18,6 +18,8 @@
 #include "picture/video/telemetry.h"
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
+#include "sequence/new_scene/steady_stretch.h"
+#include "sequence/setup/motion_source.h"
 #include "sequence/setup/own_log.h"
 
 namespace airtruth::sequence {
@@ -28,6 +30,11 @@ namespace fs = std::filesystem;
 constexpr double kGuessedViewDeg = 60;
 constexpr std::int64_t kMaxEstimateFrames =
     900;  // half a minute at 30 frames/s turns enough or never
+constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
+// How long a first encounter lasts (first_encounter.cpp).
+constexpr double kEncounterS = 13.2;
+// A camera that turns by less than this share of its view keeps what is in the middle in view.
+constexpr double kSteadyShare = 0.2;
 constexpr std::size_t kMaxSubtitleBytes = std::size_t{64} << 20;
 
 // What is known of the lens: the words for the scene, and the lens itself.
@@ -180,27 +187,98 @@ CameraWords camera_for(const fs::path& video, const std::optional<YawPitchRoll>&
   return words;
 }
 
+// The frames that the scene uses, and what is known of them.
+struct Part {
+  std::int64_t first_frame = 0;
+  std::int64_t frames = 0;
+  bool is_whole = true;                     // the video's own length
+  std::vector<motion::FrameMotion> motion;  // of its frames, against the first of them
+  std::optional<YawPitchRoll> attitude;     // in the first of them
+};
+
+std::vector<motion::FrameMotion> motion_in(const fs::path& video,
+                                           const lens::Lens& lens,
+                                           const NewSceneOptions& options) {
+  video::ReaderOptions reader_options;
+  reader_options.frame_count = kMaxMotionFrames;
+  reader_options.with_cuts = true;
+  video::Reader reader(video, reader_options, options.warn);
+  const std::int64_t total = std::min(kMaxMotionFrames, reader.info().frame_count_estimate);
+  return measure_motion(
+      reader, motion::Estimator(lens, {}, nullptr), options.stop, [&](std::int64_t done) {
+        if (options.progress) options.progress(done, total);
+      });
+}
+
+image::Picture picture_at(const fs::path& video, std::int64_t frame) {
+  video::ReaderOptions options;
+  options.first_frame = frame;
+  options.frame_count = 1;
+  auto found = video::Reader(video, options).next();
+  if (!found) throw Error("holds no frame", {video.string()});
+  return std::move(found->picture);
+}
+
+// Of a video with a log of its own, whose clock begins with the video, the whole.
+Part part_of(const fs::path& video,
+             const video::StreamInfo& info,
+             const lens::Lens& lens,
+             const NewSceneOptions& options) {
+  Part part{.frames = info.frame_count_estimate, .motion = motion_in(video, lens, options)};
+  const double rate_hz = info.frame_rate.value();
+  const auto wanted = static_cast<std::size_t>(std::max(1.0, kEncounterS * rate_hz));
+  const double turn_rad = kSteadyShare * radians(lens.horizontal_fov_deg());
+  const Stretch steady = steady_stretch(part.motion, turn_rad, wanted);
+  if (steady.first > 0 && !log_of(video)) {
+    part.is_whole = false;
+    part.first_frame = static_cast<std::int64_t>(steady.first);
+    part.frames = static_cast<std::int64_t>(steady.frames);
+    const Quaternion reference =
+        part.motion[steady.first].rotation.value_or(Quaternion::Identity());
+    const auto begin = part.motion.begin() + static_cast<std::ptrdiff_t>(steady.first);
+    part.motion.assign(begin, begin + static_cast<std::ptrdiff_t>(steady.frames));
+    for (motion::FrameMotion& frame : part.motion)
+      if (frame.rotation) frame.rotation = *frame.rotation * reference.conjugate();
+  }
+  part.attitude = attitude_in(picture_at(video, part.first_frame), lens);
+  return part;
+}
+
+std::string background_words(const fs::path& video, const Part& part, double duration_s) {
+  std::string words = fmt::format("[background]\nvideo = {}\n", quoted(fs::absolute(video)));
+  if (!part.is_whole)
+    words += fmt::format(
+        "first_frame = {:<25}# the camera turns away from where it looks; for these {:.1f} s it "
+        "does not\nframe_count = {}\n",
+        part.first_frame,
+        duration_s,
+        part.frames);
+  return words;
+}
+
 }  // namespace
 
 std::string new_scene(const fs::path& video, const NewSceneOptions& options) {
-  video::Reader reader(video, {}, options.warn);
-  const video::StreamInfo info = reader.info();
+  const video::StreamInfo info = video::Reader(video, {}, options.warn).info();
   const lens::ImageSize size{info.width, info.height};
-  const auto first = reader.next();
   const LensWords lens = lens_for(video, size, options);
-  const CameraWords camera =
-      camera_for(video, first ? attitude_in(first->picture, lens.lens) : std::nullopt);
+  const Part part = part_of(video, info, lens.lens, options);
+  const CameraWords camera = camera_for(video, part.attitude);
   const double rate_hz = info.frame_rate.value();
-  const double duration_s =
-      rate_hz > 0
-          ? static_cast<double>(std::max<std::int64_t>(1, info.frame_count_estimate) - 1) / rate_hz
-          : 0;
+  const auto seconds_of = [&](std::int64_t frames) {
+    return rate_hz > 0 ? static_cast<double>(std::max<std::int64_t>(1, frames) - 1) / rate_hz : 0;
+  };
+  const double duration_s = seconds_of(part.frames);
+  const auto shake_at = [&](double time_s) {
+    const auto k = static_cast<std::size_t>(std::lround(time_s * rate_hz));
+    return k < part.motion.size() ? motion::shake_of({part.motion[k]}, 0) : Shake{};
+  };
   return fmt::format(
       "# {}: {} frames of {}x{} at {:.4g} frames/s, {:.1f} s.\n"
-      "#     airtruth preview THIS.toml        shows where the intruder will be, in two seconds\n"
+      "#     airtruth preview --motion THIS.toml   shows where the intruder will be\n"
       "#     airtruth render THIS.toml --out out\n"
       "# Every key: docs/formats/scene.md and examples/render.toml.\n\n"
-      "[background]\nvideo = {}\n\n"
+      "{}\n"
       "# {}.\n{}\n"
       "{}\n"
       "[light]                                  # the sun, from north towards east and above the "
@@ -212,12 +290,12 @@ std::string new_scene(const fs::path& video, const NewSceneOptions& options) {
       info.width,
       info.height,
       rate_hz,
-      duration_s,
-      quoted(fs::absolute(video)),
+      seconds_of(info.frame_count_estimate),
+      background_words(video, part, duration_s),
       lens.origin,
       lens.table,
       camera.table,
-      first_encounter(lens.lens, camera.camera, duration_s));
+      first_encounter(lens.lens, camera.camera, duration_s, shake_at));
 }
 
 }  // namespace airtruth::sequence

@@ -26,8 +26,9 @@ struct NewSceneOptions {
 // focal length in DJI's subtitles beside the video or in the video's tags; the result of
 // LensEstimator where it is certain; else a view of 60 degrees, marked as a guess. Pitch and roll
 // of the camera are those of the horizon in the first frame, where one is found. A log with
-// positions (DJI's subtitles, a GoPro's telemetry) gives the own path. The encounter is one of a
-// few common ones, the first that is in view for most of the clip.
+// positions (DJI's subtitles, a GoPro's telemetry) gives the own path. Where the camera turns away
+// from its first direction, the scene begins where it holds one longest, in the video's first
+// minute. The encounter is one of a few common ones, the one that is in view longest.
 //
 // Throws Error where the video cannot be read, and Interrupted on stop.
 std::string new_scene(const std::filesystem::path& video, const NewSceneOptions& options);

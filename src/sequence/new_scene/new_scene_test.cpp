@@ -11,6 +11,7 @@
 
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/new_scene/lens_hint.h"
+#include "sequence/new_scene/steady_stretch.h"
 #include "sequence/preview/preview.h"
 
 namespace airtruth::sequence {
@@ -51,6 +52,24 @@ TEST(LensHint, AGoProsViewIsReadFromItsTelemetry) {
   packet.insert(packet.end(), stream.begin(), stream.end());
   EXPECT_NEAR(diagonal_view_deg(packet).value(), 121.5, 1e-4);
   EXPECT_EQ(diagonal_view_deg(std::span(packet).first(20)), std::nullopt);
+}
+
+TEST(SteadyStretch, IsTheLongestWithinTheAngle) {
+  std::vector<motion::FrameMotion> motion;
+  for (int k = 0; k < 250; ++k) {
+    motion::FrameMotion frame;
+    frame.frame = k;
+    const double turned_deg = std::min(k, 100) + std::max(0, k - 149);
+    frame.rotation = rotation_from_vector({0, radians(turned_deg), 0});
+    motion.push_back(frame);
+  }
+  const Stretch steady = steady_stretch(motion, radians(10.001), 1000);
+  EXPECT_EQ(steady.first, 90u);
+  EXPECT_EQ(steady.frames, 60u);
+  EXPECT_EQ(steady_stretch(motion, radians(10.001), 30).frames, 30u);
+  motion[120].state = motion::State::kCut;
+  EXPECT_EQ(steady_stretch(motion, radians(10.001), 1000).first, 120u);
+  EXPECT_EQ(steady_stretch({}, 1, 10).frames, 0u);
 }
 
 TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {

@@ -15,6 +15,7 @@
 #include "sequence/preview/rows.h"
 #include "sequence/sequence/frame_maker.h"
 #include "sequence/sequence/resolve.h"
+#include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "show/drawing/draw.h"
@@ -29,6 +30,9 @@ constexpr int kMainWidthPx = 1270;
 constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
 constexpr std::size_t kTiles = 3;
 constexpr double kPathStepS = 0.05;
+// A motion that is kept is found by the hash of the video, some 2 s for each GB; of a larger video
+// none is looked for.
+constexpr std::uintmax_t kMaxHashedBytes = std::uintmax_t{512} << 20;
 
 // What the pictures are made from.
 class Previewer {
@@ -41,16 +45,27 @@ class Previewer {
         mask_(read_mask(scene_, size_)),
         inputs_(openness_cache(options)),
         world_(load_world(scene_, size_, options.warn, options.stop, &inputs_)),
+        motion_(known_motion()),
         painter_(make_painter(scene_, world_, own_aircraft(), {{}, true, options.stop})),
         rate_hz_(reader_.info().frame_rate.value()),
         duration_s_(static_cast<double>(std::max<std::int64_t>(0, frame_count() - 1)) / rate_hz_) {
     check_camera_path(world_.camera, used_stream(reader_.info(), scene_.background));
+    check_seen();
+    if (motion_)
+      place_seen(
+          scene_,
+          world_,
+          [&](const scene::Seen& seen) { return frame_near(*motion_, reader_.info(), seen); },
+          options.stop,
+          &inputs_);
   }
 
   Preview make() {
+    warn_not_flyable();
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
-    result.rows = preview_rows(world_, times, rate_hz_);
+    result.has_motion = motion_.has_value();
+    result.rows = preview_rows(world_, times, [&](double time_s) { return moment(time_s); });
     result.approaches = approach_lines(world_, result.rows, duration_s_);
     const auto seen = times_in_view(result.rows);
     std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, seen)};
@@ -63,9 +78,48 @@ class Previewer {
  private:
   // A preview draws by the matte method, which needs no OpenGL, and without the clip's codec.
   static scene::Scene plain(scene::Scene scene) {
+    scene.motion.model = motion_model(scene);
     scene.composite.method = scene::CompositeMethod::kMatte;
     scene.camera_model.codec_step.reset();
     return scene;
+  }
+  // The motion that an earlier run has measured; empty without one.
+  std::optional<MotionSource> known_motion() {
+    std::error_code unknown;
+    const auto bytes = std::filesystem::file_size(scene_.background.video, unknown);
+    if (unknown || bytes > kMaxHashedBytes) return std::nullopt;
+    MotionSource motion(scene_,
+                        world_.lens,
+                        !world_.shutter.is_instant(),
+                        sha256_of_video(scene_.background.video, &inputs_),
+                        own_aircraft(),
+                        motion_cache(options_));
+    if (!motion.from_cache()) return std::nullopt;
+    return motion;
+  }
+  // The clip's length is its container's; render() refuses what no frame is at.
+  void check_seen() const {
+    const video::StreamInfo& info = reader_.info();
+    if (frame_count() <= 0 || info.variable_frame_rate) return;
+    for (const scene::Intruder& intruder : scene_.intruders)
+      for (const scene::Seen& seen : intruder.seen)
+        if (seen.time_s > duration_s_ + 1 / rate_hz_)
+          throw Error(fmt::format("time_s is {:.3f}, where the clip has no frame: it ends at "
+                                  "{:.3f} s; expected a time within the clip",
+                                  seen.time_s,
+                                  duration_s_),
+                      seen.where);
+  }
+  // What an aircraft cannot fly is said before it is rendered.
+  void warn_not_flyable() const {
+    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
+      const Actor& actor = world_.actors[i];
+      const std::string words = words_beyond_limits(actor.aircraft, actor.path, 0, duration_s_);
+      if (!words.empty())
+        warn(options_.warn,
+             fmt::format(
+                 "{}: intruder '{}': {}", to_string(scene_.intruders[i].where), actor.id, words));
+    }
   }
   const image::Mask* own_aircraft() const { return mask_ ? &*mask_ : nullptr; }
   std::int64_t frame_count() const {
@@ -108,8 +162,9 @@ class Previewer {
   }
 
   Moment moment(double time_s) const {
+    const Shake shake = motion_ ? motion_->nearest(time_s).shake : Shake{};
     return moment_at(
-        world_, static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, {});
+        world_, static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, shake);
   }
 
   // The time whose frame stands behind the paths: that of the nearest intruder in view.
@@ -146,7 +201,8 @@ class Previewer {
     return canvas;
   }
 
-  // The pixels of an intruder's centre, joined, with the seconds beside them.
+  // The pixels of an intruder's centre, each in the frame of its time, joined, with the seconds
+  // beside them.
   void draw_path(cv::Mat& canvas, std::size_t actor, double scale) const {
     const trajectory::Path& path = world_.actors[actor].path;
     const cv::Scalar colour = drawing::intruder_colour(actor);
@@ -251,14 +307,15 @@ class Previewer {
         40 + kLinePx * static_cast<int>(lines.size()), kWidthPx, CV_8UC3, drawing::kDarkPaper);
     drawing::text(
         canvas,
-        drawing::fitted(
-            fmt::format("{}: {:.1f} s of {} at {:.4g} frames/s, the camera's shake not shown",
-                        scene_.name,
-                        duration_s_,
-                        scene_.background.video.filename().string(),
-                        rate_hz_),
-            16,
-            kWidthPx - 24),
+        drawing::fitted(fmt::format("{}: {:.1f} s of {} at {:.4g} frames/s, {}",
+                                    scene_.name,
+                                    duration_s_,
+                                    scene_.background.video.filename().string(),
+                                    rate_hz_,
+                                    motion_ ? "each moment with the camera's measured motion"
+                                            : "the camera's shake not shown"),
+                        16,
+                        kWidthPx - 24),
         12,
         26,
         16,
@@ -293,6 +350,7 @@ class Previewer {
   std::optional<image::Mask> mask_;
   SharedInputs inputs_;
   World world_;
+  std::optional<MotionSource> motion_;
   std::unique_ptr<Painter> painter_;
   double rate_hz_;
   double duration_s_;

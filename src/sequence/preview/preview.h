@@ -35,12 +35,17 @@ struct Preview {
   std::vector<PreviewRow> rows;
   // The closest approach of each intruder in words, one line each.
   std::vector<std::string> approaches;
+  // True where each moment has the camera's measured motion.
+  bool has_motion = false;
 };
 
-// Decodes only the frames that are shown. The camera stands at its nominal, unshaken pose, since
-// the motion would take a pass over the clip: an intruder is rendered some pixels from where it is
-// shown. Values of the camera model that would be measured are left out. Throws Error as render()
-// does for faults of the scene, and Interrupted on options.stop.
+// Decodes only the frames that are shown. Where an earlier run has measured the camera's motion and
+// the cache of `options` has it (render(), measure_ahead()), each moment is shown as it will be
+// rendered. Else the camera stands at its nominal, unshaken pose, since the motion would take a
+// pass over the clip: an intruder is rendered as far from where it is shown as the camera has
+// turned from its first frame. Values of the camera model that would be measured are left out.
+// Throws Error as render() does for faults of the scene, and Interrupted on options.stop. A path
+// that its aircraft cannot fly is a warning.
 Preview preview(const scene::Scene& scene, const Options& options);
 
 // The rows as lines of text with a heading.

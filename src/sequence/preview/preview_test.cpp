@@ -6,9 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "foundation/base/error.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/world.h"
+#include "truth/annotation/truth.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -37,7 +39,9 @@ scene::Scene head_on(const fs::path& video) {
 
 TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
   const World world = load_world(head_on("none.mp4"), {640, 480}, {});
-  const auto rows = preview_rows(world, whole_seconds(5), 30);
+  const auto rows = preview_rows(world, whole_seconds(5), [&](double time_s) {
+    return moment_at(world, std::llround(30 * time_s), time_s, {});
+  });
   ASSERT_EQ(rows.size(), 6u);
   const double focal_px = 240 / std::tan(radians(30));
   EXPECT_NEAR(rows[0].range_m, std::sqrt(300.0 * 300 + 20 * 20 + 10 * 10), 1e-6);
@@ -60,12 +64,56 @@ TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {
   const fs::path video = fs::path(testing::TempDir()) / "preview-flight.mp4";
   synthetic::FlightOptions flight;
   flight.frame_count = 130;
-  flight.width = 640;
-  flight.height = 480;
+  flight.width = 320;
+  flight.height = 240;
   write_flight(synthetic::Flight(flight), video, {});
   const Preview made = preview(head_on(video), {});
   EXPECT_GT(made.picture.width, 1900);
   ASSERT_EQ(made.rows.size(), 5u);
+
+  // Once its motion is kept, each moment is shown as it is rendered.
+  Options options;
+  options.cache = fs::path(testing::TempDir()) / "preview-cache";
+  EXPECT_FALSE(preview(head_on(video), options).has_motion);
+  measure_ahead(head_on(video), options);
+  const Preview moved = preview(head_on(video), options);
+  EXPECT_TRUE(moved.has_motion);
+  scene::Scene scene = head_on(video);
+  scene.render.quality = 1;
+  const fs::path out = fs::path(testing::TempDir()) / "preview-out";
+  options.overwrite = true;
+  const annotation::Truth truth =
+      annotation::read_truth(render(scene, out, options).folder / "truth.jsonl");
+  for (const PreviewRow& row : moved.rows) {
+    if (!row.box_px) continue;
+    const annotation::Frame& frame = truth.frames.at(static_cast<std::size_t>(30 * row.time_s));
+    ASSERT_TRUE(frame.intruders[0].exact_box_px) << row.time_s;
+    EXPECT_NEAR(row.box_px->x, frame.intruders[0].exact_box_px->x, 0.01) << row.time_s;
+    EXPECT_NEAR(row.box_px->y, frame.intruders[0].exact_box_px->y, 0.01) << row.time_s;
+  }
+  fs::remove_all(out);
+  fs::remove_all(options.cache);
+  options = {};
+
+  scene::Scene seen = head_on(video);
+  seen.intruders[0].encounter.reset();
+  seen.intruders[0].seen = {{.time_s = 0, .pixel = {100, 100}, .range_m = 900},
+                            {.time_s = 4, .pixel = {500, 100}, .range_m = 100}};
+  std::vector<std::string> warnings;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  preview(seen, options);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0],
+              testing::HasSubstr("c172/g-boix (light piston) cannot fly its path: at "));
+  seen.intruders[0].seen[1].time_s = 4.4;  // the last frame is at 4.3 s
+  try {
+    preview(seen, options);
+    ADD_FAILURE() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(
+        error.what(),
+        testing::HasSubstr("time_s is 4.400, where the clip has no frame: it ends at 4.300"));
+  }
   fs::remove(video);
 }
 

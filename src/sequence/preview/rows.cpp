@@ -47,11 +47,10 @@ std::vector<double> whole_seconds(double duration_s) {
 
 std::vector<PreviewRow> preview_rows(const World& world,
                                      const std::vector<double>& times_s,
-                                     double frame_rate_hz) {
+                                     const std::function<Moment(double time_s)>& moment_at_time) {
   std::vector<PreviewRow> rows;
   for (const double time_s : times_s) {
-    const auto frame = static_cast<std::int64_t>(std::llround(time_s * frame_rate_hz));
-    const Moment moment = moment_at(world, frame, time_s, {});
+    const Moment moment = moment_at_time(time_s);
     for (std::size_t actor = 0; actor < world.actors.size(); ++actor)
       if (moment.states[actor]) rows.push_back(row_of(world, moment, actor));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ std::vector<double> whole_seconds(double duration_s);
 // Every intruder at every one of the times at which it is in the world.
 std::vector<PreviewRow> preview_rows(const World& world,
                                      const std::vector<double>& times_s,
-                                     double frame_rate_hz);
+                                     const std::function<Moment(double time_s)>& moment_at_time);
 
 // "b737: closest 61 m (60 right, 11 above) at 8.00 s", and where it never comes into view how near
 // it comes to it.

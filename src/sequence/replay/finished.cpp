@@ -117,6 +117,7 @@ Finished open_finished(const fs::path& folder) {
                 {record_file.string()});
   finished.has_covered_boxes = record.has("covered_alpha");
   finished.has_encounters = record.has("encounters");
+  finished.encounters = read_encounter_records(record);
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
   const auto format = format_of(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));

@@ -10,6 +10,7 @@
 
 #include "foundation/base/log.h"
 #include "foundation/image/picture.h"
+#include "sequence/sequence/encounter_record.h"
 #include "truth/annotation/truth.h"
 #include "world/scene/scene.h"
 
@@ -29,6 +30,8 @@ struct Finished {
   bool has_covered_boxes = false;
   // True where the truth has the measures of encounters. Older sequences have none.
   bool has_encounters = false;
+  // In the order of the scene; empty for an imported clip and an older sequence.
+  std::vector<EncounterRecord> encounters;
 };
 
 // Throws Error where the folder is not whole: sequence.json or a file that it names is missing.

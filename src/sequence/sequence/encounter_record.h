@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "encounter/passage/geometry_class.h"
+#include "foundation/json/json_object.h"
 #include "sequence/setup/world.h"
 #include "truth/annotation/truth.h"
 
@@ -52,5 +53,10 @@ std::vector<EncounterRecord> encounter_records(
     const World& world, const std::vector<std::optional<FirstSeen>>& first_seen, double last_s);
 
 nlohmann::ordered_json json_of(const std::vector<EncounterRecord>& records);
+
+// The records that a sequence.json holds; none where it is older than they are. Of the exact box of
+// the first frame that shows an intruder only the size is recorded. Throws Error where one is not
+// as docs/formats/output.md describes it.
+std::vector<EncounterRecord> read_encounter_records(const JsonObject& sequence);
 
 }  // namespace airtruth::sequence

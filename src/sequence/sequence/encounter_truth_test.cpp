@@ -191,6 +191,29 @@ TEST_F(EncounterTruth, TheRecordSaysWhenItIsFirstSeen) {
   EXPECT_EQ(first.at("horizon"), "above");
 }
 
+TEST_F(EncounterTruth, TheRecordIsReadAsItWasWritten) {
+  ASSERT_EQ(finished_->encounters.size(), 2u);
+  EXPECT_EQ(nlohmann::json(json_of(finished_->encounters)), record_.at("encounters"));
+}
+
+TEST_F(EncounterTruth, ARecordThatNamesNoMeetingIsAnError) {
+  const fs::path folder = root_ / "spoilt";
+  fs::copy(finished_->folder, folder);
+  nlohmann::json record = record_;
+  record["encounters"][0]["meeting"] = "sideways";
+  write_file(folder / "sequence.json", record.dump());
+  try {
+    open_finished(folder);
+    ADD_FAILURE() << "opened";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("encounters[0].meeting is \"sideways\"; expected one "
+                        "of head-on, crossing from left"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(EncounterTruth, ComputedAgainItIsTheSame) {
   EXPECT_EQ(recompose(*finished_, 7, {}).faults, std::vector<std::string>{});
 }

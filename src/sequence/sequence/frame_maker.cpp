@@ -16,15 +16,13 @@ namespace {
 
 lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
 
-}  // namespace
-
-namespace {
-
 bool is_given_by_what_is_seen(const scene::Scene& scene) {
   return std::any_of(scene.intruders.begin(), scene.intruders.end(), [](const auto& intruder) {
     return !intruder.seen.empty();
   });
 }
+
+}  // namespace
 
 FramePose frame_near(const MotionSource& motion,
                      const video::StreamInfo& info,
@@ -40,8 +38,6 @@ FramePose frame_near(const MotionSource& motion,
                 seen.where);
   return {frame.motion.time_s, frame.shake};
 }
-
-}  // namespace
 
 video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
   const std::int64_t left =

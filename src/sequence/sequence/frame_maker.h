@@ -109,6 +109,12 @@ class FrameMaker {
 // The stream with the number of frames that a scene makes of it.
 video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background);
 
+// The frame of a known motion that a moment of [[intruder.seen]] is about. Throws Error where the
+// clip has none within a frame's time of it.
+FramePose frame_near(const MotionSource& motion,
+                     const video::StreamInfo& info,
+                     const scene::Seen& seen);
+
 // The folder in which motion is kept; empty: motion is not kept.
 fs::path motion_cache(const Options& options);
 

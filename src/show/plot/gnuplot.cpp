@@ -88,6 +88,10 @@ std::string range_of(const char* axis, const Axis& a, bool has_data) {
   return fmt::format("set {}range [{}:{}]\n", axis, end(a.min, "0"), end(a.max, "1"));
 }
 
+std::string scale_of(const char* axis, const Axis& a) {
+  return fmt::format("{} logscale {}\n", a.is_logarithmic ? "set" : "unset", axis);
+}
+
 std::string tics_of(const char* axis, const Axis& a) {
   if (a.names.empty()) return fmt::format("set {}tics auto norotate\n", axis);
   std::string places;
@@ -95,6 +99,14 @@ std::string tics_of(const char* axis, const Axis& a) {
     places += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted(a.names[i]), i);
   const bool is_crowded = *axis == 'x' && a.names.size() > 5;
   return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
+}
+
+bool has_band(const Series& series) {
+  return !series.low.empty() && (series.mark == Mark::kLine || series.mark == Mark::kLineAndPoints);
+}
+
+bool has_whiskers(const Series& series) {
+  return !series.low.empty() && series.mark == Mark::kBars;
 }
 
 std::string drawn_as(const Series& series) {
@@ -135,6 +147,7 @@ class Script {
     if (plot.picture) return add_picture(plot, picture);
     commands_ += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x.label) +
                  "\nset ylabel " + quoted(plot.y.label) + "\n";
+    commands_ += scale_of("x", plot.x) + scale_of("y", plot.y);
     commands_ += range_of("x", plot.x, has_data(plot)) + range_of("y", plot.y, has_data(plot));
     commands_ += tics_of("x", plot.x) + tics_of("y", plot.y);
     commands_ += has_legend ? "set key\n" : "unset key\n";
@@ -146,11 +159,18 @@ class Script {
     for (const Series& series : plot.series) {
       const double shift = series.mark == Mark::kBars ? bar : 0;
       if (series.mark == Mark::kBars) bar += width;
-      parts += fmt::format("{}{} {} {}",
-                           parts.empty() ? "" : ", \\\n     ",
-                           block_of(series, shift),
-                           drawn_as(series),
-                           series.name.empty() ? "notitle" : "title " + quoted(series.name));
+      const std::string block = block_of(series, shift);
+      const auto add = [&](const std::string& how, const std::string& title) {
+        parts += fmt::format("{}{} {} {}", parts.empty() ? "" : ", \\\n     ", block, how, title);
+      };
+      if (has_band(series))
+        add(fmt::format("using 1:3:4 with filledcurves fs transparent solid 0.15 noborder fc rgb "
+                        "'{}'",
+                        hex(series.style.colour)),
+            "notitle");
+      add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
+      if (has_whiskers(series))
+        add("using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '#333333'", "notitle");
     }
     // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";

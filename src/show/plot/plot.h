@@ -59,7 +59,7 @@ enum class Mark {
   kLine,
   kPoints,
   kLineAndPoints,
-  kBars,       // upright, at whole x
+  kBars,       // upright, at whole x; several series stand side by side
   kIntervals,  // points with a horizontal interval from `low` to `high`
   kAbove,      // triangles that point up: values above the axis
   kBelow,      // triangles that point down: values below the axis
@@ -72,7 +72,8 @@ struct Series {
   Style style;
   // Equal in length. A y that is not finite is a gap in a line.
   std::vector<double> x, y;
-  // Bounds of intervals, equal in length to x; empty for other marks.
+  // Bounds, equal in length to x: of the horizontal interval of kIntervals, of the shaded band
+  // about a line, or of the upright interval on a bar. Empty: none.
   std::vector<double> low = {}, high = {};
 };
 
@@ -82,6 +83,8 @@ struct Axis {
   std::optional<double> min = {}, max = {};
   // Names of the places 0, 1, 2, ...; empty for an axis of numbers.
   std::vector<std::string> names = {};
+  // Of an axis of positive numbers; what is not positive is not drawn.
+  bool is_logarithmic = false;
 };
 
 // A range of x that is shaded over the whole height.

@@ -40,7 +40,8 @@ Json axis_json(const Axis& axis) {
   return {{"label", axis.label},
           {"min", axis.min ? Json(*axis.min) : Json()},
           {"max", axis.max ? Json(*axis.max) : Json()},
-          {"names", axis.names}};
+          {"names", axis.names},
+          {"logarithmic", axis.is_logarithmic}};
 }
 
 Json series_json(const Series& series) {
@@ -48,7 +49,9 @@ Json series_json(const Series& series) {
           {"mark", name_of(series.mark)},
           {"style", json_of(series.style)},
           {"x", numbers(series.x)},
-          {"y", numbers(series.y)}};
+          {"y", numbers(series.y)},
+          {"low", numbers(series.low)},
+          {"high", numbers(series.high)}};
 }
 
 }  // namespace

@@ -62,11 +62,12 @@ TEST(Plot, JsonHoldsWhatIsDescribed) {
                          .style = {kInk, Dash::kLong, 2},
                          .x = {0, 1},
                          .y = {3, std::numeric_limits<double>::quiet_NaN()}});
-  EXPECT_EQ(json_of(plot).dump(),
-            R"({"title":"t","x":{"label":"","min":null,"max":null,"names":["a","b"]},)"
-            R"("y":{"label":"v","min":0.0,"max":null,"names":[]},)"
-            R"("series":[{"name":"s","mark":"bars","style":{"colour":"ink","dash":[7,3],)"
-            R"("width":2.0},"x":[0.0,1.0],"y":[3.0,null]}]})");
+  EXPECT_EQ(
+      json_of(plot).dump(),
+      R"({"title":"t","x":{"label":"","min":null,"max":null,"names":["a","b"],"logarithmic":false},)"
+      R"("y":{"label":"v","min":0.0,"max":null,"names":[],"logarithmic":false},)"
+      R"("series":[{"name":"s","mark":"bars","style":{"colour":"ink","dash":[7,3],)"
+      R"("width":2.0},"x":[0.0,1.0],"y":[3.0,null],"low":[],"high":[]}]})");
 }
 
 // Two levels a half of the axis apart lie a half of its height apart in the picture.
@@ -82,6 +83,54 @@ TEST(Gnuplot, DrawsValuesWhereTheAxisSaysTheyAre) {
   const double axis = border.back() - border.front();
   EXPECT_NEAR(middle(low) - middle(high), 0.5 * axis, 4);
   EXPECT_NEAR(border.back() - middle(low), 0.25 * axis, 4);
+}
+
+// A value stands where its logarithm is, and the band between its bounds is a lighter shade of it.
+TEST(Gnuplot, ALogarithmicAxisAndABand) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Plot plot{.x = {.min = 0, .max = 1}, .y = {.min = 0.01, .max = 100, .is_logarithmic = true}};
+  plot.series.push_back(
+      {.style = style_of(0), .x = {0, 1}, .y = {10, 10}, .low = {1, 1}, .high = {100, 100}});
+  const image::Rgb8 picture = picture_of({.plots = {plot}, .legend = Legend::kNone});
+  const auto line = rows_of(picture, kColours[0], 500);
+  const auto border = rows_of(picture, {85, 85, 85}, 900);
+  ASSERT_FALSE(line.empty() || border.size() < 2);
+  const double axis = border.back() - border.front();
+  EXPECT_NEAR(border.back() - middle(line), 0.75 * axis, 4);
+  // 15 % of the colour on white, from the middle of the axis up.
+  const Colour shade = {217, 234, 243};
+  const int x = picture.width / 2;
+  EXPECT_TRUE(is_near(picture.at(x, border.back() - static_cast<int>(0.6 * axis)), shade));
+  EXPECT_GT(int{picture.at(x, border.back() - static_cast<int>(0.6 * axis))[2]},
+            int{picture.at(x, border.back() - static_cast<int>(0.6 * axis))[0]} + 15);
+  EXPECT_EQ(int{picture.at(x, border.back() - static_cast<int>(0.4 * axis))[0]}, 255);
+}
+
+// A bar is as high as its value, and its whisker reaches from bound to bound.
+TEST(Gnuplot, ABarHasItsInterval) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Plot plot{.x = {.names = {"one"}}, .y = {.min = 0, .max = 1}};
+  plot.series.push_back({.mark = Mark::kBars,
+                         .style = style_of(0),
+                         .x = {0},
+                         .y = {0.5},
+                         .low = {0.25},
+                         .high = {0.75}});
+  const image::Rgb8 picture = picture_of({.plots = {plot}, .legend = Legend::kNone});
+  const auto bar = rows_of(picture, kColours[0], 500);
+  const auto border = rows_of(picture, {85, 85, 85}, 900);
+  ASSERT_FALSE(bar.empty() || border.size() < 2);
+  const double axis = border.back() - border.front();
+  EXPECT_NEAR(border.back() - bar.front(), 0.5 * axis, 4);
+  // Dark from 0.25 to 0.75 in the middle, and not beyond.
+  const auto is_dark_at = [&](double value) {
+    const int y = border.back() - static_cast<int>(value * axis);
+    for (int x = 0; x < picture.width; ++x)
+      if (is_near(picture.at(x, y), {51, 51, 51}) && picture.at(x, y)[0] < 70) return true;
+    return false;
+  };
+  for (const double value : {0.28, 0.45, 0.6, 0.73}) EXPECT_TRUE(is_dark_at(value)) << value;
+  for (const double value : {0.2, 0.8}) EXPECT_FALSE(is_dark_at(value)) << value;
 }
 
 TEST(Gnuplot, APlotWithoutDataHasAxes) {

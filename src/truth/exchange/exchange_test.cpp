@@ -295,6 +295,11 @@ TEST(RoundTrip, LabelsOfOurOwnKeepEverything) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     Clip clip = Draw(seed).clip("x");
     clip.media = "some/video.mp4";
+    for (LabelledFrame& frame : clip.frames)
+      for (Label& label : frame.labels)
+        label.object_class = label.track % 3 == 0   ? "bird"
+                             : label.track % 3 == 1 ? "ignore"
+                                                    : "aircraft";
     const Clip again = read_labels(folder.file("labels.jsonl", labels_jsonl(clip)));
     EXPECT_EQ(again.media, clip.media);
     expect_same(again, clip);
@@ -615,6 +620,11 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
   const auto of_head = [&](const std::string& more) {
     return error(head.substr(0, head.size() - 1) + "," + more + "}\n");
   };
+  EXPECT_EQ(
+      error(head + "\n" + R"({"frame":0,"labels":[{"track":1,"category":"a","class":"plane",)" +
+            R"("box_px":[1,2,3,4]}]})"),
+      "labels[0].class is \"plane\"; expected aircraft, bird, multirotor, balloon, glint, dirt, "
+      "insect or ignore at 2");
   // 2^32 + 640 is 640 in 32 bits, and 2^64 - 1 is -1 in 64 bits.
   EXPECT_EQ(of_head(R"("width":4294967936)"),
             "width is 4294967936; expected a whole number from 1 to 1000000 at 1");

@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -18,6 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "airtruth labels 1";
+// The class of a region in which detections count neither way.
+constexpr const char* kIgnore = "ignore";
 
 template <typename T>
 void put(Json& json, const char* key, const std::optional<T>& value) {
@@ -43,6 +46,7 @@ Json json_of(const Label& label) {
   Json json = {{"track", label.track},
                {"category", label.category},
                {"box_px", {b.x, b.y, b.width, b.height}}};
+  if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
   put(json, "visible", label.visible);
   put(json, "occluded", label.occluded);
   put(json, "truncated", label.truncated);
@@ -57,6 +61,9 @@ Label label_of(const JsonObject& json) {
   label.category = json.text("category");
   const auto box = json.numbers("box_px", 4);
   label.box_px = {box[0], box[1], box[2], box[3]};
+  label.object_class = json.maybe_text("class").value_or(label.object_class);
+  if (!annotation::is_object_class(label.object_class) && label.object_class != kIgnore)
+    json.fail("class", "aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore");
   label.visible = json.maybe_number("visible");
   label.occluded = json.maybe_truth("occluded");
   label.truncated = json.maybe_truth("truncated");

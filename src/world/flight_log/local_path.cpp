@@ -82,6 +82,24 @@ trajectory::Samples local_positions(const FlightLog& log, const Placement& place
   return samples;
 }
 
+// No aircraft needs more, and the world of a scene ends at such speeds (scene::kSpeed).
+constexpr double kFastestMps = 1e4;
+
+void require_flyable(const trajectory::Samples& samples, double offset_s) {
+  for (std::size_t i = 1; i < samples.times_s.size(); ++i) {
+    const double step_m = (samples.positions_ned_m[i] - samples.positions_ned_m[i - 1]).norm();
+    const double step_s = samples.times_s[i] - samples.times_s[i - 1];
+    if (!(step_m <= kFastestMps * step_s))
+      throw Error(
+          fmt::format("the log's positions jump {:.0f} m in {:.2f} s at {:.2f} s of the "
+                      "log; expected less than {:.0f} m/s",
+                      step_m,
+                      step_s,
+                      samples.times_s[i] + offset_s,
+                      kFastestMps));
+  }
+}
+
 // Adds positions at constant velocity before the first one and after the last one.
 void extend(trajectory::Samples& samples) {
   auto& times = samples.times_s;
@@ -109,6 +127,7 @@ trajectory::Path local_path(const FlightLog& log,
     throw Error(
         "the log's positions span less than half a second; expected one a second or "
         "more");
+  require_flyable(samples, placement.offset_s);
   extend(samples);
   if (!log.attitudes.empty()) {
     samples.has_angle = {true, true, true};

@@ -22,7 +22,7 @@ struct Placement {
 // one record a second.
 //
 // Throws Error (without a file) where the log's positions do not cover the clip's first frame; the
-// message states the range of time that they cover.
+// message states the range of time that they cover. Likewise where they are faster than 10 km/s.
 trajectory::Path local_path(const FlightLog& log,
                             const Placement& placement,
                             const trajectory::AttitudeOverride& stated = {});

@@ -77,6 +77,19 @@ TEST(LocalPath, AttitudesAreInterpolatedAcrossNorth) {
   EXPECT_NEAR(height_at(straight(0, 10, 2, 1), 25).value(), 90, 1e-9);
 }
 
+TEST(LocalPath, AJumpAcrossTheWorldIsRefused) {
+  FlightLog log = straight(30, -20, 2, 1);
+  log.fixes[31].latitude_deg += 2;
+  try {
+    local_path(log, {20, {0, 0, 0}});
+    ADD_FAILURE() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                testing::MatchesRegex("the log's positions jump 22[0-9]{4} m in 1.00 s at 31.00 s "
+                                      "of the log; expected less than 10000 m/s"));
+  }
+}
+
 TEST(LocalPath, ALogOfAnotherTimeIsRefused) {
   const FlightLog log = straight(30, 0, 0, 1);
   EXPECT_NO_THROW(local_path(log, {-1, {0, 0, 0}}));

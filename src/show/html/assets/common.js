@@ -18,31 +18,64 @@ const airtruth = (() => {
   const ink = dark ? '#ffffff' : '#000000';
 
   // The axis of a described plot. Places with names have all their names, upright where there are many.
-  const described = ({ label, min, max, names }) => ({
+  const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
+  const described = ({ label, min, max, names, logarithmic }) => ({
     ...(names.length
       ? { type: 'category', ticks: { autoSkip: false, minRotation: names.length > 5 ? 90 : 0, font: { size: 9 } }, grid: { display: false } }
-      : { type: 'linear', min: min ?? undefined, max: max ?? undefined, ticks: { maxTicksLimit: 11 } }),
+      : { type: logarithmic ? 'logarithmic' : 'linear', min: min ?? undefined, max: max ?? undefined,
+        ticks: logarithmic ? { callback: (value) => (isPower(value) ? String(Number(value.toPrecision(1))) : '') } : { maxTicksLimit: 11 } }),
     title: { display: Boolean(label), text: label },
+  });
+
+  // Upright intervals on the bars of a plot.
+  const whiskers = (plot) => ({
+    id: 'whiskers',
+    afterDatasetsDraw: (chart) => {
+      const { ctx } = chart;
+      ctx.save();
+      ctx.strokeStyle = Chart.defaults.color;
+      ctx.lineWidth = 1;
+      plot.series.forEach((series, k) => {
+        if (series.mark !== 'bars' || !series.low.length) return;
+        series.x.forEach((place, i) => {
+          const bar = chart.getDatasetMeta(k).data[place];
+          if (!bar || series.low[i] === null) return;
+          const [low, high] = [series.low[i], series.high[i]].map((value) => chart.scales.y.getPixelForValue(value));
+          const cap = Math.min(4, bar.width / 3);
+          ctx.beginPath();
+          for (const y of [low, high]) { ctx.moveTo(bar.x - cap, y); ctx.lineTo(bar.x + cap, y); }
+          ctx.moveTo(bar.x, low);
+          ctx.lineTo(bar.x, high);
+          ctx.stroke();
+        });
+      });
+      ctx.restore();
+    },
   });
 
   // Draws a plot that the program describes (show/plot/plot.h).
   const drawPlot = (canvas, plot) => {
     const { names } = plot.x;
-    const points = ({ x, y }) => names.length
-      ? names.map((_, place) => (x.includes(place) ? y[x.indexOf(place)] : null))
-      : x.map((at, i) => ({ x: at, y: y[i] }));
-    const datasets = plot.series.map((series) => {
+    const placed = (x, values) => names.length
+      ? names.map((_, place) => (x.includes(place) ? values[x.indexOf(place)] : null))
+      : x.map((at, i) => ({ x: at, y: values[i] }));
+    const datasets = plot.series.flatMap((series) => {
       const { colour, dash, width } = series.style;
       const paint = colour === 'ink' ? ink : colour;
-      const shape = series.mark === 'bars' ? {} :
+      const isBars = series.mark === 'bars';
+      const shape = isBars ? {} :
         { type: 'line', borderColor: paint, borderWidth: 1.5 * width, borderDash: dash, showLine: series.mark !== 'points', pointRadius: series.mark === 'line' ? 0 : 2.5 };
-      return { label: series.name, data: points(series), backgroundColor: paint, ...shape };
+      const own = { label: series.name, data: placed(series.x, series.y), backgroundColor: paint, ...shape };
+      if (isBars || !series.low.length) return [own];
+      const bound = (values, fill) => ({ type: 'line', label: `_${series.name}`, data: placed(series.x, values), pointRadius: 0, borderWidth: 0, backgroundColor: `${paint}26`, fill });
+      return [own, bound(series.high, '+1'), bound(series.low, false)];
     });
     const isBars = plot.series.some((series) => series.mark === 'bars');
     return new Chart(canvas, {
       type: isBars ? 'bar' : 'line',
       data: { labels: names.length ? names : undefined, datasets },
       options: { plugins: { legend: { display: false } }, scales: { x: described(plot.x), y: described(plot.y) } },
+      plugins: isBars ? [whiskers(plot)] : [],
     });
   };
 

@@ -3,6 +3,7 @@
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
   const { byId, counted, drawPlot, element, least, most, number, line, axis, legend } = airtruth;
+  const { encounters } = airtruth;
   const { colours } = data;
 
   // What a sequence is sorted and filtered by: over the frames that show an intruder.
@@ -20,6 +21,7 @@
     sequence.farthest = most(ranges);
     sequence.largest = most(sizes);
     sequence.smallest = least(sizes);
+    encounters.addKeys(sequence);
   });
 
   const drawOverview = () => {
@@ -35,7 +37,10 @@
       byId('card').append(element('dt', key), element('dd', String(value)));
     }
     // The bar charts are described by the program (dataset/page/totals.h).
-    for (const canvas of document.querySelectorAll('canvas[data-plot]')) drawPlot(canvas, data.plots[canvas.dataset.plot]);
+    for (const canvas of document.querySelectorAll('canvas[data-plot]')) {
+      const plot = data.plots[canvas.dataset.plot];
+      if (plot) drawPlot(canvas, plot); else canvas.closest('figure').remove();
+    }
     drawCentres();
   };
 
@@ -67,26 +72,28 @@
     });
   };
 
-  // From above, north up, one scale for both axes, with the camera's view at the first frame.
+  // From above, one scale for both axes, with the camera's view at the first frame and the closest approaches.
   const planView = (canvas, sequence) => {
     const camera = sequence.camera;
-    const sets = [line('camera', camera.east_m.map((x, i) => ({ x, y: camera.north_m[i] })), '#7d8590')];
+    const plan = encounters.planOf(sequence, encounters.isCourseUp());
+    const sets = [line('camera', camera.east_m.map((east, i) => plan.at(east, camera.north_m[i])), '#7d8590')];
     sequence.intruders.forEach((intruder, k) => {
-      const points = intruder.east_m.map((x, i) => ({ x, y: intruder.north_m[i] })).filter((p) => p.x !== null);
+      const points = intruder.east_m.map((east, i) => (east === null ? null : plan.at(east, intruder.north_m[i]))).filter(Boolean);
       if (!points.length) return;
       sets.push(line(intruder.id, points, colours[k % colours.length]));
       sets.push(line('_start', [points[0]], colours[k % colours.length], { pointRadius: 3 }));
     });
+    sets.push(...encounters.marksOn(sequence, plan));
     const all = sets.flatMap((s) => s.data);
     let [west, east] = [least(all.map((p) => p.x)), most(all.map((p) => p.x))];
     let [south, north] = [least(all.map((p) => p.y)), most(all.map((p) => p.y))];
     const reach = 0.9 * Math.max(east - west, north - south, 50);
     if (sequence.fov_deg) {
-      const at = { x: camera.east_m[0], y: camera.north_m[0] };
+      const at = plan.at(camera.east_m[0], camera.north_m[0]);
       const half = Math.min(sequence.fov_deg, 359) / 2;
       const arm = (degrees) => {
         const angle = ((camera.yaw_deg[0] + degrees) * Math.PI) / 180;
-        return { x: at.x + reach * Math.sin(angle), y: at.y + reach * Math.cos(angle) };
+        return plan.at(camera.east_m[0] + reach * Math.sin(angle), camera.north_m[0] + reach * Math.cos(angle));
       };
       sets.push(line('view', [arm(-half), at, arm(half)], '#7d8590', { borderDash: [5, 4], borderWidth: 1 }));
     }
@@ -103,8 +110,8 @@
       options: {
         plugins: { legend },
         scales: {
-          x: axis('east, m', { min: middle.x - wide / 2, max: middle.x + wide / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
-          y: axis('north, m', { min: middle.y - tall / 2, max: middle.y + tall / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
+          x: axis(plan.x, { min: middle.x - wide / 2, max: middle.x + wide / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
+          y: axis(plan.y, { min: middle.y - tall / 2, max: middle.y + tall / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
         },
       },
     });
@@ -125,6 +132,8 @@
 
   const sizes = (canvas, sequence) => {
     const sets = [];
+    const frames = sequence.intruders.flatMap((intruder) => intruder.frame);
+    const range = { min: least(frames) ?? 0, max: most(frames) ?? 1 };
     sequence.intruders.forEach((intruder, k) => {
       const colour = colours[k % colours.length];
       sets.push(line(`${intruder.id} range, m`, intruder.frame.map((x, i) => ({ x, y: intruder.range_m[i] })), colour));
@@ -134,7 +143,7 @@
     return new Chart(canvas, {
       type: 'scatter',
       data: { datasets: sets },
-      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('range, m', { beginAtZero: true }), px: axis('box, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
+      options: { plugins: { legend }, scales: { x: axis('frame', range), ...encounters.axisOf(sequence, range), y: axis('range, m', { beginAtZero: true }), px: axis('box, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
     });
   };
 
@@ -259,6 +268,8 @@
       `${sequence.width}×${sequence.height} · seen in ${number(sequence.visible)}, hidden in ${number(sequence.hidden)} · ` +
       (sequence.visible ? `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` : '') +
       `contrast ${number(sequence.contrast, 1)}${light}${sequence.motion_model ? ` · motion: ${sequence.motion_model}` : ''}`));
+    const table = encounters.tableOf(sequence, colours);
+    if (table) card.append(table);
     const row = element('div', undefined, 'row');
     const pictures = element('div', undefined, 'pictures');
     const player = playerOf(sequence);
@@ -290,7 +301,7 @@
             { duration: 220 * sequence.loop_frames, easing: `steps(${sequence.loop_frames})`, iterations: Infinity });
       } else loop.remove();
       if (sequence.camera.frame.length) {
-        planView(plots[0], sequence);
+        card.plan = planView(plots[0], sequence);
         profile(plots[1], sequence);
       } else plots.slice(0, 2).forEach((p) => p.parentNode.replaceChildren(element('span', 'imported: no geometry', 'none')));
       sizes(plots[2], sequence);
@@ -306,7 +317,21 @@
 
   const cards = data.sequences.map(cardOf);
 
+  // Plans that are drawn turn with the choice of what is up; the others are drawn so.
+  let courseUp = encounters.isCourseUp();
+  const turnPlans = () => {
+    if (courseUp === encounters.isCourseUp()) return;
+    courseUp = encounters.isCourseUp();
+    for (const card of cards) {
+      if (!card.plan) continue;
+      const { canvas } = card.plan;
+      card.plan.destroy();
+      card.plan = planView(canvas, data.sequences[cards.indexOf(card)]);
+    }
+  };
+
   const list = () => {
+    turnPlans();
     const find = byId('find').value.toLowerCase();
     const limit = (id, otherwise) => (byId(id).value === '' ? otherwise : Number(byId(id).value));
     const [from, to] = [limit('nearest-from', -Infinity), limit('nearest-to', Infinity)];
@@ -317,6 +342,7 @@
       (!byId('aircraft').value || s.aircraft.includes(byId('aircraft').value)) &&
       (!byId('shows').value || (byId('shows').value === 'some') === s.visible > 0) &&
       (!byId('background').value || s.background === byId('background').value) &&
+      encounters.matches(s) &&
       (!limited || (s.nearest !== null && s.nearest >= from && s.nearest <= to)));
     const order = byId('descending').checked ? -1 : 1;
     // What has no such number comes last, whichever way.
@@ -340,6 +366,7 @@
   drawOverview();
   choices('aircraft', data.sequences.flatMap((s) => s.aircraft));
   choices('background', data.sequences.map((s) => s.background));
+  encounters.begin(data.sequences, choices);
   byId('filters').addEventListener('input', list);
   list();
   cards.forEach((card) => seen.observe(card));

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "detection/assessment/assess.h"
+
+// The part of `airtruth evaluate` that is for detectors' results.
+namespace airtruth::cli {
+
+struct EvaluateDetections {
+  detection::AssessOptions options;
+  std::string ignore;
+  // MOTChallenge text is a detector's, also where it has tracks.
+  bool is_detections = false;
+
+  // Which of the results are a detector's.
+  bool holds(const std::filesystem::path& results) const {
+    return detection::holds_detections(results, is_detections);
+  }
+};
+
+void add_detection_options(CLI::App& command, EvaluateDetections& arguments);
+
+void print_detections(const detection::Assessment& assessment, Console& console);
+
+}  // namespace airtruth::cli

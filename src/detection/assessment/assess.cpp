@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/assessment/assess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "detection/assessment/set_truth.h"
+#include "detection/detections/results_folder.h"
+#include "detection/scoring/score_detector.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+
+namespace airtruth::detection {
+namespace {
+
+// The name of a folder or, without its ending, of a file.
+std::string name_of(const fs::path& results) {
+  const fs::path plain = fs::absolute(results).lexically_normal();
+  require_utf8(plain);
+  if (fs::is_regular_file(plain)) return plain.stem().string();
+  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+}
+
+std::vector<ExpectedSequence> expected_of(const std::vector<TruthSequence>& truths) {
+  std::vector<ExpectedSequence> expected;
+  for (const TruthSequence& truth : truths)
+    expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
+  return expected;
+}
+
+std::vector<ScoredDetections> results_in(const fs::path& source,
+                                         const std::vector<TruthSequence>& truths,
+                                         const Warn& warn) {
+  std::map<std::string, std::size_t> numbers;
+  for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
+  std::vector<ScoredDetections> results;
+  for (SequenceDetections& read : read_detections(source, expected_of(truths))) {
+    const std::size_t truth = numbers.at(read.name);
+    if (read.frames.size() != truths[truth].frames.size())
+      throw Error(fmt::format("holds {} frames of '{}'; the data set has {}",
+                              read.frames.size(),
+                              read.name,
+                              truths[truth].frames.size()),
+                  {source.string()});
+    results.push_back({truth, std::move(read), {}});
+  }
+  if (results.empty())
+    throw Error("holds no detections of any sequence of the data set", {source.string()});
+  if (results.size() < truths.size())
+    airtruth::warn(warn,
+                   fmt::format("{}: has results for {} of {} sequences; its measures are of those",
+                               source.string(),
+                               results.size(),
+                               truths.size()));
+  return results;
+}
+
+void add_films(std::vector<TruthSequence>& truths, const AssessOptions& options) {
+  in_parallel(
+      truths.size(),
+      options.jobs,
+      [&](std::size_t i) { measure_contrast(truths[i], options.stop); },
+      options.progress,
+      options.stop);
+}
+
+void check_options(const AssessOptions& options) {
+  if (options.manoeuvre_s && options.volume.empty())
+    throw Error("--manoeuvre-s needs --volume: the volume that the manoeuvre is to avoid");
+  if (options.point.score && !std::isfinite(*options.point.score))
+    throw Error("--score is not a number; expected a finite one");
+}
+
+void say_who_has_no_tracks(Assessment& assessment) {
+  for (const DetectorScore& detector : assessment.detectors)
+    if (!detector.tracks)
+      assessment.left_out.push_back(
+          detector.name +
+          " reports no tracks; declarations, false tracks, HOTA, CLEAR and Identity leave it out "
+          "(`airtruth detect --associate` makes tracks)");
+}
+
+}  // namespace
+
+Assessment assess(const fs::path& set,
+                  const std::vector<fs::path>& results,
+                  const AssessOptions& options) {
+  check_options(options);
+  Assessment assessment;
+  assessment.set = name_of(set);
+  assessment.centre_px = options.centre_px;
+  assessment.point = options.point;
+  assessment.manoeuvre_s = options.manoeuvre_s;
+  assessment.volume = options.volume;
+  SetTruth truth = set_truth(set, {options.volume, options.ignore, options.warn});
+  assessment.truths = std::move(truth.sequences);
+  assessment.is_weighted = truth.is_weighted;
+  assessment.left_out = std::move(truth.left_out);
+  // Results are read first, so that their faults are reported before minutes of video are read.
+  std::map<std::string, std::vector<ScoredDetections>> found;
+  for (const fs::path& source : results) {
+    const std::string name = name_of(source);
+    if (found.contains(name))
+      throw Error("is the second set of results called '" + name + "'", {source.string()});
+    found[name] = results_in(source, assessment.truths, options.warn);
+  }
+  if (options.with_film) add_films(assessment.truths, options);
+  std::vector<std::string> names;
+  for (const auto& [name, sequences] : found) names.push_back(name);
+  assessment.detectors.resize(names.size());
+  const ScoreOptions score_options{
+      options.centre_px, options.point, options.manoeuvre_s, assessment.is_weighted};
+  in_parallel(
+      names.size(),
+      options.jobs,
+      [&](std::size_t i) {
+        assessment.detectors[i] = score_detector(
+            names[i], std::move(found.at(names[i])), assessment.truths, score_options);
+      },
+      {},
+      options.stop);
+  std::stable_sort(assessment.detectors.begin(),
+                   assessment.detectors.end(),
+                   [](const DetectorScore& a, const DetectorScore& b) {
+                     return a.average_precision.ap_centre.value_or(-1) >
+                            b.average_precision.ap_centre.value_or(-1);
+                   });
+  say_who_has_no_tracks(assessment);
+  for (const std::string& sentence : assessment.left_out) airtruth::warn(options.warn, sentence);
+  return assessment;
+}
+
+}  // namespace airtruth::detection

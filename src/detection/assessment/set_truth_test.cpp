@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// The truth of a rendered set as the measures of detections take it, against its truth.jsonl and
+// against paths that are known.
+#include "detection/assessment/set_truth.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "detection/assessment/assess.h"
+#include "detection/detections/results_folder.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/replay/finished.h"
+#include "sequence/sequence/sequence.h"
+#include "world/scene/scene.h"
+
+namespace airtruth::detection {
+namespace {
+
+constexpr int kFrames = 12;
+// The own aircraft flies north at 25 m/s, the intruder south at 55 m/s, 60 m to the right and 15 m
+// higher at the closest approach after 8 s.
+constexpr double kApproach_s = 8;
+
+class OfRenderedSet : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("airtruth_set_truth_test_" + std::to_string(::getpid()));
+    fs::create_directories(root_);
+    synthetic::FlightOptions options;
+    options.width = 320;
+    options.height = 240;
+    options.frame_count = kFrames;
+    options.own_aircraft = false;
+    sequence::VirtualFlightOptions how;
+    how.format = video::Format::kMkv;
+    sequence::write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
+    render("asked", "[truth]\nvolumes = [\"f3442\"]\n");
+    render("plain", "");
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  static void render(const std::string& name, const std::string& tables) {
+    const std::string text = "name = \"" + name + "\"\nweight = 3\n[background]\nvideo = " +
+                             "\"flight.mkv\"\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
+                             "[camera]\nposition_ned_m = [0, 0, -150]\n"
+                             "velocity_ned_mps = [25, 0, 0]\n[motion]\nmodel = \"none\"\n" +
+                             tables +
+                             "[[intruder]]\nid = \"him\"\naircraft = \"c172/g-boix\"\n"
+                             "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
+                             "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n"
+                             "[output]\nvideo = \"mkv\"\n";
+    sequence::Options options;
+    options.use_cache = false;
+    sequence::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "set", options);
+  }
+
+  static SetTruth truth(const std::string& volume = "") {
+    return set_truth(root_ / "set", {volume, {}, {}});
+  }
+
+  static inline fs::path root_;
+};
+
+TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
+  const SetTruth set = truth();
+  ASSERT_EQ(set.sequences.size(), 2u);
+  EXPECT_TRUE(set.is_weighted);
+  const TruthSequence& one = set.sequences[0];
+  EXPECT_EQ(one.name, "asked");
+  EXPECT_EQ(one.weight, 3);
+  EXPECT_EQ(one.background, "flight.mkv");
+  EXPECT_EQ(one.width, 320);
+  const sequence::Finished finished = sequence::open_finished(root_ / "set" / "asked");
+  ASSERT_EQ(one.frames.size(), finished.truth.frames.size());
+  EXPECT_NEAR(one.duration_s, kFrames / 30.0, 1e-3);  // Matroska counts milliseconds
+  std::size_t counting = 0;
+  for (std::size_t i = 0; i < one.frames.size(); ++i) {
+    const annotation::Intruder& him = finished.truth.frames[i].intruders[0];
+    ASSERT_EQ(one.frames[i].objects.size(), him.visible_box_px ? 1u : 0u);
+    if (!him.visible_box_px) continue;
+    const TruthObject& object = one.frames[i].objects[0];
+    EXPECT_EQ(object.counts, him.covered_box_px.has_value());
+    const PixelBox box = him.covered_box_px.value_or(*him.visible_box_px);
+    EXPECT_EQ(object.box_px,
+              (Box{double(box.x), double(box.y), double(box.width), double(box.height)}));
+    EXPECT_EQ(object.range_m, him.range_m);
+    EXPECT_EQ(object.azimuth_deg, him.azimuth_deg);
+    EXPECT_TRUE(*object.above_horizon);
+    EXPECT_NEAR(*object.to_closest_approach_s, kApproach_s - one.frames[i].time_s, 1e-3);
+    counting += object.counts ? 1 : 0;
+  }
+  EXPECT_GT(counting, 0u);
+  ASSERT_EQ(one.encounters.size(), 1u);
+  EXPECT_EQ(one.encounters[0].name, "him");
+  EXPECT_NEAR(*one.encounters[0].closest_approach_m, std::hypot(60, 15), 0.1);
+  EXPECT_FALSE(one.encounters[0].has_volume);
+}
+
+// By hand: the horizontal distance is 2000 ft where 80 (8 - t) = sqrt(609.6^2 - 60^2); 15 m of
+// height are within 250 ft. One sequence states it in its record, of the other it follows from the
+// positions.
+TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePositions) {
+  const SetTruth set = truth("f3442");
+  const double by_hand_s = kApproach_s - std::sqrt(609.6 * 609.6 - 60 * 60) / 80;
+  for (const TruthSequence& one : set.sequences) {
+    ASSERT_TRUE(one.encounters.at(0).has_volume) << one.name;
+    EXPECT_NEAR(*one.encounters[0].violation_s, by_hand_s, 0.01) << one.name;
+  }
+}
+
+TEST_F(OfRenderedSet, RefusesAnUnknownVolume) {
+  try {
+    truth("f344");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.message(), testing::HasSubstr("did you mean 'f3442'?"));
+  }
+}
+
+// Exact answers with one track: everything is found, declared at once, and without a bearing error
+// but for the box's own centre.
+TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
+  const SetTruth set = truth();
+  const fs::path folder = root_ / "exact";
+  fs::create_directories(folder);
+  for (const TruthSequence& one : set.sequences) {
+    SequenceDetections detections{one.name, one.width, one.height, {}, {}};
+    for (const TruthFrame& frame : one.frames) {
+      auto& list = detections.frames.emplace_back();
+      for (const TruthObject& object : frame.objects)
+        list.push_back({object.box_px, 1, "aircraft", 5});
+    }
+    write_sequence(folder, detections);
+  }
+  write_file(folder / "detector.json", "{}");
+  ASSERT_TRUE(holds_detections(folder));
+  AssessOptions options;
+  options.manoeuvre_s = 0;
+  options.volume = "f3442";
+  const Assessment assessment = assess(root_ / "set", {folder}, options);
+  const DetectorScore& score = assessment.detectors.at(0);
+  EXPECT_NEAR(*score.average_precision.ap, 1, 1e-9);
+  EXPECT_NEAR(*score.average_precision.ap_centre, 1, 1e-9);
+  EXPECT_EQ(score.point->detection.value, 1);
+  EXPECT_EQ(score.point->false_alarms_per_image, 0);
+  EXPECT_NEAR(Hota::mean(score.tracks->hota.hota), 1, 1e-9);
+  EXPECT_EQ(score.tracks->clear.mota(), 1);
+  EXPECT_EQ(score.tracks->declarations.declared.value, 1);
+  EXPECT_EQ(score.tracks->declarations.in_time->value, 1);
+  EXPECT_EQ(score.tracks->weighted_declarations->declared.trials, 6);
+  EXPECT_EQ(score.tracks->encounters[0].declaration->frame, score.tracks->encounters[0].first_seen);
+  ASSERT_TRUE(score.bearing);
+  // A pixel is 1.5 mrad; the box is of whole pixels.
+  EXPECT_LT(score.bearing->azimuth.rms, 2);
+  EXPECT_LT(score.bearing->elevation.rms, 2);
+  EXPECT_FALSE(score.by.at("contrast_to_noise").empty());
+}
+
+}  // namespace
+}  // namespace airtruth::detection

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "detection/scoring/breakdown.h"
+
+#include <algorithm>
+
+namespace airtruth::detection {
+namespace {
+
+// Trials and finds of each sequence in one bin.
+class Trials {
+ public:
+  explicit Trials(std::size_t sequences) : clusters_(sequences, Cluster{0, 0, 1}) {}
+  void add(const Sighting& sighting) {
+    clusters_[sighting.sequence].trials += 1;
+    clusters_[sighting.sequence].successes += sighting.is_found ? 1 : 0;
+  }
+  Share share() const { return share_of(clusters_); }
+
+ private:
+  std::vector<Cluster> clusters_;
+};
+
+}  // namespace
+
+std::vector<DetectionBin> detection_by(std::span<const Sighting> sightings,
+                                       std::span<const std::optional<double>> values,
+                                       std::span<const double> edges,
+                                       std::size_t sequences) {
+  std::map<std::size_t, Trials> bins;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (!values[i]) continue;
+    const auto above = std::upper_bound(edges.begin(), edges.end(), *values[i]);
+    if (above == edges.begin()) continue;
+    const auto bin = static_cast<std::size_t>(above - edges.begin()) - 1;
+    bins.try_emplace(bin, sequences).first->second.add(sightings[i]);
+  }
+  std::vector<DetectionBin> result;
+  for (const auto& [bin, trials] : bins) {
+    DetectionBin& one = result.emplace_back();
+    one.from = edges[bin];
+    if (bin + 1 < edges.size()) one.to = edges[bin + 1];
+    one.detection = trials.share();
+  }
+  return result;
+}
+
+std::vector<DetectionBin> detection_by_name(std::span<const Sighting> sightings,
+                                            std::span<const std::optional<std::string>> names,
+                                            std::size_t sequences) {
+  std::map<std::string, Trials> bins;
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    if (names[i]) bins.try_emplace(*names[i], sequences).first->second.add(sightings[i]);
+  std::vector<DetectionBin> result;
+  for (const auto& [name, trials] : bins) {
+    DetectionBin& one = result.emplace_back();
+    one.name = name;
+    one.detection = trials.share();
+  }
+  return result;
+}
+
+const std::vector<Quantity>& quantities() {
+  using Value = std::optional<double>;
+  using Name = std::optional<std::string>;
+  using Object = const TruthObject&;
+  static const std::vector<Quantity> all = {
+      {"range_m",
+       "range, m",
+       {0, 100, 200, 300, 400, 500, 750, 1000, 1500, 2000, 3000, 5000, 10000},
+       [](Object object) { return object.range_m; }},
+      {"size_px",
+       "longer side, px",
+       {0, 3, 5, 7, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400},
+       [](Object object) { return Value(object.size_px()); }},
+      {"area_px",
+       "pixels on target",
+       {0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000},
+       [](Object object) { return Value(object.area_px()); }},
+      {"contrast_to_noise",
+       "contrast to noise",
+       {0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64},
+       [](Object object) { return object.contrast_to_noise; }},
+      {"azimuth_deg",
+       "azimuth, deg",
+       {-180, -90, -70, -50, -40, -30, -20, -10, 0, 10, 20, 30, 40, 50, 70, 90},
+       [](Object object) { return object.azimuth_deg; }},
+      {"to_closest_approach_s",
+       "time to closest approach, s",
+       {-600, -60, -30, -10, 0, 2, 5, 10, 15, 20, 30, 45, 60, 90, 120, 300},
+       [](Object object) { return object.to_closest_approach_s; }},
+      {"horizon",
+       "against the horizon",
+       {},
+       nullptr,
+       [](const TruthSequence&, Object object) {
+         return object.above_horizon ? Name(*object.above_horizon ? "above" : "below") : Name();
+       }},
+      {"background", "background", {}, nullptr, [](const TruthSequence& sequence, Object) {
+         return sequence.background.empty() ? Name() : Name(sequence.background);
+       }}};
+  return all;
+}
+
+}  // namespace airtruth::detection

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "detection/scoring/aot.h"
+#include "detection/scoring/assessment.h"
+#include "detection/scoring/average_precision.h"
+#include "detection/scoring/bearing_error.h"
+#include "detection/scoring/breakdown.h"
+#include "detection/scoring/froc.h"
+#include "detection/scoring/track_frames.h"
+#include "detection/scoring/truth.h"
+
+// A sequence's truth and detections in the form that each measure takes.
+namespace airtruth::detection {
+
+// Aircraft that count are truths; those that do not, and ignored regions, are regions. Detections
+// that claim something else than an aircraft are left out, here and below.
+std::vector<ScoredImage> images_of(const TruthSequence& truth, const ScoredDetections& scored);
+
+FrocSequence froc_sequence_of(const TruthSequence& truth, const ScoredDetections& scored);
+
+// `sequence` is the number that the sightings and samples get.
+std::vector<Sighting> sightings_of(std::size_t sequence,
+                                   const TruthSequence& truth,
+                                   const ScoredDetections& scored,
+                                   double score);
+
+// Of the detection of the highest score that finds the aircraft, in each frame. Empty without a
+// lens.
+std::vector<BearingSample> bearing_samples_of(std::size_t sequence,
+                                              const TruthSequence& truth,
+                                              const ScoredDetections& scored,
+                                              double score);
+
+// Aircraft, birds, multirotors and balloons are objects, the latter three without a range, as in
+// the challenge's truth. Ignored detections are left out.
+AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scored);
+
+// Aircraft that count, and detections with a track that are not ignored.
+TrackFrames track_frames_of(const TruthSequence& truth, const ScoredDetections& scored);
+
+}  // namespace airtruth::detection

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "encounter/tracks_file/track_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "encounter/track/units.h"
+#include "encounter/tracks_file/table_text.h"
+#include "encounter/tracks_file/track_builder.h"
+
+namespace airtruth::encounter {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"time_s", "x_ft", "y_ft", "z_ft"};
+
+// The place of each column of kNames in a row.
+std::array<std::size_t, kNames.size()> places_of(const std::vector<std::string_view>& headings,
+                                                 const Where& where) {
+  std::array<std::size_t, kNames.size()> places{};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const auto found = std::find(headings.begin(), headings.end(), kNames[i]);
+    if (found == headings.end() || headings.size() != kNames.size())
+      throw Error(fmt::format("the header is '{}'; expected {}",
+                              fmt::format("{}", fmt::join(headings, ",")).substr(0, 80),
+                              fmt::join(kNames, ",")),
+                  where);
+    places[i] = static_cast<std::size_t>(found - headings.begin());
+  }
+  return places;
+}
+
+}  // namespace
+
+bool is_track_csv(std::string_view text) {
+  Lines lines(text, "");
+  if (!lines.next()) return false;
+  std::vector<std::string_view> cells;
+  split_row(lines.line(), cells);
+  return std::find(cells.begin(), cells.end(), kNames[1]) != cells.end();
+}
+
+Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
+  Lines lines(text, file.string());
+  std::vector<std::string_view> cells;
+  if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
+  split_row(lines.line(), cells);
+  const auto places = places_of(cells, lines.where());
+  TrackBuilder builder;
+  while (lines.next()) {
+    split_row(lines.line(), cells);
+    if (cells.size() != kNames.size())
+      throw Error(fmt::format("has {} cells; expected {}", cells.size(), kNames.size()),
+                  lines.where());
+    std::array<double, kNames.size()> values{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = number_in(cells[places[i]], kNames[i], lines.where());
+    const Vector3 position_ned_ft(values[1], values[2], -values[3]);
+    builder.add("track", values[0], kMetresOfFoot * position_ned_ft, nullptr, lines.where());
+  }
+  if (builder.is_empty()) throw Error("has no rows; expected one for each second", lines.where());
+  return builder.take();
+}
+
+}  // namespace airtruth::encounter

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+(() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const { byId, counted, drawPlot, element, number } = airtruth;
+  const { detectors } = data;
+
+  const dotOf = ({ style }) => {
+    const dot = element('span', '', 'dot');
+    dot.style.background = style.dash.length
+      ? `repeating-linear-gradient(90deg, ${style.colour} 0 ${style.dash[0] / 2}px, transparent 0 ${style.dash[0] / 2 + 2}px)`
+      : style.colour;
+    return dot;
+  };
+
+  // Of a path of keys; null where a step is missing.
+  const at = (object, path) => path.split('.').reduce((value, key) => (value === null || value === undefined ? null : value[key] ?? null), object);
+  const withBounds = (value, bounds, digits) =>
+    value === null ? '–' : `${number(value, digits)}${bounds ? ` [${number(bounds[0], digits)}, ${number(bounds[1], digits)}]` : ''}`;
+  const shareText = (share) => (share ? withBounds(share.share, share.interval_95, 3) : '–');
+  const meanText = (mean, digits) => (mean ? withBounds(mean.mean, mean.interval_95, digits) : '–');
+
+  // Columns: heading, text of a detector, and what it is sorted by.
+  const sortable = (table, rows, columns, firstSort) => {
+    let by = firstSort;
+    let up = false;
+    const draw = () => {
+      table.replaceChildren();
+      const head = table.createTHead().insertRow();
+      columns.forEach((column, k) => {
+        const cell = element('th');
+        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
+        button.type = 'button';
+        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
+        cell.append(button);
+        head.append(cell);
+      });
+      const key = columns[by].of;
+      const sorted = [...rows].sort((a, b) => {
+        const [x, y] = [key(a), key(b)];
+        if (x === null || y === null) return (x === null) - (y === null);
+        return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1);
+      });
+      const body = table.createTBody();
+      for (const row of sorted) {
+        const line = body.insertRow();
+        columns.forEach((column, k) => {
+          const cell = line.insertCell();
+          if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
+          else cell.textContent = column.text ? column.text(row) : number(column.of(row), column.digits);
+        });
+      }
+    };
+    draw();
+  };
+  const name = { name: 'detector', of: (d) => d.name, up: true };
+  const plain = (title, path, digits, up) => ({ name: title, of: (d) => at(d, path), digits, up });
+
+  const drawRanking = () => {
+    const bounded = (title, path, digits) => ({
+      name: title, of: (d) => at(d, path), text: (d) => withBounds(at(d, path), at(d, `${path}_interval_95`), digits),
+    });
+    const columns = [
+      name, plain('sequences', 'sequences', 0),
+      bounded(`AP at ${data.centre_px} px`, 'average_precision.ap_centre', 3),
+      bounded('AP50', 'average_precision.ap_50', 3), plain('AP', 'average_precision.ap', 3),
+      { name: 'PD at the point', of: (d) => at(d, 'point.detection.share'), text: (d) => shareText(at(d, 'point.detection')) },
+      plain('false alarms an image', 'point.false_alarms_per_image', 4, true),
+      plain('an hour', 'point.false_alarms_per_hour', 0, true),
+      plain('a flight', 'point.false_alarms_per_flight', 2, true),
+      plain('score', 'point.score', 3),
+      plain('EDR (300 m)', 'aot.edr.rate', 3), plain('AFDR', 'aot.afdr.rate', 3), plain('FPPI', 'aot.fppi', 4, true), plain('HFAR', 'aot.hfar', 1, true),
+      plain('fps, median', 'frames_per_second_median', 1),
+    ];
+    sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2);
+    byId('how').textContent = 'Brackets: 95 % intervals over sequences. PD: share of aircraft in frames that are found; the operating point is ' +
+      'the stated score, or the least with the false alarms asked for. EDR, AFDR, FPPI, HFAR: of Amazon\'s Airborne Object Tracking challenge. Click a heading to sort.';
+    for (const sentence of data.left_out) byId('left-out').append(element('li', sentence));
+  };
+
+  const drawTracks = () => {
+    const with_tracks = detectors.filter((d) => d.tracks);
+    if (!with_tracks.length) return;
+    byId('tracks-place').hidden = false;
+    const kinds = [['', 'declarations']];
+    if (with_tracks.some((d) => d.tracks.weighted_declarations)) kinds.push(['weighted ', 'weighted_declarations']);
+    const columns = [
+      name, plain('HOTA', 'tracks.hota.hota.mean', 3), plain('MOTA', 'tracks.clear.mota', 3), plain('IDF1', 'tracks.identity.idf1', 3),
+      plain('switches', 'tracks.clear.identity_switches', 0, true),
+      plain('false tracks', 'tracks.false_tracks', 0, true), plain('an hour', 'tracks.false_tracks_per_hour', 1, true),
+    ];
+    for (const [word, key] of kinds) {
+      const of = (part) => (d) => at(d, `tracks.${key}.${part}`);
+      columns.push(
+        { name: `${word}declared`, of: of('declared.share'), text: (d) => shareText(of('declared')(d)) },
+        { name: `${word}range, m`, of: of('range_m.mean'), text: (d) => meanText(of('range_m')(d), 0) },
+        { name: `${word}before closest approach, s`, of: of('to_closest_approach_s.mean'), text: (d) => meanText(of('to_closest_approach_s')(d), 1) },
+        { name: `${word}in time`, of: of('in_time.share'), text: (d) => shareText(of('in_time')(d)) });
+    }
+    sortable(byId('tracks'), with_tracks, columns.filter((c, k) => k === 0 || with_tracks.some((d) => c.of(d) !== null)), 1);
+    byId('tracks-how').textContent = 'Declared: from a frame on in which a track is on the aircraft and is kept.' +
+      (data.manoeuvre_s === null ? '' : ` In time: ${number(data.manoeuvre_s, 1)} s before ${data.volume} is violated.`);
+  };
+
+  const drawBearing = () => {
+    const known = detectors.filter((d) => d.bearing);
+    if (!known.length) return;
+    byId('bearing-place').hidden = false;
+    const model = known[0].bearing;
+    const columns = [name];
+    for (const [title, key, unit, limit] of [
+      ['azimuth', 'azimuth_mrad', 'mrad', model.sc228_bearing_deviation_mrad], ['elevation', 'elevation_mrad', 'mrad', model.sc228_bearing_deviation_mrad],
+      ['azimuth rate', 'azimuth_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps], ['elevation rate', 'elevation_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps]])
+      columns.push(plain(`${title}, ${unit} (model ${limit})`, `bearing.${key}.deviation`, 2, true), plain('mean', `bearing.${key}.mean`, 2));
+    sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1);
+  };
+
+  // The plots are described by the program (detection/detection_page/detection_plots.h). They have no legends: the
+  // table says which style is whose.
+  const drawPlots = () => {
+    for (const span of document.querySelectorAll('.centre-px')) span.textContent = number(data.centre_px, 1);
+    for (const canvas of document.querySelectorAll('canvas[data-plot]')) {
+      const plot = data.plots[canvas.dataset.plot];
+      if (plot) drawPlot(canvas, plot); else canvas.closest('figure').remove();
+    }
+    if (!byId('by').children.length) { byId('by-heading').remove(); byId('by').remove(); }
+  };
+
+  const player = airtruth.detectionPlayer(data, dotOf);
+
+  // A picture with its box, and words; leads to the frame in the player.
+  const exhibit = (entry, blob, colour, words) => {
+    const figure = element('figure');
+    const canvas = element('canvas');
+    canvas.width = canvas.height = 160;
+    const holder = byId(blob);
+    if (holder && entry.cutout) {
+      const image = new Image();
+      image.onload = () => {
+        const context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0, 160, 160);
+        const [left, top, px] = entry.cutout;
+        const scale = 160 / px;
+        const [x, y, width, height] = entry.box_px;
+        for (const [paint, thickness] of [['#000000', 3.5], [colour, 1.5]]) {
+          context.strokeStyle = paint;
+          context.lineWidth = thickness;
+          context.strokeRect((x - left) * scale - 3, (y - top) * scale - 3, width * scale + 6, height * scale + 6);
+        }
+      };
+      image.src = `data:image/jpeg;base64,${holder.textContent}`;
+    }
+    const button = element('button', words[0]);
+    button.type = 'button';
+    button.addEventListener('click', () => player.showFrame(entry.sequence, entry.frame));
+    const caption = element('figcaption');
+    caption.append(button, ...words.slice(1).map((text) => element('div', text)));
+    figure.append(canvas, caption);
+    return figure;
+  };
+  const alarmWords = (alarm) => [
+    `score ${number(alarm.score, 2)}`, alarm.what, `${alarm.sequence}, frame ${alarm.frame}`,
+    `${number(alarm.box_px[2])} × ${number(alarm.box_px[3])} px, ${counted(alarm.frames, 'frame')}` +
+      (alarm.to_aircraft_px === null ? '' : `, ${number(alarm.to_aircraft_px)} px from an aircraft`)];
+  const missWords = (miss) => [
+    `${number(miss.box_px[2])} × ${number(miss.box_px[3])} px`,
+    [miss.range_m === null ? '' : `${number(miss.range_m)} m`, miss.contrast_to_noise === null ? '' : `contrast to noise ${number(miss.contrast_to_noise, 1)}`].filter(Boolean).join(', '),
+    `${miss.sequence}, frame ${miss.frame}`, `missed in ${counted(miss.frames, 'frame')} from ${miss.first_frame} on`];
+
+  const drawGalleries = () => {
+    const k = Number(byId('gallery-detector').value);
+    const detector = detectors[k];
+    const what = byId('gallery-what').value;
+    const alarms = detector.strongest_false_alarms.map((alarm, i) => ({ ...alarm, i })).filter((alarm) => !what || alarm.what === what);
+    byId('alarms-heading').textContent = alarms.length ? `${counted(alarms.length, 'strongest false alarm')} of ${detector.name}` : `No false alarm of ${detector.name} at its operating point`;
+    byId('alarms').replaceChildren(...alarms.map((alarm) => exhibit(alarm, `alarm-${k}-${alarm.i}`, detector.style.colour, alarmWords(alarm))));
+    byId('misses-heading').textContent = detector.misses.length ? `${counted(detector.misses.length, 'aircraft', 'aircraft')} that ${detector.name} misses, the easiest first` : `${detector.name} misses no aircraft`;
+    byId('misses').replaceChildren(...detector.misses.map((miss, i) => exhibit(miss, `miss-${k}-${i}`, '#ffffff', missWords(miss))));
+  };
+  const beginGalleries = () => {
+    detectors.forEach((detector, k) => {
+      const option = element('option', detector.name);
+      option.value = k;
+      byId('gallery-detector').append(option);
+    });
+    const kinds = new Set(detectors.flatMap((d) => d.strongest_false_alarms.map((alarm) => alarm.what)));
+    for (const kind of [...kinds].sort()) {
+      const option = element('option', kind);
+      option.value = kind;
+      byId('gallery-what').append(option);
+    }
+    byId('gallery-choice').addEventListener('input', drawGalleries);
+    if (detectors.length) drawGalleries();
+  };
+
+  byId('title').textContent = `Detectors on ${data.dataset}`;
+  document.title = byId('title').textContent;
+  byId('summary').textContent = `${counted(detectors.length, 'detector')}, ${counted(data.sequences.length, 'sequence')}, ${counted(data.frames, 'frame')}; made by airtruth ${data.version}`;
+  drawRanking();
+  drawTracks();
+  drawBearing();
+  drawPlots();
+  player.begin();
+  beginGalleries();
+})();

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+// Plays the sequences of an evaluation of detectors: pictures that the page holds, with truth, detections and
+// tracks, and a strip over all frames.
+airtruth.detectionPlayer = (data, dotOf) => {
+  const { byId, counted, element, ink, number } = airtruth;
+  const { detectors } = data;
+  const hidden = new Set();
+  let sequence = null;
+  let at = 0; // index into the sequence's stills
+  let playing = 0; // which call of play() goes on
+  let asked = 0;
+
+  const shown = () => sequence.detectors.filter((one) => !hidden.has(one.detector));
+  const isStrong = (detector, score) => detectors[detector].point !== null && score >= detectors[detector].point.score;
+
+  const rectangle = (context, view, [x, y, width, height], colour, thickness, dashes) => {
+    context.setLineDash(dashes);
+    context.strokeStyle = colour;
+    context.lineWidth = thickness;
+    context.strokeRect((x - view.x) * view.scale - 1, (y - view.y) * view.scale - 1, width * view.scale + 2, height * view.scale + 2);
+  };
+  const cross = (context, view, [x, y, width, height]) => {
+    const [left, top, right, bottom] = [x - view.x, y - view.y, x + width - view.x, y + height - view.y].map((v) => v * view.scale);
+    context.setLineDash([]);
+    context.beginPath();
+    context.moveTo(left, top);
+    context.lineTo(right, bottom);
+    context.moveTo(right, top);
+    context.lineTo(left, bottom);
+    context.stroke();
+  };
+  const drawTruth = (context, view, still) => {
+    for (const box of still.ignored) rectangle(context, view, box, '#9aa7b4', 1.5, [2, 3]);
+    for (const object of still.objects) {
+      const isAircraft = object.class === 'aircraft' && object.counts;
+      rectangle(context, view, object.box, '#000000', 4.5, []);
+      rectangle(context, view, object.box, isAircraft ? '#ffffff' : '#9aa7b4', 2, isAircraft ? [] : [2, 3]);
+    }
+  };
+  const drawDetections = (context, view) => {
+    for (const one of shown()) {
+      const { colour } = detectors[one.detector].style;
+      for (const [box, score, track, fate] of one.drawn[at]) {
+        const strong = isStrong(one.detector, score);
+        if (!strong && !byId('weak').checked) continue;
+        rectangle(context, view, box, colour, 1.8, strong ? [] : [5, 4]);
+        if (fate === 'false alarm' && strong) cross(context, view, box);
+        if (track === null) continue;
+        context.fillStyle = colour;
+        context.font = 'bold 13px system-ui, sans-serif';
+        context.fillText(String(track), (box[0] - view.x + box[2]) * view.scale + 3, (box[1] - view.y) * view.scale);
+      }
+    }
+  };
+  const drawPicture = (canvas, image, view, still) => {
+    const context = canvas.getContext('2d');
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    if (!image) return;
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    drawTruth(context, view, still);
+    drawDetections(context, view);
+  };
+
+  const loaded = (id) => {
+    const holder = byId(id);
+    if (!holder) return Promise.resolve(null);
+    return new Promise((done) => {
+      const image = new Image();
+      image.onload = () => done(image);
+      image.onerror = () => done(null);
+      image.src = `data:image/jpeg;base64,${holder.textContent}`;
+    });
+  };
+
+  const captionOf = (still) => {
+    if (!still) return 'no pictures';
+    const parts = [`frame ${still.frame}, ${number(still.time_s, 2)} s`];
+    const aircraft = still.objects.filter((object) => object.class === 'aircraft');
+    if (!aircraft.length) parts.push('no aircraft');
+    for (const object of aircraft) {
+      const facts = [`${number(object.box[2])} × ${number(object.box[3])} px`];
+      if (object.range_m !== null) facts.push(`${number(object.range_m)} m`);
+      if (object.to_closest_s !== null) facts.push(`${number(object.to_closest_s, 1)} s to closest approach`);
+      if (object.cnr !== null) facts.push(`contrast to noise ${number(object.cnr, 1)}`);
+      parts.push(facts.join(', '));
+    }
+    return parts.join('; ');
+  };
+
+  // The detections of the picture, the strongest first.
+  const mostRows = 8;
+  const drawTable = () => {
+    const table = byId('boxes');
+    table.replaceChildren();
+    table.createTHead().insertRow().append(...['detector', 'score', 'track', 'fate'].map((text) => element('th', text)));
+    const body = table.createTBody();
+    for (const one of shown()) {
+      const listed = (one.drawn[at] || []).filter(([, score]) => isStrong(one.detector, score) || byId('weak').checked);
+      for (const [, score, track, fate, what] of listed.slice(0, mostRows)) {
+        const row = body.insertRow();
+        const name = row.insertCell();
+        name.append(dotOf(detectors[one.detector]), document.createTextNode(detectors[one.detector].name));
+        const said = fate === 'found' || what === '' ? fate : `${fate}: ${what}`;
+        for (const text of [number(score, 3), track === null ? '–' : String(track), said]) row.append(element('td', text));
+      }
+      if (listed.length > mostRows) body.insertRow().append(element('td', `and ${listed.length - mostRows} more`));
+    }
+  };
+
+  const rowHeight = 18;
+  const drawStrip = () => {
+    const canvas = byId('strip');
+    const rows = shown();
+    const ratio = window.devicePixelRatio || 1;
+    const width = Math.max(100, canvas.parentNode.clientWidth - 28);
+    const height = Math.max(1, rows.length) * rowHeight + 4;
+    canvas.width = width * ratio;
+    canvas.height = height * ratio;
+    canvas.style.height = `${height}px`;
+    const context = canvas.getContext('2d');
+    context.scale(ratio, ratio);
+    const count = sequence.frame.length;
+    const place = (index) => (index * width) / count;
+    rows.forEach((one, k) => {
+      const top = k * rowHeight + 2;
+      const { colour } = detectors[one.detector].style;
+      for (let i = 0; i < count;) {
+        const letter = one.found[i];
+        let end = i + 1;
+        while (end < count && one.found[end] === letter) ++end;
+        if (letter !== '.') {
+          context.fillStyle = letter === 'm' ? '#9aa7b455' : colour;
+          const tall = letter === 'p' ? 5 : 10;
+          context.fillRect(place(i), top + 10 - tall, Math.max(0.5, place(end) - place(i)), tall);
+        }
+        i = end;
+      }
+      context.fillStyle = '#D55E00';
+      for (const index of one.false_alarms) context.fillRect(place(index), top + 11, Math.max(1, width / count), 4);
+    });
+    const still = sequence.stills[at];
+    if (!still) return;
+    context.fillStyle = ink;
+    context.fillRect(place(still.index + 0.5) - 0.75, 0, 1.5, height);
+  };
+
+  // Pictures, caption, table, slider and strip change together, once the pictures are decoded.
+  const drawFrame = async () => {
+    asked += 1;
+    const mine = asked;
+    const still = sequence.stills[at];
+    const name = `${sequence.index}-${at}`;
+    const [whole, close] = still ? await Promise.all([loaded(`whole-${name}`), loaded(`close-${name}`)]) : [null, null];
+    if (mine !== asked) return;
+    byId('whole').height = Math.round((byId('whole').width * sequence.height) / sequence.width);
+    drawPicture(byId('whole'), whole, { x: 0, y: 0, scale: byId('whole').width / sequence.width }, still);
+    const [x, y, px] = (still && still.close) || [0, 0, 1];
+    drawPicture(byId('close'), close, { x, y, scale: byId('close').width / px }, still);
+    byId('caption').textContent = captionOf(still);
+    byId('frame').value = at;
+    drawTable();
+    drawStrip();
+  };
+
+  const go = (index) => {
+    at = Math.max(0, Math.min(sequence.stills.length - 1, index));
+    return drawFrame();
+  };
+  const stop = () => {
+    playing += 1;
+    byId('play').textContent = 'Play';
+  };
+  const play = async () => {
+    playing += 1;
+    const mine = playing;
+    byId('play').textContent = 'Pause';
+    if (at >= sequence.stills.length - 1) await go(0);
+    while (mine === playing && at < sequence.stills.length - 1)
+      await Promise.all([go(at + 1), new Promise((done) => setTimeout(done, 120))]);
+    if (mine === playing) stop();
+  };
+
+  const factsOf = () => {
+    const parts = [`over ${sequence.background}, ${counted(sequence.frame.length, 'frame')} of ${sequence.width} × ${sequence.height}`];
+    for (const one of sequence.encounters) {
+      if (one.closest_s === null) continue;
+      const violation = one.violation_s === null || !data.volume ? '' : `, violates ${data.volume} from ${number(one.violation_s, 1)} s`;
+      parts.push(`${one.name}: closest ${number(one.closest_m)} m at ${number(one.closest_s, 1)} s${violation}`);
+    }
+    // When each detector has declared each aircraft.
+    detectors.forEach((detector) => {
+      for (const one of detector.tracks ? detector.tracks.encounters : []) {
+        if (one.sequence !== sequence.name) continue;
+        const { declaration } = one;
+        const range = declaration && declaration.range_m !== null ? ` at ${number(declaration.range_m)} m` : '';
+        const time = declaration && declaration.to_closest_approach_s !== null ? `, ${number(declaration.to_closest_approach_s, 1)} s before the closest approach` : '';
+        parts.push(`${detector.name} ${declaration ? `declares ${one.name || one.object}${range}${time}` : `never declares ${one.name || one.object}`}`);
+      }
+    });
+    if (data.is_weighted) parts.push(`weight ${number(sequence.weight, 3)}`);
+    if (!sequence.detectors.length) parts.push('no detector has results for it');
+    return parts.join(' · ');
+  };
+
+  const nearestStill = (index) => sequence.stills.reduce(
+    (best, still, k) => (Math.abs(still.index - index) < Math.abs(sequence.stills[best].index - index) ? k : best), 0);
+
+  const show = (index, frameIndex = 0) => {
+    stop();
+    sequence = data.sequences[index];
+    byId('sequence').value = index;
+    byId('frame').max = Math.max(0, sequence.stills.length - 1);
+    byId('facts').textContent = factsOf();
+    return go(sequence.stills.length ? nearestStill(frameIndex) : 0);
+  };
+  // By the name of a sequence and the number of a frame.
+  const showFrame = (name, frame) => {
+    const index = data.sequences.findIndex((one) => one.name === name);
+    if (index < 0) return;
+    show(index, Math.max(0, data.sequences[index].frame.indexOf(frame)));
+    byId('browser').scrollIntoView();
+  };
+
+  // Share of the frames with an aircraft in which the best detector finds all of them.
+  const shareOf = (one) => {
+    const shares = one.detectors.map(({ found }) => {
+      const frames = [...found].filter((letter) => letter !== '.');
+      return frames.length ? frames.filter((letter) => letter === 'f').length / frames.length : null;
+    }).filter((share) => share !== null);
+    return shares.length ? Math.max(...shares) : null;
+  };
+
+  const begin = () => {
+    data.sequences.forEach((one, index) => {
+      one.index = index;
+      const share = shareOf(one);
+      const option = element('option', one.detectors.length
+        ? `${one.name}${share === null ? ' (no aircraft)' : ` (found in ${number(100 * share)} %)`}` : `${one.name} (no results)`);
+      option.value = index;
+      byId('sequence').append(option);
+    });
+    detectors.forEach((detector, k) => {
+      const label = element('label');
+      const box = element('input');
+      box.type = 'checkbox';
+      box.checked = true;
+      box.addEventListener('change', () => {
+        if (box.checked) hidden.delete(k); else hidden.add(k);
+        drawFrame();
+      });
+      label.append(box, dotOf(detector), document.createTextNode(detector.name));
+      byId('shown').append(label);
+    });
+    byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
+    const step = (by) => () => show((sequence.index + by + data.sequences.length) % data.sequences.length);
+    byId('previous').addEventListener('click', step(-1));
+    byId('next').addEventListener('click', step(1));
+    byId('weak').addEventListener('change', drawFrame);
+    byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
+    byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
+    byId('strip').addEventListener('click', (event) => {
+      stop();
+      const index = (event.offsetX / byId('strip').clientWidth) * sequence.frame.length;
+      if (sequence.stills.length) go(nearestStill(index));
+    });
+    window.addEventListener('resize', () => { if (sequence) drawStrip(); });
+    const first = data.sequences.find((one) => one.detectors.length && one.stills.length) || data.sequences[0];
+    if (first) show(first.index);
+  };
+  return { begin, showFrame };
+};
