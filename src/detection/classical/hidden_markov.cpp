@@ -87,6 +87,7 @@ class HiddenMarkov : public Detector {
       if (!carried.empty()) bank_->carry(carried);
     }
     const std::vector<Level> levels = scale_space(*frame.picture);
+    if (levels.empty()) return {};  // a picture smaller than the elements
     const Measurement measurement = measurement_of(levels, grid_->size());
     ratio_.learn(measurement);
     bank_->update(grid_->seen_by_cells(ratios_of(measurement)));
