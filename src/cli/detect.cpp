@@ -93,8 +93,9 @@ void add_options(CLI::App& command, Detect& arguments) {
   command
       .add_option("--detector,-d",
                   options.detectors,
-                  fmt::format("One or more of {}; NAME=DETECTOR names its results",
-                              fmt::join(detection::detector_names(), ", ")))
+                  fmt::format("One or more of {}, {}; NAME=DETECTOR names its results",
+                              fmt::join(detection::detector_names(), ", "),
+                              fmt::join(detection::detector_forms(), ", ")))
       ->required();
   command
       .add_option("--out,-o",
@@ -109,6 +110,9 @@ void add_options(CLI::App& command, Detect& arguments) {
                   options.max_per_frame,
                   "Keep only so many of a frame, those of the highest scores (default: 100)")
       ->check(CLI::Range(1, 100'000));
+  command.add_flag("--backgrounds,!--no-backgrounds",
+                   options.backgrounds,
+                   "The videos that a set was made over as well, which show no intruder (default)");
   command.add_option("--lens",
                      arguments.lens,
                      "Calibration file for what states no lens (default: a guess of 60 degrees)");

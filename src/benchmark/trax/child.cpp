@@ -127,15 +127,18 @@ pid_t spawn(
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
     errno = failed;
-    fail_system("start a tracker's process");
+    fail_system("start a process");
   }
   return process;
 }
 
 }  // namespace
 
-Child::Child(const std::string& command, Transport transport, std::stop_token stop)
-    : stop_(std::move(stop)) {
+Child::Child(const std::string& command,
+             Transport transport,
+             std::stop_token stop,
+             std::string_view prefix)
+    : stop_(std::move(stop)), prefix_(prefix) {
   Pipe to;
   Pipe from;
   Pipe chatter;
@@ -244,7 +247,7 @@ bool Child::drain(int& file, bool is_protocol) {
 void Child::take_lines() {
   const auto begins_message = [&] {
     const std::string_view rest = std::string_view(input_).substr(parsed_);
-    return std::string_view(kPrefix).starts_with(rest.substr(0, kPrefix.size()));
+    return std::string_view(prefix_).starts_with(rest.substr(0, prefix_.size()));
   };
   while (parsed_ < input_.size()) {
     const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
@@ -266,17 +269,22 @@ void Child::take_lines() {
   }
 }
 
+std::optional<std::string> Child::line_from_input() {
+  take_lines();
+  const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = input_.substr(parsed_, end - parsed_);
+  parsed_ = end + 1;
+  searched_ = parsed_;
+  return line;
+}
+
 std::optional<Message> Child::message_from_lines() {
-  while (true) {
-    take_lines();
-    const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
-    if (end == std::string::npos) return std::nullopt;
-    const std::string line = input_.substr(parsed_, end - parsed_);
-    parsed_ = end + 1;
-    searched_ = parsed_;
-    if (auto message = parse_line(line)) return message;
-    keep(line + "\n");
+  while (const auto line = line_from_input()) {
+    if (auto message = parse_line(*line)) return message;
+    keep(*line + "\n");
   }
+  return std::nullopt;
 }
 
 // Waits for something to read, or to write where there is something unsent, and does it.
@@ -338,12 +346,30 @@ Message Child::read(Clock::time_point deadline) {
   }
 }
 
-std::optional<Message> Child::read_if_there() {
+std::string Child::read_line(Clock::time_point deadline) {
+  accept(deadline);
+  while (true) {
+    if (auto line = line_from_input()) return *line;
+    if (from_ < 0) fail(ending());
+    pump(deadline, nullptr);
+  }
+}
+
+void Child::take_what_is_there() {
   if (from_ >= 0 && !drain(from_, true)) {
     if (to_ == from_) to_ = -1;
     close_file(from_);
   }
+}
+
+std::optional<Message> Child::read_if_there() {
+  take_what_is_there();
   return message_from_lines();
+}
+
+std::optional<std::string> Child::read_line_if_there() {
+  take_what_is_there();
+  return line_from_input();
 }
 
 void Child::wait(Clock::time_point deadline) {

@@ -23,10 +23,10 @@ class ChildError : public ProtocolError {
   using ProtocolError::ProtocolError;
 };
 
-// A tracker's process: a shell command in its own process group, so that all processes that it
-// starts end with it. Its output is read at all times, so that neither side blocks the other. Of
-// output other than messages, at most kMaxLog bytes are kept. A stop ends every wait with
-// Interrupted.
+// The process of a tracker, or of a detector: a shell command in its own process group, so that all
+// processes that it starts end with it. Its output is read at all times, so that neither side
+// blocks the other. Of output other than messages, at most kMaxLog bytes are kept. A stop ends
+// every wait with Interrupted.
 class Child {
  public:
   static constexpr std::size_t kMaxLog = std::size_t{1} << 20;
@@ -35,8 +35,12 @@ class Child {
     kSocket     // it connects to 127.0.0.1 at the port TRAX_SOCKET
   };
 
-  // Throws Error where no process can be created.
-  Child(const std::string& command, Transport transport, std::stop_token stop);
+  // Lines of its output that begin with `prefix` are messages. Throws Error where no process can be
+  // created.
+  Child(const std::string& command,
+        Transport transport,
+        std::stop_token stop,
+        std::string_view prefix = kPrefix);
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   // Ends the process with SIGTERM, then SIGKILL, sent to its group alone.
@@ -46,6 +50,9 @@ class Child {
   void write(std::string_view bytes, Clock::time_point deadline);
   // Returns the next message; other output goes to the log.
   Message read(Clock::time_point deadline);
+  // The same for a protocol other than TraX: the next line that begins with the prefix.
+  std::string read_line(Clock::time_point deadline);
+  std::optional<std::string> read_line_if_there();
   // Returns a message that has already arrived; never waits.
   std::optional<Message> read_if_there();
   // Waits until the process ends, at most until the deadline.
@@ -60,7 +67,9 @@ class Child {
   void accept(Clock::time_point deadline);
   void pump(Clock::time_point deadline, std::string_view* unsent);
   bool drain(int& file, bool is_protocol);
+  void take_what_is_there();
   void take_lines();
+  std::optional<std::string> line_from_input();
   std::optional<Message> message_from_lines();
   void keep(std::string_view text);
   [[noreturn]] void fail(const std::string& what);
@@ -69,6 +78,7 @@ class Child {
   void close_all();
 
   std::stop_token stop_;
+  std::string prefix_;
   pid_t process_ = -1;
   std::optional<Unfinished> unfinished_;  // its process group is ended
   std::optional<int> status_;

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "foundation/base/median.h"
-
 namespace airtruth::detection {
 namespace {
 
@@ -14,16 +12,30 @@ namespace {
 // let through to as much again.
 constexpr int kRingFrom = kElement;
 constexpr int kRingTo = 2 * kElement - 2;
-// A ring with fewer samples, at the picture's border, tells too little.
-constexpr std::size_t kLeastRing = 60;
+// At the picture's border, a ring with less than this share of its samples tells too little.
+constexpr double kLeastRing = 0.6;
+constexpr int kWholeRing =
+    (2 * kRingTo + 1) * (2 * kRingTo + 1) - (2 * kRingFrom - 1) * (2 * kRingFrom - 1);
+// An object that reaches further from its strongest sample, in samples of its level, is part of
+// something else.
+constexpr int kReach = 2 * kElement;
+// Across, it may be as wide as the short element lets through, with what the smoothing adds.
+constexpr int kMostAcross = kElement + 2;
 // What belongs to the object differs by this share of its contrast: low enough for wings thinner
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
 constexpr double kBoxNoise = 3;
+// Samples this far apart belong together: between a lit and a shaded part lies one that looks like
+// the sky.
+constexpr int kGap = 2;
 // Standard deviation of normal noise over its median absolute deviation (Rousseeuw and Croux 1993).
 constexpr double kSigmaOfMad = 1.4826;
-// The rounding to whole grey levels, smoothed.
-const double kLeastNoise = kGreyScale * kNoiseShare / std::sqrt(12.0);
+// Noise is taken from the median deviation and from this quantile of it, whichever is more: clutter
+// has long tails.
+constexpr double kTailQuantile = 0.9;
+constexpr double kSigmaOfTail = 1 / 1.6449;
+// The rounding to whole grey levels, which makes patches that smoothing does not remove.
+const double kLeastNoise = kGreyScale / std::sqrt(12.0);
 
 // v(x, y) = middle + x * along_x + y * along_y around a sample.
 struct Surroundings {
@@ -39,22 +51,26 @@ double median_of(std::vector<float>& values) {
 }
 
 // The plane's slope is by least squares and its height by the median, which other objects in the
-// ring do not lift.
-std::optional<Surroundings> surroundings_of(const cv::Mat& picture, const cv::Point& centre) {
+// ring do not lift. Samples within `object` do not count; of the others, every `stride`-th of every
+// `stride`-th row.
+std::optional<Surroundings> surroundings_of(const cv::Mat& picture,
+                                            const cv::Point& centre,
+                                            const cv::Rect& object,
+                                            int stride) {
   static thread_local std::vector<float> values;
   static thread_local std::vector<cv::Point> places;
   values.clear();
   places.clear();
   double sum_x = 0, sum_y = 0, sum_v = 0;
-  for (int dy = -kRingTo; dy <= kRingTo; ++dy) {
+  for (int dy = -kRingTo; dy <= kRingTo; dy += stride) {
     const int y = centre.y + dy;
     if (y < 0 || y >= picture.rows) continue;
     const short* row = picture.ptr<short>(y);
     const bool crosses = std::abs(dy) < kRingFrom;
-    for (int dx = -kRingTo; dx <= kRingTo; ++dx) {
-      if (crosses && dx == -kRingFrom + 1) dx = kRingFrom;
+    for (int dx = -kRingTo; dx <= kRingTo; dx += stride) {
+      if (crosses && std::abs(dx) < kRingFrom) continue;
       const int x = centre.x + dx;
-      if (x < 0 || x >= picture.cols) continue;
+      if (x < 0 || x >= picture.cols || object.contains({x, y})) continue;
       values.push_back(row[x]);
       places.push_back({dx, dy});
       sum_x += dx;
@@ -62,7 +78,8 @@ std::optional<Surroundings> surroundings_of(const cv::Mat& picture, const cv::Po
       sum_v += row[x];
     }
   }
-  if (values.size() < kLeastRing) return std::nullopt;
+  if (static_cast<double>(values.size()) * stride * stride < kLeastRing * kWholeRing)
+    return std::nullopt;
   const double n = static_cast<double>(values.size());
   double xx = 0, yy = 0, xy = 0, xv = 0, yv = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -83,7 +100,10 @@ std::optional<Surroundings> surroundings_of(const cv::Mat& picture, const cv::Po
     values[i] -= static_cast<float>(around.along_x * places[i].x + around.along_y * places[i].y);
   around.middle = median_of(values);
   for (float& value : values) value = std::abs(value - static_cast<float>(around.middle));
-  around.noise = std::max(kLeastNoise, kSigmaOfMad * median_of(values));
+  const double mad = median_of(values);
+  const auto tail = values.begin() + static_cast<std::ptrdiff_t>(kTailQuantile * n);
+  std::nth_element(values.begin(), tail, values.end());
+  around.noise = std::max({kLeastNoise, kSigmaOfMad * mad, kSigmaOfTail * *tail});
   return around;
 }
 
@@ -106,13 +126,14 @@ class Region {
       open.pop_back();
       low = {std::min(low.x, at.x), std::min(low.y, at.y)};
       high = {std::max(high.x, at.x), std::max(high.y, at.y)};
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -kGap; dy <= kGap; ++dy)
+        for (int dx = -kGap; dx <= kGap; ++dx) {
           const cv::Point next{at.x + dx, at.y + dy};
           if (!is_inside(next)) continue;
-          if (excess(next) < least || !mark(seen, next)) continue;
-          if (std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) >= reach_)
+          if (excess(next) < least) continue;
+          if (std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) > reach_)
             return std::nullopt;
+          if (!mark(seen, next)) continue;
           open.push_back(next);
         }
     }
@@ -147,6 +168,13 @@ Box box_of(const cv::Rect& samples, int step) {
           double(step) * samples.height};
 }
 
+// The samples of a level `finer` times coarser that the smoothing lets an object reach.
+cv::Rect coarser(const cv::Rect& samples, int finer) {
+  const cv::Point low{samples.x / finer - 1, samples.y / finer - 1};
+  const cv::Point high{samples.br().x / finer + 2, samples.br().y / finer + 2};
+  return {low, high};
+}
+
 // The sample of the finer level with the strongest excess under a sample of the coarser one.
 cv::Point strongest_under(const Level& fine, const cv::Point& coarse, double sign) {
   cv::Point best{-1, -1};
@@ -164,6 +192,20 @@ cv::Point strongest_under(const Level& fine, const cv::Point& coarse, double sig
   return best;
 }
 
+// Whether no neighbouring block has a stronger response; of equal ones, the first counts.
+bool is_peak(const cv::Mat& largest, int bx, int by) {
+  const short here = largest.at<short>(by, bx);
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = bx + dx, y = by + dy;
+      if (x < 0 || y < 0 || x >= largest.cols || y >= largest.rows) continue;
+      const short there = largest.at<short>(y, x);
+      const bool is_before = dy < 0 || (dy == 0 && dx < 0);
+      if (there > here || (is_before && there == here)) return false;
+    }
+  return true;
+}
+
 cv::Point strongest_in_block(const Level& level, int bx, int by) {
   const cv::Mat block = level.response({bx * kBlock, by * kBlock, kBlock, kBlock});
   cv::Point at;
@@ -177,15 +219,10 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
                             std::size_t number,
                             const cv::Point& sample) {
   const Level& level = levels[number];
-  const auto around = surroundings_of(level.picture, sample);
+  auto around = surroundings_of(level.picture, sample, {}, 2);
   if (!around) return std::nullopt;
   const double contrast = level.picture.at<short>(sample) - around->middle;
   const double sign = contrast < 0 ? -1 : 1;
-  Blob blob;
-  blob.contrast_to_noise = std::abs(contrast) / around->noise;
-  blob.is_dark = contrast < 0;
-  blob.level = number;
-  blob.sample = sample;
   const double least = std::max(kBoxShare * std::abs(contrast),
                                 std::min(0.5 * std::abs(contrast), kBoxNoise * around->noise));
   const bool has_finer = number > 0;
@@ -194,12 +231,22 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
   const double scale = has_finer ? 0.5 : 1;
   const auto excess = [&](const cv::Point& p) {
     const double x = scale * p.x - sample.x, y = scale * p.y - sample.y;
-    return sign * (fine.picture.at<short>(p) - around->at(x, y));
+    return std::abs(fine.picture.at<short>(p) - around->at(x, y));
   };
-  const int reach = has_finer ? 2 * kRingFrom : kRingFrom;
-  const auto samples = Region(fine, seed, reach).grown(excess, least);
-  if (!samples) return std::nullopt;
+  const int finer = has_finer ? 2 : 1;
+  const auto samples = Region(fine, seed, finer * kReach).grown(excess, least);
+  if (!samples || std::min(samples->width, samples->height) > finer * kMostAcross)
+    return std::nullopt;
+  // Wings that reach across the ring are neither noise nor surroundings.
+  around = surroundings_of(level.picture, sample, coarser(*samples, finer), 1);
+  if (!around) return std::nullopt;
+  Blob blob;
   blob.box_px = box_of(*samples, fine.step);
+  blob.contrast_to_noise =
+      std::abs(level.picture.at<short>(sample) - around->middle) / around->noise;
+  blob.is_dark = sign < 0;
+  blob.level = number;
+  blob.sample = sample;
   return blob;
 }
 
@@ -219,7 +266,8 @@ std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& 
       for (int bx = 0; bx < level.largest.cols; ++bx) {
         const double relative =
             level.largest.at<short>(by, bx) / static_cast<double>(level.typical.at<float>(by, bx));
-        if (relative >= options.least_response) blocks.push_back({-relative, {bx, by}});
+        if (relative >= options.least_response && is_peak(level.largest, bx, by))
+          blocks.push_back({-relative, {bx, by}});
       }
     const auto order = [](const auto& a, const auto& b) {
       return std::tie(a.first, a.second.y, a.second.x) < std::tie(b.first, b.second.y, b.second.x);

@@ -23,21 +23,22 @@ struct Blob {
 };
 
 // The blob at a sample of a level. Its surroundings are a square ring; a plane is fitted to them,
-// so that a slope of the sky is neither contrast nor noise, and the noise is 1.4826 times the
-// median absolute deviation from it. The box bounds the connected samples, on the next finer level,
-// that differ from the surroundings as the object does by kBoxShare of its contrast and by
-// kBoxNoise times the noise. Empty where the object reaches the ring: it is larger than the level's
-// objects, or part of something else.
+// so that a slope of the sky is neither contrast nor noise, and the noise follows from the absolute
+// deviations from it: it is their standard deviation where they are normal. The box bounds the
+// connected samples of the next finer level that differ from the surroundings, to either side, by
+// three tenths of the contrast and by three times the noise. Empty where they reach too far: the
+// object is larger than the level's, or part of something else.
 std::optional<Blob> blob_at(const std::vector<Level>& levels,
                             std::size_t level,
                             const cv::Point& sample);
 
-// The blobs of all levels, with one at most for each block of a level, whose response exceeds
-// `least` times the typical one. The strongest first.
+// The blobs of all levels whose response is the strongest of a block and of the blocks around it.
+// The strongest first.
 struct BlobOptions {
+  // In units of the typical response.
   double least_response = 6;
   // The blocks with the strongest relative responses are looked at.
-  std::size_t most_of_a_level = 300;
+  std::size_t most_of_a_level = 150;
 };
 std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& options);
 

@@ -14,7 +14,9 @@ struct Kind {
   std::unique_ptr<Detector> (*make)();
 };
 
-constexpr Kind kKinds[] = {{"cmo", make_close_minus_open}};
+constexpr Kind kKinds[] = {{"cmo", make_close_minus_open},
+                           {"cmo-hmm", make_hidden_markov},
+                           {"frame-difference", make_frame_difference}};
 
 }  // namespace
 

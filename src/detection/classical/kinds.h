@@ -19,5 +19,7 @@ inline constexpr double kLeastContrastToNoise = 4;
 std::vector<Detection> detections_of(std::vector<Blob> blobs, double least);
 
 std::unique_ptr<Detector> make_close_minus_open();
+std::unique_ptr<Detector> make_hidden_markov();
+std::unique_ptr<Detector> make_frame_difference();
 
 }  // namespace airtruth::detection

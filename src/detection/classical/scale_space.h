@@ -19,6 +19,9 @@ inline constexpr int kBlock = 8;
 // this length less one; the smoothing makes them two samples longer. So a level of n times fewer
 // samples per side responds to objects of up to 4 n px.
 inline constexpr int kElement = 7;
+// Length of the elements along an object, on the levels above the first: an aircraft from ahead is
+// several times as wide as it is high.
+inline constexpr int kLongElement = 3 * kElement;
 // Samples of level 0 keep this share of the noise of the picture's pixels: the norm of the kernel
 // [1 2 1; 2 4 2; 1 2 1] / 16.
 inline constexpr double kNoiseShare = 0.375;
@@ -29,9 +32,10 @@ struct Level {
   // CV_16S, grey levels times kGreyScale, smoothed by [1 2 1] / 4 in both directions.
   cv::Mat picture;
   // CV_16S, at least 0: how much darker (or brighter) a sample is than what closing (opening) by
-  // the elements leaves, in the direction in which that is less. Soille (2003), "Morphological
-  // Image Analysis", section 4: bottom-hat and top-hat; Lai, Ford, Mejias and O'Shea (2013) join
-  // them as close-minus-open. Lines and edges respond in one direction alone, and so not at all.
+  // lines along the rows and along the columns leaves, in the direction in which that is less: the
+  // bottom-hat and the top-hat (Soille 2003, "Morphological Image Analysis", section 4), which Lai,
+  // Ford, Mejias and O'Shea (2013) join as close-minus-open. Edges, and lines longer than the
+  // elements along rows or columns, do not respond.
   cv::Mat response;
   // CV_32F, one value for each block: the mean response of the block's surroundings, which follows
   // the noise and the clutter there.
@@ -39,6 +43,8 @@ struct Level {
   // CV_16S, one value for each block: its largest response.
   cv::Mat largest;
 
+  // The least value that `typical` has, that of a sky without noise.
+  static double quietest();
   // Where the centre of a sample lies in the picture, and the sample that is nearest to a position.
   Pixel pixel_of(double x, double y) const { return {step * x + 0.5, step * y + 0.5}; }
   cv::Point sample_at(const Pixel& pixel) const;
@@ -47,6 +53,9 @@ struct Level {
   // The largest relative response within `radius` samples.
   double relative_response_near(const cv::Point& sample, int radius) const;
 };
+
+// The luma of a picture, which it shares; CV_8U.
+cv::Mat luma_of(const image::Picture& picture);
 
 // The levels of a picture's luma: as many as needed for objects of kLargestPx, as far as its size
 // allows.

@@ -17,6 +17,7 @@
 //   SEQUENCE.json     size and number of frames, categories, seconds of each frame; it is written
 //                     after the text, so a sequence that has it is whole
 //   detections.json   COCO results of all sequences
+//   backgrounds/      .txt and .json of the videos that the set was made over
 // Coordinates are written to 1/1000 px and scores with 9 digits.
 namespace airtruth::detection {
 
@@ -36,6 +37,8 @@ struct ExpectedSequence {
 void write_sequence(const fs::path& folder, const SequenceDetections& detections);
 // True where both files of a sequence are there.
 bool has_sequence(const fs::path& folder, const std::string& name);
+// The sorted names of all sequences that are there.
+std::vector<std::string> sequences_in(const fs::path& folder);
 // Reads both files. Throws Error as read_detections does.
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name);
 

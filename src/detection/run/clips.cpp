@@ -2,12 +2,29 @@
 #include "detection/run/clips.h"
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/json/json_object.h"
 #include "sequence/replay/finished.h"
 #include "truth/annotation/lens_facts.h"
+#include "world/scene/scene.h"
 
 namespace airtruth::detection {
+namespace {
+
+std::string name_of(fs::path video) {
+  if (!video.has_filename()) video = video.parent_path();
+  std::string name = video.stem().string();
+  if (name.find('%') != std::string::npos) name = video.parent_path().filename().string();
+  return name.empty() ? "video" : name;
+}
+
+}  // namespace
 
 DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name) {
   DetectionClip clip;
@@ -27,13 +44,40 @@ DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name) 
 
 DetectionClip clip_of(const fs::path& video) {
   DetectionClip clip;
-  fs::path path = video;
-  if (!path.has_filename()) path = path.parent_path();
-  clip.name = path.stem().string();
-  if (clip.name.find('%') != std::string::npos) clip.name = path.parent_path().filename().string();
-  if (clip.name.empty()) clip.name = "video";
+  clip.name = name_of(video);
   clip.media = video;
   return clip;
+}
+
+std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
+                                          const std::vector<std::string>& names,
+                                          const Warn& warn) {
+  using Part = std::tuple<fs::path, std::int64_t, std::int64_t>;
+  std::set<Part> seen;
+  std::map<std::string, int> count_of_name;
+  std::vector<DetectionClip> clips;
+  for (const std::string& name : names) {
+    if (set.is_imported(name)) continue;
+    const fs::path file = set.folder(name) / "sequence.json";
+    const scene::Background background =
+        scene::parse_scene(JsonDocument(file).text("scene_toml"), file).background;
+    const Part part{background.video, background.first_frame, background.frame_count.value_or(-1)};
+    if (!seen.insert(part).second) continue;
+    if (!fs::exists(background.video) && background.video.string().find('%') == std::string::npos) {
+      airtruth::warn(warn,
+                     background.video.string() + ": the background of '" + name +
+                         "' is not there; it is left out");
+      continue;
+    }
+    DetectionClip clip = clip_of(background.video);
+    if (const int count = ++count_of_name[clip.name]; count > 1)
+      clip.name += fmt::format("-{}", count);
+    clip.first_frame = background.first_frame;
+    clip.frame_count = background.frame_count;
+    clip.lens = annotation::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);
+    clips.push_back(std::move(clip));
+  }
+  return clips;
 }
 
 std::vector<ExpectedSequence> sequences_of(const dataset::LabelledSet& set) {

@@ -29,6 +29,13 @@ struct DetectionClip {
 
 // A sequence of a set with all its frames. Throws Error where it has no video.
 DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name);
+// The parts of background videos that the given sequences were made over, each once, in the order
+// of the sequences: pictures without any intruder of the scene. A part is named as its video, with
+// "-2" and so on where several have that name. Leaves out, with a warning, what is not there any
+// more; an imported sequence has none.
+std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
+                                          const std::vector<std::string>& names,
+                                          const Warn& warn);
 // A video as a clip of the name of its file.
 DetectionClip clip_of(const fs::path& video);
 

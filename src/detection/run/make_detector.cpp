@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "detection/classical/classical.h"
+#include "detection/external/external.h"
 #include "detection/network/model_description.h"
 #include "detection/network/network_detector.h"
 #include "foundation/base/error.h"
@@ -16,6 +17,7 @@
 namespace airtruth::detection {
 namespace {
 
+constexpr std::string_view kExec = "exec:";
 constexpr std::string_view kNetwork = "onnx:";
 
 bool is_file_name(const std::string& name) {
@@ -26,13 +28,17 @@ bool is_file_name(const std::string& name) {
          });
 }
 
+// "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
+std::string usual_name(const std::string& command) {
+  const std::string scheme = command.substr(0, command.find(':'));
+  if (!command.starts_with(kNetwork)) return scheme;
+  const std::string stem = std::filesystem::path(command.substr(kNetwork.size())).stem().string();
+  return stem.empty() ? scheme : stem;
+}
+
 }  // namespace
 
-std::vector<std::string> detector_names() {
-  std::vector<std::string> names = classical_names();
-  names.push_back(std::string(kNetwork) + "MODEL.onnx");
-  return names;
-}
+std::vector<std::string> detector_names() { return classical_names(); }
 
 std::vector<std::filesystem::path> files_of(std::string_view command) {
   if (!command.starts_with(kNetwork)) return {};
@@ -40,21 +46,31 @@ std::vector<std::filesystem::path> files_of(std::string_view command) {
   return {model, description_path(model)};
 }
 
+std::vector<std::string> detector_forms() {
+  return {"onnx:MODEL.onnx for a network (docs/formats/detector-model.md)",
+          "exec:COMMAND for a program that speaks docs/detector-protocol.md"};
+}
+
 DetectorName named_detector(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.find(':');
-  DetectorName named{text, text};
-  if (text.starts_with(kNetwork))  // onnx:models/aircraft.onnx is named aircraft
-    named.name = std::filesystem::path(text.substr(kNetwork.size())).stem().string();
-  if (equals != std::string::npos && (colon == std::string::npos || equals < colon))
-    named = {text.substr(0, equals), text.substr(equals + 1)};
-  if (!is_file_name(named.name))
-    throw Error("'" + named.name.substr(0, 80) +
+  const bool is_named =
+      equals != std::string::npos && (colon == std::string::npos || equals < colon);
+  const std::string command = is_named ? text.substr(equals + 1) : text;
+  const std::string name = is_named ? text.substr(0, equals) : usual_name(command);
+  if (!is_file_name(name))
+    throw Error("'" + name.substr(0, 80) +
                 "' is no name for a detector's results; expected letters, digits, - _ .");
-  return named;
+  return {name, command};
 }
 
 std::unique_ptr<Detector> make_detector(std::string_view command, const DetectorOptions& options) {
+  if (command.starts_with(kExec)) {
+    const std::string program(command.substr(kExec.size()));
+    if (program.find_first_not_of(' ') == std::string::npos)
+      throw Error("'" + std::string(command) + "' names no command");
+    return make_external({program, options.start_s, options.answer_s, options.stop});
+  }
   if (auto classical = make_classical(command)) return classical;
   if (command.starts_with(kNetwork)) {
     const std::filesystem::path model = command.substr(kNetwork.size());

@@ -21,10 +21,14 @@ struct DetectorOptions {
   std::stop_token stop;
 };
 
-// The names of the built-in detectors, and the forms of the others: what --help and errors list.
+// The names of the built-in detectors.
 std::vector<std::string> detector_names();
+// The forms of the others, with what they are, for --help and errors.
+std::vector<std::string> detector_forms();
 
-// "mine=exec:./mine --fast" is the command "exec:./mine --fast" whose results are named "mine".
+// "mine=exec:./mine --fast" is the command "exec:./mine --fast" whose results are named "mine";
+// without a name they are named as the command up to its colon, and those of onnx:DIR/aircraft.onnx
+// "aircraft".
 struct DetectorName {
   std::string name;  // a plain file name
   std::string command;

@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kRecord = "detector.json";
-constexpr const char* kCoco = "detections.json";
 
 Json settings_of(const AssociationOptions& association) {
   const auto& score = association.confident_score;
@@ -78,16 +77,20 @@ void Results::open() const {
   write_file(summary_.folder / kRecord, record.dump(1) + "\n");
 }
 
-bool Results::keeps(const std::string& sequence) {
-  if (!has_sequence(summary_.folder, sequence)) return false;
+bool Results::keeps(const std::string& part, const std::string& sequence) {
+  if (!has_sequence(summary_.folder / part, sequence)) return false;
   const std::lock_guard lock(mutex_);
   ++summary_.kept;
   return true;
 }
 
-void Results::add(const SequenceDetections& detections, const std::string& log) {
+void Results::add(const std::string& part,
+                  const SequenceDetections& detections,
+                  const std::string& log) {
+  const fs::path folder = summary_.folder / part;
+  fs::create_directories(folder);
   write_log(detections.name, log);
-  write_sequence(summary_.folder, detections);
+  write_sequence(folder, detections);
   const std::lock_guard lock(mutex_);
   ++summary_.made;
   summary_.frames += std::ssize(detections.frames);
@@ -105,11 +108,11 @@ void Results::add_broken(const std::string& sequence,
                  fmt::format("{} on {}: the detector {}", detector_.name, sequence, fault));
 }
 
-void Results::finish(std::span<const ExpectedSequence> set) const {
+void Results::finish(std::span<const ExpectedSequence> set, const std::string& file_name) const {
   const bool is_whole = std::all_of(set.begin(), set.end(), [&](const ExpectedSequence& one) {
     return has_sequence(summary_.folder, one.name);
   });
-  const fs::path file = summary_.folder / kCoco;
+  const fs::path file = summary_.folder / file_name;
   if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
   write_coco_results(file, summary_.folder, set);
 }

@@ -10,6 +10,9 @@
 
 namespace airtruth::detection {
 
+// The folder of the results of backgrounds, in a detector's folder.
+inline constexpr const char* kBackgrounds = "backgrounds";
+
 // The results of one detector in its folder: what is there, what is added. Thread-safe.
 class Results {
  public:
@@ -18,12 +21,13 @@ class Results {
 
   // Creates the folder and its record.
   void open() const;
+  // `part` is "" for the sequences of a set, or kBackgrounds.
   // Counts a sequence that is there.
-  bool keeps(const std::string& sequence);
-  void add(const SequenceDetections& detections, const std::string& log);
+  bool keeps(const std::string& part, const std::string& sequence);
+  void add(const std::string& part, const SequenceDetections& detections, const std::string& log);
   void add_broken(const std::string& sequence, const std::string& fault, const std::string& log);
-  // Writes detections.json where every sequence is there.
-  void finish(std::span<const ExpectedSequence> set) const;
+  // Writes the COCO results of a set of which every sequence is there.
+  void finish(std::span<const ExpectedSequence> set, const std::string& file_name) const;
 
   const std::string& command() const { return detector_.command; }
   const RunSummary& summary() const { return summary_; }

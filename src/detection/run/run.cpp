@@ -28,9 +28,12 @@ namespace {
 class Following {
  public:
   Following(Results& results,
+            std::string part,
             const DetectorOptions& options,
             std::optional<AssociationOptions> association)
-      : results_(&results), detector_(make_detector(results.command(), options)) {
+      : results_(&results),
+        part_(std::move(part)),
+        detector_(make_detector(results.command(), options)) {
     if (!association) return;
     if (!association->confident_score) association->confident_score = detector_->confident_score();
     associator_.emplace(*association);
@@ -70,7 +73,7 @@ class Following {
   }
 
   void finish() {
-    if (!is_broken()) results_->add(found_, detector_->log());
+    if (!is_broken()) results_->add(part_, found_, detector_->log());
   }
 
  private:
@@ -86,6 +89,7 @@ class Following {
   }
 
   Results* results_;
+  std::string part_;
   std::unique_ptr<Detector> detector_;
   std::optional<Associator> associator_;
   SequenceDetections found_;
@@ -121,13 +125,19 @@ class Running {
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open();
+    std::vector<DetectionClip> backgrounds;
+    if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
     in_parallel(
-        names.size(),
+        names.size() + backgrounds.size(),
         options_.jobs,
-        [&](std::size_t i) { over(names[i], [&] { return clip_of(set, names[i]); }, {}); },
+        [&](std::size_t i) {
+          if (i < names.size()) return over("", names[i], [&] { return clip_of(set, names[i]); });
+          const DetectionClip& background = backgrounds[i - names.size()];
+          over(kBackgrounds, background.name, [&] { return background; });
+        },
         options_.progress,
         options_.stop);
-    return summaries(sequences_of(set));
+    return summaries(sequences_of(set), "detections.json");
   }
 
   std::vector<RunSummary> over(const fs::path& video) {
@@ -135,8 +145,9 @@ class Running {
     ClipFrames(with_lens(clip), false, options_.warn);  // an Error before anything is made
     open();
     over(
-        clip.name, [&] { return clip; }, options_.progress);
-    return summaries(std::vector<ExpectedSequence>{{clip.name, 0, 0, 0}});
+        "", clip.name, [&] { return clip; }, options_.progress);
+    return summaries(std::vector<ExpectedSequence>{{clip.name, 0, 0, 0}},
+                     clip.name + ".detections.json");
   }
 
  private:
@@ -154,11 +165,15 @@ class Running {
     return clip;
   }
 
-  void over(const std::string& name, const auto& make_clip, const Progress& progress) {
+  // All detectors that have not done so yet, over one clip.
+  void over(const std::string& part,
+            const std::string& name,
+            const auto& make_clip,
+            const Progress& progress = {}) {
     std::vector<Following> detectors;
     for (const auto& results : results_)
-      if (!results->keeps(name))
-        detectors.emplace_back(*results, detector_options_, options_.association);
+      if (!results->keeps(part, name))
+        detectors.emplace_back(*results, part, detector_options_, options_.association);
     if (detectors.empty()) return;
     const DetectionClip clip = with_lens(make_clip());
     const bool with_motion =
@@ -179,10 +194,11 @@ class Running {
     for (Following& detector : detectors) detector.finish();
   }
 
-  std::vector<RunSummary> summaries(std::span<const ExpectedSequence> set) const {
+  std::vector<RunSummary> summaries(std::span<const ExpectedSequence> set,
+                                    const std::string& coco_name) const {
     std::vector<RunSummary> all;
     for (const auto& results : results_) {
-      results->finish(set);
+      results->finish(set, coco_name);
       all.push_back(results->summary());
     }
     return all;

@@ -28,6 +28,8 @@ struct RunOptions {
   std::optional<double> min_score;
   // Of each frame, those with the highest scores are written.
   int max_per_frame = 100;
+  // The backgrounds of a made set as well: pictures without an intruder.
+  bool backgrounds = true;
   // Calibration file for clips that state no lens.
   std::optional<fs::path> lens;
   // Tracks made of the detections; empty: the detector's own, if it has any. Without a confident
@@ -54,13 +56,14 @@ struct RunSummary {
 };
 
 // Runs detectors over every frame of every sequence of a set, or of one video, and writes
-// out/DETECTOR/ (results_folder.h) and logs/SEQUENCE.log with what a program printed. A frame is
-// decoded, and the camera's motion measured, once for all detectors. The results of a sequence
-// appear whole or not at all, and existing ones are kept; detections.json is written once all
-// sequences of the set are there. A detector that fails within a sequence leaves it without
-// results, and goes on with the next. The results do not depend on `jobs`, but for the seconds.
-// Throws Error where there is nothing to run over, where a detector is unknown or cannot be made,
-// and where `out` holds results of other settings.
+// out/DETECTOR/ (results_folder.h) and logs/SEQUENCE.log with what a program printed. The results
+// of backgrounds lie in a folder of their own, out/DETECTOR/backgrounds/VIDEO.txt and .json, since
+// the set has no sequence of that name. A frame is decoded, and the camera's motion measured, once
+// for all detectors. The results of a sequence appear whole or not at all, and existing ones are
+// kept; detections.json is written once all sequences of the set are there. A detector that fails
+// within a sequence leaves it without results, and goes on with the next. The results do not depend
+// on `jobs`, but for the seconds. Throws Error where there is nothing to run over, where a detector
+// is unknown or cannot be made, and where `out` holds results of other settings.
 std::vector<RunSummary> run(const fs::path& source, const fs::path& out, const RunOptions& options);
 
 }  // namespace airtruth::detection

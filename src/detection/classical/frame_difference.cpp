@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "detection/classical/bearing_grid.h"
+#include "detection/classical/kinds.h"
+
+namespace airtruth::detection {
+namespace {
+
+constexpr int kCellPx = BearingGrid::kCellPx;
+// Cells between the values of the noise map.
+constexpr int kNoiseStep = 16;
+// A difference of this many times the local noise is a change. Interpolation between pixels takes
+// noise from the picture before, from none to half of it: a threshold of 6 is one of at least 5.
+constexpr double kChange = 6;
+// Standard deviation of normal noise over its mean absolute value.
+const double kSigmaOfMean = std::sqrt(kPi / 2);
+// Cells in a row within which changes belong together.
+constexpr int kGapCells = 3;
+// Any share of it makes an interpolated sample negative: shares are multiples of 1/32.
+constexpr int kUnseen = -30'000;
+constexpr int kLeastSidePx = kCellPx * kNoiseStep;
+constexpr int kLargestCells = kLargestPx / kCellPx;
+// The rounding of both pictures to whole grey levels.
+const double kLeastNoise = std::sqrt(2.0 / 12);
+
+class FrameDifference : public Detector {
+ public:
+  void begin(const SequenceInput& sequence) override {
+    lens_.emplace(sequence.lens);
+    before_.release();
+  }
+
+  std::vector<Detection> detect(const FrameInput& frame) override {
+    if (std::min(frame.picture->width, frame.picture->height) < kLeastSidePx) return {};
+    cv::Mat now;
+    cv::resize(luma_of(*frame.picture),
+               now,
+               {frame.picture->width / kCellPx, frame.picture->height / kCellPx},
+               0,
+               0,
+               cv::INTER_AREA);
+    std::vector<Detection> detections;
+    if (frame.turn && !before_.empty()) detections = changes(now, registered(before_, *frame.turn));
+    before_ = now;
+    return detections;
+  }
+
+  bool needs_motion() const override { return true; }
+
+ private:
+  // The picture before as this frame's camera would have seen it; negative where it did not.
+  cv::Mat registered(const cv::Mat& before, const CameraTurn& turn) const {
+    const cv::Mat map =
+        cells_after_turn(*lens_, before.size(), turn.this_from_previous.conjugate());
+    cv::Mat samples, result;
+    before.convertTo(samples, CV_16S);
+    cv::remap(samples, result, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(kUnseen));
+    return result;
+  }
+
+  static std::vector<Detection> changes(const cv::Mat& now, const cv::Mat& before) {
+    cv::Mat difference;
+    cv::subtract(now, before, difference, {}, CV_16S);
+    difference = cv::abs(difference);
+    difference.setTo(0, before < 0);
+    cv::Mat samples, noise;
+    difference.convertTo(samples, CV_32F);
+    cv::resize(samples,
+               noise,
+               {std::max(1, now.cols / kNoiseStep), std::max(1, now.rows / kNoiseStep)},
+               0,
+               0,
+               cv::INTER_AREA);
+    cv::medianBlur(noise, noise, 3);
+    noise = cv::max(noise * kSigmaOfMean, kLeastNoise);
+    cv::resize(noise, noise, now.size(), 0, 0, cv::INTER_LINEAR);
+    cv::divide(samples, noise, samples);
+    const cv::Mat is_changed = samples >= kChange;
+    cv::Mat joined, labels, stats, centres;
+    cv::dilate(is_changed, joined, cv::Mat::ones(kGapCells, kGapCells, CV_8U));
+    const int count = cv::connectedComponentsWithStats(joined, labels, stats, centres);
+    std::vector<Detection> detections;
+    for (int i = 1; i < count; ++i) {
+      cv::Rect cells(stats.at<int>(i, cv::CC_STAT_LEFT),
+                     stats.at<int>(i, cv::CC_STAT_TOP),
+                     stats.at<int>(i, cv::CC_STAT_WIDTH),
+                     stats.at<int>(i, cv::CC_STAT_HEIGHT));
+      double most = 0;
+      cv::minMaxLoc(samples(cells), nullptr, &most, nullptr, nullptr, labels(cells) == i);
+      cells = without_rim(cells, now.size());
+      if (std::max(cells.width, cells.height) > kLargestCells) continue;
+      Detection detection;
+      detection.box_px = {double(kCellPx * cells.x),
+                          double(kCellPx * cells.y),
+                          double(kCellPx * cells.width),
+                          double(kCellPx * cells.height)};
+      detection.score = std::round(most * 1000) / 1000;
+      detections.push_back(detection);
+    }
+    std::stable_sort(detections.begin(),
+                     detections.end(),
+                     [](const Detection& a, const Detection& b) { return a.score > b.score; });
+    return detections;
+  }
+
+  // What joining added, but at the picture's border.
+  static cv::Rect without_rim(const cv::Rect& cells, const cv::Size& size) {
+    constexpr int kRim = kGapCells / 2;
+    const int left = cells.x > 0 ? kRim : 0, top = cells.y > 0 ? kRim : 0;
+    const int right = cells.br().x < size.width ? kRim : 0;
+    const int bottom = cells.br().y < size.height ? kRim : 0;
+    return {cells.x + left,
+            cells.y + top,
+            std::max(1, cells.width - left - right),
+            std::max(1, cells.height - top - bottom)};
+  }
+
+  std::optional<lens::Lens> lens_;
+  cv::Mat before_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_frame_difference() { return std::make_unique<FrameDifference>(); }
+
+}  // namespace airtruth::detection
