@@ -214,7 +214,7 @@ check_network_runner() { # check_network_runner PREFIX: a network is given to th
     "output": {"kind": "yolov5", "boxes": "output"}}' >"$place/a.json"
   env -u AIRTRUTH_NETWORK_RUNNER "$1/bin/airtruth" detect "$place" --detector "onnx:$place/a.onnx" -o "$place/found" 2>"$place/said" &&
     fail "the installed program takes a text for a network"
-  grep -q 'cannot be loaded as an ONNX network: OpenCV says' "$place/said" || fail "the installed program runs no network: $(cat "$place/said")"
+  grep -q 'cannot be loaded as an ONNX network: it is no ONNX file' "$place/said" || fail "the installed program runs no network: $(cat "$place/said")"
 }
 
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")

@@ -77,8 +77,13 @@ std::unique_ptr<Detector> make_detector(std::string_view command, const Detector
     if (model.empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
     return make_network_detector(model, {options.threads, options.stop});
   }
-  const std::vector<std::string> names = detector_names();
-  const auto near = nearest_spelling(command, names);
+  std::vector<std::string> names = detector_names();
+  names.insert(names.end(), {"onnx:MODEL.onnx", "exec:COMMAND"});
+  const std::string scheme(command.substr(0, command.find(':')));
+  const bool has_scheme = scheme.size() < command.size();
+  const auto near = has_scheme
+                        ? nearest_spelling(scheme + ":", std::vector<std::string>{"onnx:", "exec:"})
+                        : nearest_spelling(scheme, detector_names());
   throw Error(fmt::format(
       "there is no detector '{}'; {}",
       command.substr(0, 80),
