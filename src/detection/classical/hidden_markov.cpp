@@ -23,7 +23,9 @@ constexpr int kAround = 2;
 constexpr int kBlobRadius = 2;
 // A peak this near to a stronger one's box is of the same object.
 constexpr double kApartPx = 6;
-constexpr std::size_t kMostPeaks = 200;
+// Levels with a weaker response there do not bound it.
+constexpr double kLeastResponse = 2.5;
+constexpr std::size_t kMostPeaks = 150;
 
 // From a target's cell its odds spread to the cells around, which a target may have entered, and
 // lose at least ln(4 / kStays) for each cell where a measurement is neutral.
@@ -62,7 +64,7 @@ Box box_at(const std::vector<Level>& levels, const Pixel& pixel) {
   std::optional<Blob> best;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const cv::Point sample = strongest_near(levels[i], pixel);
-    if (!cv::Rect({}, levels[i].picture.size()).contains(sample)) continue;
+    if (levels[i].relative_response(sample) < kLeastResponse) continue;
     const auto blob = blob_at(levels, i, sample);
     if (!blob || !holds(blob->box_px, pixel, BearingGrid::kCellPx + 1)) continue;
     if (!best || blob->contrast_to_noise > best->contrast_to_noise) best = blob;
