@@ -3,14 +3,15 @@
 
 import json
 import os
+import struct
 import sys
 import unittest
+import zlib
 
-import numbered_clip
 import program
 from program import Case, made, path, read, run, write
 
-COUNT = 30
+WIDTH, HEIGHT, COUNT = 320, 240, 30
 CLIENTS = EXAMPLE = ""
 HELLO = """echo '{"hello":{"protocol":1,"samples":"gray","frames":"shared_memory"}}'; """
 LOOP = HELLO + """while read -r line; do case "$line" in '{"frame":'*) k=${line#*:}; k=${k%%,*}; if [ $k -lt 3 ]; then echo "{\\"frame\\":$k,\\"detections\\":[]}"; else SAY; fi;; '{"quit"'*) exit 0;; esac; done"""
@@ -38,8 +39,38 @@ def files_of(folder):
     return found
 
 
+def target(number):
+    """A dark bar that crosses the sky."""
+    return 60 + 2 * number, 80 + number, 14, 6
+
+
+def brightest(number):
+    """The brightest pixel of a frame."""
+    return 200 + number, 40
+
+
+def png_of(number):
+    """A grey sky with a pattern as fine as noise."""
+    x0, y0, width, height = target(number)
+    rows = []
+    for y in range(HEIGHT):
+        row = bytearray(140 + y // 12 + (x * 7919 + y * 104729 + number * 1299709) % 97 % 5 for x in range(WIDTH))
+        if y0 <= y < y0 + height:
+            row[x0:x0 + width] = bytes([70]) * width
+        rows.append(row)
+    x, y = brightest(number)
+    rows[y][x] = 250
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    data = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0)) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
+
+
 def make_inputs():
-    numbered_clip.write_otb(path("otb"), ["one", "three", "two"], COUNT)
+    pictures = [png_of(number) for number in range(COUNT)]
+    for name in ("one", "three", "two"):
+        for number, picture in enumerate(pictures):
+            write(f"otb/{name}/img/{number + 1:04}.png", picture)
+        write(f"otb/{name}/groundtruth_rect.txt", "".join(f"{x + 1},{y + 1},{w},{h}\n" for x, y, w, h in map(target, range(COUNT))))
     made("dataset", "import", "otb", "-f", "otb", "-o", "set")
 
 
@@ -49,9 +80,13 @@ class OverASet(Case):
         for name in ("one", "three", "two"):
             facts = json.loads(read("all", "cmo", name + ".json"))
             self.assertEqual((facts["frames"], facts["width"], facts["height"], len(facts["seconds"])), (COUNT, 320, 240, COUNT))
-        # The moving block of 20 x 14 px is found; image ids count the frames of the set through.
+        # Every frame's strongest detection is the target. Image ids count the frames of the set through.
         lines = [line.split(",") for line in read("all", "cmo", "two.txt").splitlines()]
         self.assertTrue(all(len(line) == 10 for line in lines))
+        for number in range(COUNT):
+            left, top, width, height = (float(v) for v in next(line for line in lines if int(line[0]) == number + 1)[2:6])
+            for found, wanted in zip((left - 1, top - 1, width, height), target(number)):
+                self.assertLessEqual(abs(found - wanted), 2, f"frame {number}: {left},{top} {width}x{height}")
         coco = json.loads(read("all", "cmo", "detections.json"))
         of_two = [one for one in coco if 2 * COUNT < one["image_id"] <= 3 * COUNT]
         self.assertEqual(len(of_two), len(lines))
@@ -119,9 +154,10 @@ class Programs(Case):
         texts = [read("clients", name, "one.txt") for name in ("cpp", "cpp-shared", "py", "py-shared")]
         self.assertEqual(len(set(texts)), 1)
         lines = [line.split(",") for line in texts[0].splitlines()]
-        # The first bright block that is not black carries the number: frame 0 has none, and its brightest pixel is elsewhere.
-        self.assertEqual([float(v) for v in lines[1][2:4]], [-1, -1])
         self.assertEqual(len(lines), COUNT)
+        for number, line in enumerate(lines):
+            x, y = brightest(number)
+            self.assertEqual([float(v) for v in line[:6]], [number + 1, -1, x - 1, y - 1, 5, 5])
 
     def test_each_fault_costs_its_sequence_alone(self):
         for name, (say, words) in ODD.items():
