@@ -305,7 +305,7 @@ TEST(Classical, TakesAnyPicture) {
 // Where the grid says a cell is seen, against a chain of single turns through the lens.
 TEST(BearingGrid, KeepsACellsBearing) {
   const lens::Lens lens = lens::fisheye_from_vertical_fov(120, {640, 480});
-  BearingGrid grid(lens);
+  BearingGrid grid(lens, 2);
   const Quaternion step(Eigen::AngleAxisd(radians(0.3), Vector3(0.2, 1, 0.5).normalized()));
   const cv::Point cell{100, 60};
   Pixel expected = *grid.pixel_of(cell);

@@ -10,7 +10,7 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr int kCellPx = BearingGrid::kCellPx;
+constexpr int kCellPx = 2;
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;
 // A difference of this many times the local noise is a change. Interpolation between pixels takes
@@ -55,7 +55,7 @@ class FrameDifference : public Detector {
   // The picture before as this frame's camera would have seen it; negative where it did not.
   cv::Mat registered(const cv::Mat& before, const CameraTurn& turn) const {
     const cv::Mat map =
-        cells_after_turn(*lens_, before.size(), turn.this_from_previous.conjugate());
+        cells_after_turn(*lens_, before.size(), kCellPx, turn.this_from_previous.conjugate());
     cv::Mat samples, result;
     before.convertTo(samples, CV_16S);
     cv::remap(samples, result, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(kUnseen));
