@@ -265,7 +265,7 @@ def write(network, path):
         "input": {"layout": "grey", "scale": 1 / 255, "fit": "frame", "multiple_px": MULTIPLE},
         "output": {"kind": "heat_map", "heat": "heat", "offset": "offset", "size": "size", "size_scale": "log"},
         "classes": ["aircraft"],
-        "score_threshold": 0.1,
+        "score_threshold": 0.2,
         "confident_score": 0.4,
         "nms_iou": 0.3,
     }

@@ -208,6 +208,15 @@ check_model_reader() { # check_model_reader PREFIX: a model file is read by the 
   grep -q '2 triangles' "$place/shown" || fail "the installed program reads a model file wrongly: $(cat "$place/shown")"
 }
 
+check_network_runner() { # check_network_runner PREFIX: a network is given to the helper, which refuses this one
+  printf 'no network' >"$place/a.onnx"
+  printf '%s' '{"format": "airtruth detector model 1", "input": {"layout": "grey", "fit": "frame"}, "classes": ["aircraft"],
+    "output": {"kind": "yolov5", "boxes": "output"}}' >"$place/a.json"
+  env -u AIRTRUTH_NETWORK_RUNNER "$1/bin/airtruth" detect "$place" --detector "onnx:$place/a.onnx" -o "$place/found" 2>"$place/said" &&
+    fail "the installed program takes a text for a network"
+  grep -q 'cannot be loaded as an ONNX network: it is no ONNX file' "$place/said" || fail "the installed program runs no network: $(cat "$place/said")"
+}
+
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
 check_headers "$place/usr"
@@ -217,6 +226,7 @@ check_documented_build "$place/usr"
 check_evaluation_alone
 check_examples "$place/usr"
 check_model_reader "$place/usr"
+check_network_runner "$place/usr"
 check_help_and_pages "$place/usr"
 check_completion "$place/usr"
 check_files "$place/usr"
@@ -234,6 +244,7 @@ check_files "$place/root/usr"
 check_completion "$place/root/usr"
 "$place/root/usr/bin/airtruth" --help >/dev/null || fail "the packaged program does not run"
 check_model_reader "$place/root/usr"
+check_network_runner "$place/root/usr"
 (cd "$place/usr" && find . \( -type f -o -type l \) | sort) >"$place/installed"
 (cd "$place/root/usr" && find . \( -type f -o -type l \) | sort) >"$place/packaged"
 diff "$place/installed" "$place/packaged" || fail "the package holds other files than an installation"

@@ -56,6 +56,7 @@ void validate(const AssociationOptions& options) {
                                     {"the size's error", options.size_error},
                                     {"the acceleration", options.motion.acceleration_density},
                                     {"the size's change", options.motion.size_density},
+                                    {"the unknown turn", options.unknown_turn_rps},
                                     {"the first rate", options.motion.initial_rate}}) {
     if (!(value > 0 && value < 1e6)) out_of_range(what, value, "a number above 0");
   }
@@ -94,12 +95,14 @@ std::vector<Detection> Associator::step(const FrameInput& frame,
 }
 
 void Associator::predict(const FrameInput& frame) {
-  if (!frame.turn) tracks_.clear();
+  if (frame.begins_shot) tracks_.clear();
   const double seconds = std::max(0.0, frame.time_s - time_s_);
   time_s_ = frame.time_s;
+  const Quaternion turn = frame.turn ? frame.turn->this_from_previous : Quaternion::Identity();
+  const double error_rad =
+      frame.turn ? frame.turn->error_px * rad_per_px_ : options_.unknown_turn_rps * seconds;
   for (Track& track : tracks_) {
-    track.filter.predict(
-        seconds, frame.turn->this_from_previous, frame.turn->error_px * rad_per_px_);
+    track.filter.predict(seconds, turn, error_rad);
     ++track.frames;
   }
 }

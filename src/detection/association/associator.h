@@ -46,6 +46,9 @@ struct AssociationOptions {
   double centre_error_of_size = 0.1;
   // Standard error of a box's size as a share of it; the centre's error in px adds to it.
   double size_error = 0.2;
+  // Standard deviation of the camera's turn about each axis where it is not known, rad/s. Chosen: a
+  // small aircraft rolls and yaws by some ten to twenty degrees in a second.
+  double unknown_turn_rps = 0.3;
   MotionModel motion;
 
   bool operator==(const AssociationOptions&) const;
@@ -62,8 +65,9 @@ class Associator {
   void begin(const SequenceInput& sequence);
 
   // The same detections in the same order, each with its track where that is declared. Where
-  // `frame` has no turn, a new shot begins: all tracks end. A detection where the lens has no ray
-  // belongs to no track. Only FrameInput's time and turn are used.
+  // a shot begins, all tracks end. Where a frame has no turn, the camera may have turned by
+  // unknown_turn_rps, and gates are as wide as that asks for. A detection where the lens has no ray
+  // belongs to no track. FrameInput's picture is not used.
   std::vector<Detection> step(const FrameInput& frame, std::vector<Detection> detections);
 
  private:

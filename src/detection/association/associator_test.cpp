@@ -95,10 +95,27 @@ TEST(Shots, ANewShotEndsAllTracks) {
   associator.begin(sequence());
   EXPECT_EQ(associator.step(frame_at(0), {at(100, 100)})[0].track, 1);
   FrameInput cut = frame_at(1);
+  cut.begins_shot = true;
   cut.turn.reset();
   EXPECT_EQ(associator.step(cut, {at(100, 100)})[0].track, 2);
   associator.begin(sequence());
   EXPECT_EQ(associator.step(frame_at(0), {at(100, 100)})[0].track, 1);
+}
+
+// 0.3 rad/s for 1/30 s are 0.01 rad or 10 px: a jump of 12 px is within the gate, one of 100 px is
+// not.
+TEST(Shots, AnUnknownTurnWidensTheGate) {
+  for (const auto& [jump_px, expected] : {std::pair{12, true}, {100, false}}) {
+    Associator associator({.declare_m = 3, .declare_n = 3});
+    associator.begin(sequence());
+    std::vector<Detection> found;
+    for (int i = 0; i < 20; ++i) {
+      FrameInput frame = frame_at(i);
+      if (i == 19) frame.turn.reset();
+      found = associator.step(frame, {at(i == 19 ? 300 + jump_px : 300, 300)});
+    }
+    EXPECT_EQ(found[0].track.has_value(), expected) << jump_px;
+  }
 }
 
 TEST(Categories, ATrackHoldsOneCategory) {

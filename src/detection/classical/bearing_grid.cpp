@@ -10,8 +10,9 @@
 namespace airtruth::detection {
 namespace {
 
-// Cells between the nodes at which a map is exact; it is bilinear between them. Over 32 px a lens
-// of 60 degrees bends the map of a turn by less than a hundredth of a pixel.
+// Cells between the nodes at which a map is exact; it is bilinear between them. Turns between
+// anchors are of a few pixels: over the cells between two nodes, their map bends by a small part of
+// a pixel.
 constexpr int kNodeStep = 16;
 // Turns of less do not change the nearest sample by much.
 constexpr double kStandsStillPx = 0.25;
@@ -19,11 +20,13 @@ constexpr float kNowhere = -1e6F;
 
 }  // namespace
 
-BearingGrid::BearingGrid(const lens::Lens& lens)
-    : lens_(lens), size_(lens.size().width / kCellPx & ~3, lens.size().height / kCellPx) {}
+BearingGrid::BearingGrid(const lens::Lens& lens, int cell_px)
+    : lens_(lens),
+      cell_px_(cell_px),
+      size_(lens.size().width / cell_px & ~3, lens.size().height / cell_px) {}
 
 std::optional<Pixel> BearingGrid::pixel_of(const cv::Point& cell) const {
-  const Pixel in_anchor(kCellPx * (cell.x + 0.5), kCellPx * (cell.y + 0.5));
+  const Pixel in_anchor(cell_px_ * (cell.x + 0.5), cell_px_ * (cell.y + 0.5));
   return pixel_after_turn(lens_, cam_from_anchor_, in_anchor);
 }
 
@@ -42,12 +45,14 @@ cv::Mat BearingGrid::turn(const Quaternion& this_from_previous) {
   cam_from_anchor_ = (this_from_previous * cam_from_anchor_).normalized();
   const double shift_px = largest_shift_px();
   if (shift_px <= kLargestTurnPx) {
-    cells_in_picture_ =
-        shift_px < kStandsStillPx ? cv::Mat() : cells_after_turn(lens_, size_, cam_from_anchor_);
+    cells_in_picture_ = shift_px < kStandsStillPx
+                            ? cv::Mat()
+                            : cells_after_turn(lens_, size_, cell_px_, cam_from_anchor_);
     return {};
   }
   // A cell of the new grid looks where the former grid has the camera's direction.
-  const cv::Mat former_from_new = cells_after_turn(lens_, size_, cam_from_anchor_.conjugate());
+  const cv::Mat former_from_new =
+      cells_after_turn(lens_, size_, cell_px_, cam_from_anchor_.conjugate());
   cam_from_anchor_ = Quaternion::Identity();
   cells_in_picture_.release();
   return former_from_new;
@@ -62,16 +67,16 @@ cv::Mat BearingGrid::seen_by_cells(const cv::Mat& samples) const {
 
 cv::Mat cells_after_turn(const lens::Lens& lens,
                          const cv::Size& size,
+                         int cell_px,
                          const Quaternion& other_from_this) {
-  constexpr int kCellPx = BearingGrid::kCellPx;
   const cv::Size nodes(size.width / kNodeStep + 2, size.height / kNodeStep + 2);
   cv::Mat exact(nodes, CV_32FC2);
   for (int j = 0; j < nodes.height; ++j)
     for (int i = 0; i < nodes.width; ++i) {
-      const Pixel pixel(kCellPx * (kNodeStep * i + 0.5), kCellPx * (kNodeStep * j + 0.5));
+      const Pixel pixel(cell_px * (kNodeStep * i + 0.5), cell_px * (kNodeStep * j + 0.5));
       const auto moved = pixel_after_turn(lens, other_from_this, pixel);
-      exact.at<cv::Vec2f>(j, i) = moved ? cv::Vec2f(static_cast<float>(moved->x() / kCellPx - 0.5),
-                                                    static_cast<float>(moved->y() / kCellPx - 0.5))
+      exact.at<cv::Vec2f>(j, i) = moved ? cv::Vec2f(static_cast<float>(moved->x() / cell_px - 0.5),
+                                                    static_cast<float>(moved->y() / cell_px - 0.5))
                                         : cv::Vec2f(kNowhere, kNowhere);
     }
   cv::Mat cells(size, CV_32FC2);

@@ -17,10 +17,9 @@ namespace airtruth::detection {
 // anchor, the grid is anchored anew.
 class BearingGrid {
  public:
-  static constexpr int kCellPx = 2;
   static constexpr double kLargestTurnPx = 12;
 
-  explicit BearingGrid(const lens::Lens& lens);
+  BearingGrid(const lens::Lens& lens, int cell_px);
 
   // The width is a multiple of four, for vectors of four.
   cv::Size size() const { return size_; }
@@ -38,6 +37,7 @@ class BearingGrid {
   double largest_shift_px() const;
 
   lens::Lens lens_;
+  int cell_px_;
   cv::Size size_;
   Quaternion cam_from_anchor_ = Quaternion::Identity();
   cv::Mat cells_in_picture_;  // empty: the camera stands as the anchor does
@@ -48,6 +48,7 @@ class BearingGrid {
 // where that camera does not see it. Bilinear between exact nodes.
 cv::Mat cells_after_turn(const lens::Lens& lens,
                          const cv::Size& cells,
+                         int cell_px,
                          const Quaternion& other_from_this);
 
 }  // namespace airtruth::detection

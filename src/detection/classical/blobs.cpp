@@ -130,10 +130,12 @@ class Region {
         for (int dx = -kGap; dx <= kGap; ++dx) {
           const cv::Point next{at.x + dx, at.y + dy};
           if (!is_inside(next)) continue;
+          const bool is_beyond =
+              std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) > reach_;
+          // Each sample is looked at once.
+          if (!is_beyond && !mark(seen, next)) continue;
           if (excess(next) < least) continue;
-          if (std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) > reach_)
-            return std::nullopt;
-          if (!mark(seen, next)) continue;
+          if (is_beyond) return std::nullopt;
           open.push_back(next);
         }
     }

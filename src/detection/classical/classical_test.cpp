@@ -7,7 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "detection/classical/bearing_grid.h"
 #include "detection/classical/blobs.h"
+#include "detection/classical/filter_bank.h"
 #include "detection/classical/scale_space.h"
 #include "detection/classical/turned.h"
 
@@ -131,31 +133,218 @@ Score score_of(
   return score;
 }
 
-TEST(Explore, Table) {
-  for (const char* name : {"cmo", "cmo-hmm"})
-    for (const double turn : {0.0, 0.5})
-      for (const double contrast : {0, 3, 5, 8, 12, 20}) {
-        const Score s = score_of(name, -contrast, turn, 0);
-        std::printf("%s turn %.1f contrast %.0f hit %.2f fa %.2f score %.1f\n",
-                    name,
-                    turn,
-                    contrast,
-                    s.hit,
-                    s.false_alarms,
-                    s.mean_score);
-      }
-  std::mt19937 random(3);
-  const auto levels = scale_space(sky({}, 4, random, 640, 480));
-  for (const Level& level : levels) {
-    const cv::Mat inner = level.picture({8, 8, level.picture.cols - 16, level.picture.rows - 16});
-    cv::Scalar mean, sigma;
-    cv::meanStdDev(inner, mean, sigma);
-    std::printf("step %d sigma %.2f mean response %.2f ratio %.3f\n",
-                level.step,
-                sigma[0] / 16,
-                cv::mean(level.response)[0] / 16,
-                cv::mean(level.response)[0] / sigma[0]);
+// The smoothing by [1 2 1] keeps this much of the contrast of a target whose middle is a pixel's.
+double kept_by_smoothing(const Target& target) {
+  const auto along = [](double sigma) { return 0.5 + 0.5 * std::exp(-0.5 / (sigma * sigma)); };
+  return along(target.sigma_px.x()) * along(target.sigma_px.y());
+}
+
+// Contrast and noise are stated, so the ratio is known: a single sample of the smoothed picture has
+// kNoiseShare of the noise of a pixel.
+TEST(Blob, HasTheContrastToNoiseThatItWasMadeWith) {
+  const double noise = 3;
+  for (const double contrast : {-60.0, -30.0, 30.0}) {
+    const Target target{{150.5, 100.5}, contrast, {1.3, 1.3}};
+    std::mt19937 random(7);
+    double sum = 0;
+    constexpr int kTrials = 30;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const auto levels = scale_space(sky({target}, noise, random));
+      const auto blob = blob_at(levels, 0, {150, 100});
+      ASSERT_TRUE(blob);
+      EXPECT_EQ(blob->is_dark, contrast < 0);
+      sum += blob->contrast_to_noise;
+    }
+    const double known = std::abs(contrast) * kept_by_smoothing(target) / (kNoiseShare * noise);
+    // The larger of two estimates of the noise is a little too large.
+    EXPECT_NEAR(sum / kTrials, 0.97 * known, 0.06 * known) << contrast;
   }
+}
+
+// An independent estimate of the constants: from the samples themselves.
+TEST(ScaleSpace, NoiseAndItsResponseAreAsStated) {
+  std::mt19937 random(3);
+  const double noise = 4;
+  const auto levels = scale_space(sky({}, noise, random, 640, 480));
+  const Level& level = levels.front();
+  double sum = 0;
+  for (int y = 20; y < 460; ++y)
+    for (int x = 20; x < 620; ++x) {
+      const double off = level.picture.at<short>(y, x) / double(kGreyScale) - 120 - 0.05 * y;
+      sum += off * off;
+    }
+  const double sigma = std::sqrt(sum / (440.0 * 600));
+  EXPECT_NEAR(sigma, kNoiseShare * noise, 0.02 * noise);
+  const double typical = cv::mean(level.typical)[0] / kGreyScale;
+  EXPECT_NEAR(typical / sigma, Level::quietest() / (kGreyScale / std::sqrt(12.0)), 0.08);
+}
+
+// A filled ellipse or bar without noise.
+image::Picture shape(const Box& box, bool is_ellipse, int level) {
+  image::Picture picture = image::make_picture(640, 480, {image::Chroma::kNone});
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const double u = (x + 0.5 - box.x - box.width / 2) / (box.width / 2);
+      const double v = (y + 0.5 - box.y - box.height / 2) / (box.height / 2);
+      const bool inside = is_ellipse ? u * u + v * v <= 1 : std::abs(u) <= 1 && std::abs(v) <= 1;
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(inside ? level : 150);
+    }
+  return picture;
+}
+
+double overlap(const Box& a, const Box& b) {
+  const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  if (w <= 0 || h <= 0) return 0;
+  return w * h / (a.area() + b.area() - w * h);
+}
+
+TEST(CloseMinusOpen, BoundsObjectsOfAllSizes) {
+  const auto detector = make_classical("cmo");
+  for (const int level : {90, 210})
+    for (const double size : {3.0, 5.0, 8.0, 13.0, 20.0, 35.0, 60.0, 100.0})
+      for (const double aspect : {1.0, 2.0, 4.0}) {
+        const Box box{203, 151, size, std::max(2.0, size / aspect)};
+        const image::Picture picture = shape(box, aspect < 4, level);
+        detector->begin(sequence_of(640, 480));
+        const auto found = detector->detect({0, 0, &picture, {}});
+        ASSERT_EQ(found.size(), 1U) << size << " / " << aspect << " of " << level;
+        EXPECT_GT(overlap(found[0].box_px, box), size < 10 ? 0.3 : 0.5)
+            << size << " / " << aspect << ": " << found[0].box_px.x << "," << found[0].box_px.y
+            << " " << found[0].box_px.width << "x" << found[0].box_px.height;
+      }
+}
+
+TEST(CloseMinusOpen, DoesNotRespondToEdgesAndLines) {
+  const auto detector = make_classical("cmo");
+  for (const double slope : {0.0, 0.2, 0.7}) {
+    image::Picture picture = image::make_picture(640, 480, {image::Chroma::kNone});
+    for (int y = 0; y < 480; ++y)
+      for (int x = 0; x < 640; ++x) {
+        const double below = y - 200 - slope * x;  // a horizon, and a road
+        picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(below < 0                   ? 180
+                                                                : std::abs(below - 150) < 3 ? 160
+                                                                                            : 90);
+      }
+    detector->begin(sequence_of(640, 480));
+    EXPECT_THAT(detector->detect({0, 0, &picture, {}}), testing::IsEmpty()) << slope;
+  }
+}
+
+// The table of docs/detection.md: at a contrast of 2.5 times the noise of a pixel, single frames
+// find the target in some frames and track before detect finds it in nearly all, with a camera that
+// stands and with one that turns and shakes by up to 4 px a frame.
+TEST(HiddenMarkov, FindsWhatSingleFramesDoNot) {
+  for (const double turn_deg : {0.0, 0.5}) {
+    EXPECT_LT(score_of("cmo", -5, turn_deg).hit, 0.5) << turn_deg;
+    EXPECT_GT(score_of("cmo-hmm", -5, turn_deg).hit, 0.85) << turn_deg;
+    EXPECT_GT(score_of("cmo-hmm", 20, turn_deg).hit, 0.9) << turn_deg;
+    EXPECT_GT(score_of("cmo", 20, turn_deg).hit, 0.9) << turn_deg;
+  }
+}
+
+TEST(HiddenMarkov, IsLostWithoutTheCamerasTurn) {
+  const auto detector = make_classical("cmo-hmm");
+  Flight flight(-5, 2, 0.5);
+  detector->begin(flight.sequence());
+  int hit = 0;
+  for (int k = 0; k < 80; ++k) {
+    FrameInput frame = flight.next();
+    frame.turn = CameraTurn{};  // as if the camera stood still
+    const auto found = detector->detect(frame);
+    hit += k >= 20 && !found.empty() && hits(found.front(), flight.target_px()) ? 1 : 0;
+  }
+  EXPECT_LT(hit, 20);
+}
+
+TEST(Classical, SeldomSeesAnythingInNoise) {
+  for (const char* name : {"cmo", "cmo-hmm", "frame-difference"})
+    EXPECT_LT(score_of(name, 0, 0.5, 0, 5).false_alarms, 0.1) << name;
+}
+
+TEST(FrameDifference, SeesWhatMovesAgainstTheTurnedPicture) {
+  EXPECT_GT(score_of("frame-difference", -80, 0.2).hit, 0.7);
+}
+
+// A second sequence must not know of the first.
+TEST(Classical, ForgetsTheSequenceBefore) {
+  for (const std::string& name : classical_names()) {
+    const auto detector = make_classical(name);
+    std::vector<std::vector<Detection>> first;
+    for (int time = 0; time < 2; ++time) {
+      Flight flight(-15, 2, 0.3, 9);
+      detector->begin(flight.sequence());
+      for (std::size_t k = 0; k < 12; ++k) {
+        const auto found = detector->detect(flight.next());
+        if (time == 0)
+          first.push_back(found);
+        else
+          EXPECT_EQ(found, first[k]) << name << " " << k;
+      }
+    }
+  }
+}
+
+// Blank, tiny and odd pictures are answered, not fallen over.
+TEST(Classical, TakesAnyPicture) {
+  for (const std::string& name : classical_names())
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, {3, 200}, {16, 16}, {21, 21}, {37, 53}, {1281, 33}, {640, 479}}) {
+      const auto detector = make_classical(name);
+      detector->begin(sequence_of(width, height));
+      std::mt19937 random(1);
+      for (int k = 0; k < 3; ++k) {
+        const image::Picture picture = sky({}, k == 1 ? 0 : 3, random, width, height);
+        const std::optional<CameraTurn> turn = k > 0 ? std::optional(CameraTurn{}) : std::nullopt;
+        EXPECT_NO_THROW(detector->detect({k, k / 30.0, &picture, turn}))
+            << name << " " << width << "x" << height;
+      }
+    }
+}
+
+// Where the grid says a cell is seen, against a chain of single turns through the lens.
+TEST(BearingGrid, KeepsACellsBearing) {
+  const lens::Lens lens = lens::fisheye_from_vertical_fov(120, {640, 480});
+  BearingGrid grid(lens, 2);
+  const Quaternion step(Eigen::AngleAxisd(radians(0.3), Vector3(0.2, 1, 0.5).normalized()));
+  const cv::Point cell{100, 60};
+  Pixel expected = *grid.pixel_of(cell);
+  EXPECT_NEAR(expected.x(), 201, 1e-6);
+  bool was_anchored_anew = false;
+  for (int k = 0; k < 12 && !was_anchored_anew; ++k) {
+    was_anchored_anew = !grid.turn(step).empty();
+    if (was_anchored_anew) break;
+    expected = *pixel_after_turn(lens, step, expected);
+    EXPECT_LT((*grid.pixel_of(cell) - expected).norm(), 1e-6);
+    // A bright sample where the camera has the bearing is seen by the cell.
+    cv::Mat samples(grid.size(), CV_8U, cv::Scalar(0));
+    samples.at<std::uint8_t>(static_cast<int>(expected.y() / 2),
+                             static_cast<int>(expected.x() / 2)) = 255;
+    const cv::Mat seen = grid.seen_by_cells(samples);
+    EXPECT_GT(cv::countNonZero(seen({cell.x - 1, cell.y - 1, 3, 3})), 0) << k;
+  }
+  EXPECT_TRUE(was_anchored_anew);
+}
+
+TEST(FilterBank, ForgetsAndFollows) {
+  // A constant ratio leads to its limit.
+  FilterBank bank({64, 48});
+  const cv::Mat ratio(48, 64, CV_32F, cv::Scalar(3));
+  for (int k = 0; k < 200; ++k) bank.update(ratio);
+  // The fixed point of l = ln 3 + kRemembers (l + ln kStays), but for the error of the power.
+  const double limit = (std::log(3) + FilterBank::kRemembers * std::log(FilterBank::kStays)) /
+                       (1 - FilterBank::kRemembers);
+  EXPECT_NEAR(std::log(bank.odds().at<float>(24, 32)), limit, 0.06 * limit);
+  // Odds follow a target that moves along a filter's diagonal, one cell a frame.
+  FilterBank other({64, 48});
+  for (int k = 0; k < 20; ++k) {
+    cv::Mat now(48, 64, CV_32F, cv::Scalar(0.5));
+    now.at<float>(10 + k, 20 + k) = 50;
+    other.update(now);
+  }
+  cv::Point at;
+  cv::minMaxLoc(other.odds(), nullptr, nullptr, nullptr, &at);
+  EXPECT_EQ(at, cv::Point(39, 29));
 }
 
 }  // namespace

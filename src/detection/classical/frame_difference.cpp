@@ -10,15 +10,19 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr int kCellPx = BearingGrid::kCellPx;
+constexpr int kCellPx = 2;
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;
-// A difference of this many times the local noise is a change.
-constexpr double kChange = 5;
+// A difference of this many times the local noise is a change. Interpolation between pixels takes
+// noise from the picture before, from none to half of it: a threshold of 6 is one of at least 5.
+constexpr double kChange = 6;
 // Standard deviation of normal noise over its mean absolute value.
 const double kSigmaOfMean = std::sqrt(kPi / 2);
 // Cells in a row within which changes belong together.
 constexpr int kGapCells = 3;
+// Any share of it makes an interpolated sample negative: shares are multiples of 1/32.
+constexpr int kUnseen = -30'000;
+constexpr int kLeastSidePx = kCellPx * kNoiseStep;
 constexpr int kLargestCells = kLargestPx / kCellPx;
 // The rounding of both pictures to whole grey levels.
 const double kLeastNoise = std::sqrt(2.0 / 12);
@@ -31,6 +35,7 @@ class FrameDifference : public Detector {
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
+    if (std::min(frame.picture->width, frame.picture->height) < kLeastSidePx) return {};
     cv::Mat now;
     cv::resize(luma_of(*frame.picture),
                now,
@@ -50,10 +55,10 @@ class FrameDifference : public Detector {
   // The picture before as this frame's camera would have seen it; negative where it did not.
   cv::Mat registered(const cv::Mat& before, const CameraTurn& turn) const {
     const cv::Mat map =
-        cells_after_turn(*lens_, before.size(), turn.this_from_previous.conjugate());
+        cells_after_turn(*lens_, before.size(), kCellPx, turn.this_from_previous.conjugate());
     cv::Mat samples, result;
     before.convertTo(samples, CV_16S);
-    cv::remap(samples, result, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(-1000));
+    cv::remap(samples, result, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(kUnseen));
     return result;
   }
 

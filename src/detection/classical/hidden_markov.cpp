@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -13,17 +14,20 @@
 namespace airtruth::detection {
 namespace {
 
+// Sides of the cells of the banks: a target moves by up to a cell a frame. Smaller cells find
+// fainter targets, larger ones faster.
+constexpr std::array<int, 2> kCellsPx = {2, 8};
 // ln odds from which a cell is a detection.
 constexpr double kLeastScore = 7;
 // Side of the blocks of cells of which the strongest cell is looked at.
 constexpr int kBlockCells = 8;
 // Blocks on either side of a block that make its surroundings.
 constexpr int kAround = 2;
-// A blob belongs to a cell where it lies this near, in samples of its level.
-constexpr int kBlobRadius = 2;
 // A peak this near to a stronger one's box is of the same object.
 constexpr double kApartPx = 6;
-constexpr std::size_t kMostPeaks = 200;
+// Levels with a weaker response there do not bound it.
+constexpr double kLeastResponse = 2.5;
+constexpr std::size_t kMostPeaks = 150;
 
 // From a target's cell its odds spread to the cells around, which a target may have entered, and
 // lose at least ln(4 / kStays) for each cell where a measurement is neutral.
@@ -34,13 +38,19 @@ struct Peak {
   double score = 0;
 };
 
+bool holds(const Box& box, const Pixel& pixel, double margin_px) {
+  return pixel.x() > box.x - margin_px && pixel.y() > box.y - margin_px &&
+         pixel.x() < box.right() + margin_px && pixel.y() < box.bottom() + margin_px;
+}
+
 // The strongest response of a level near a pixel.
-cv::Point strongest_near(const Level& level, const Pixel& pixel) {
+cv::Point strongest_near(const Level& level, const Pixel& pixel, double within_px) {
   const cv::Point centre = level.sample_at(pixel);
+  const int radius = std::max(1, static_cast<int>(std::lround(within_px / level.step)));
   cv::Point best = centre;
   double most = -1;
-  for (int dy = -kBlobRadius; dy <= kBlobRadius; ++dy)
-    for (int dx = -kBlobRadius; dx <= kBlobRadius; ++dx) {
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) {
       const cv::Point sample = centre + cv::Point(dx, dy);
       const double response = level.relative_response(sample);
       if (response > most) {
@@ -51,67 +61,88 @@ cv::Point strongest_near(const Level& level, const Pixel& pixel) {
   return best;
 }
 
-bool holds(const Box& box, const Pixel& pixel, double margin_px) {
-  return pixel.x() > box.x - margin_px && pixel.y() > box.y - margin_px &&
-         pixel.x() < box.right() + margin_px && pixel.y() < box.bottom() + margin_px;
-}
-
-// The object at a pixel, as its strongest blob of any level has it; a square of the smallest size
-// that the detector responds to where it is too faint to bound.
-Box box_at(const std::vector<Level>& levels, const Pixel& pixel) {
+// The object at a pixel, as its strongest blob of any level has it; empty where it is too faint to
+// bound.
+std::optional<Box> box_at(const std::vector<Level>& levels, const Pixel& pixel, double within_px) {
   std::optional<Blob> best;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const cv::Point sample = strongest_near(levels[i], pixel);
-    if (!cv::Rect({}, levels[i].picture.size()).contains(sample)) continue;
+    const cv::Point sample = strongest_near(levels[i], pixel, within_px);
+    if (levels[i].relative_response(sample) < kLeastResponse) continue;
     const auto blob = blob_at(levels, i, sample);
-    if (!blob || !holds(blob->box_px, pixel, BearingGrid::kCellPx + 1)) continue;
+    if (!blob || !holds(blob->box_px, pixel, within_px + 1)) continue;
     if (!best || blob->contrast_to_noise > best->contrast_to_noise) best = blob;
   }
-  if (best) return best->box_px;
-  constexpr double kSide = kElement - 2;
-  return {pixel.x() - kSide / 2, pixel.y() - kSide / 2, kSide, kSide};
+  return best ? std::optional(best->box_px) : std::nullopt;
 }
 
-class HiddenMarkov : public Detector {
- public:
-  void begin(const SequenceInput& sequence) override {
-    grid_.emplace(sequence.lens);
-    bank_.emplace(grid_->size());
-    ratio_ = LikelihoodRatio();
-    picture_ = {0, 0, double(sequence.width), double(sequence.height)};
-  }
+// A square of the smallest size that the detector responds to.
+Box smallest_box(const Pixel& centre) {
+  constexpr double kSide = kElement - 2;
+  return {centre.x() - kSide / 2, centre.y() - kSide / 2, kSide, kSide};
+}
 
-  std::vector<Detection> detect(const FrameInput& frame) override {
-    if (frame.turn) {
-      const cv::Mat carried = grid_->turn(frame.turn->this_from_previous);
-      if (!carried.empty()) bank_->carry(carried);
-    }
-    const std::vector<Level> levels = scale_space(*frame.picture);
-    const Measurement measurement = measurement_of(levels, grid_->size());
-    ratio_.learn(measurement);
-    bank_->update(grid_->seen_by_cells(ratios_of(measurement)));
-    return detections_at(peaks(), levels);
-  }
+// Filters over cells of one size, with the odds of clutter in them.
+struct Bank {
+  Bank(const lens::Lens& lens, int side_px)
+      : cell_px(side_px), grid(lens, side_px), filters(grid.size()) {}
 
-  bool needs_motion() const override { return true; }
-
- private:
-  cv::Mat ratios_of(const Measurement& measurement) const {
+  void update(const Measurement& measurement) {
+    ratio.learn(measurement);
     cv::Mat ratios(measurement.response.size(), CV_32F);
     for (int y = 0; y < ratios.rows; ++y) {
       const std::uint8_t* response = measurement.response.ptr<std::uint8_t>(y);
       const std::uint8_t* clutter = measurement.clutter.ptr<std::uint8_t>(y);
       float* out = ratios.ptr<float>(y);
-      for (int x = 0; x < ratios.cols; ++x) out[x] = ratio_.of_class(clutter[x])[response[x]];
+      for (int x = 0; x < ratios.cols; ++x) out[x] = ratio.of_class(clutter[x])[response[x]];
     }
-    return ratios;
+    filters.update(grid.seen_by_cells(ratios));
   }
 
+  void turn(const Quaternion& this_from_previous) {
+    const cv::Mat carried = grid.turn(this_from_previous);
+    if (!carried.empty()) filters.carry(carried);
+  }
+
+  int cell_px;
+  BearingGrid grid;
+  FilterBank filters;
+  LikelihoodRatio ratio;
+};
+
+class HiddenMarkov : public Detector {
+ public:
+  void begin(const SequenceInput& sequence) override {
+    banks_.clear();
+    for (const int cell_px : kCellsPx) banks_.emplace_back(sequence.lens, cell_px);
+    picture_ = {0, 0, double(sequence.width), double(sequence.height)};
+  }
+
+  std::vector<Detection> detect(const FrameInput& frame) override {
+    const std::vector<Level> levels = scale_space(*frame.picture);
+    if (levels.empty()) return {};  // a picture smaller than the elements
+    std::vector<Detection> detections;
+    const Measurement fine = measurement_of(levels, banks_.front().grid.size());
+    for (Bank& bank : banks_) {
+      if (bank.grid.size().empty()) continue;
+      if (frame.turn) bank.turn(frame.turn->this_from_previous);
+      const int factor = bank.cell_px / kCellsPx[0];
+      bank.update(factor == 1 ? fine : coarser(fine, factor, bank.grid.size()));
+      add_detections(bank, levels, detections);
+    }
+    std::stable_sort(detections.begin(),
+                     detections.end(),
+                     [](const Detection& a, const Detection& b) { return a.score > b.score; });
+    return detections;
+  }
+
+  bool needs_motion() const override { return true; }
+
+ private:
   // The strongest cell of each block, by how much its ln odds exceed those of the strongest cells
   // of the blocks around it, on average: clutter that stays, as on the ground, lifts those as well.
-  std::vector<Peak> peaks() const {
-    const cv::Mat& odds = bank_->odds();
+  static std::vector<Peak> peaks_of(const cv::Mat& odds) {
     const cv::Size blocks(odds.cols / kBlockCells, odds.rows / kBlockCells);
+    if (blocks.empty()) return {};
     cv::Mat strongest(blocks, CV_32F), around, inner;
     for (int by = 0; by < blocks.height; ++by)
       for (int bx = 0; bx < blocks.width; ++bx) {
@@ -150,31 +181,34 @@ class HiddenMarkov : public Detector {
     return {bx * kBlockCells, by * kBlockCells, kBlockCells, kBlockCells};
   }
 
-  std::vector<Detection> detections_at(const std::vector<Peak>& peaks,
-                                       const std::vector<Level>& levels) const {
-    std::vector<Detection> detections;
-    for (const Peak& peak : peaks) {
-      const auto pixel = grid_->pixel_of(peak.cell);
-      if (!pixel || pixel->x() < 0 || pixel->y() < 0 || pixel->x() >= picture_.width ||
-          pixel->y() >= picture_.height)
-        continue;
-      const Box box = box_at(levels, *pixel);
-      const bool is_taken =
-          std::any_of(detections.begin(), detections.end(), [&](const Detection& stronger) {
-            return is_same_object(stronger.box_px, box) || holds(stronger.box_px, *pixel, kApartPx);
+  // The bank's peaks that are of no object that is there already.
+  void add_detections(const Bank& bank,
+                      const std::vector<Level>& levels,
+                      std::vector<Detection>& detections) const {
+    for (const Peak& peak : peaks_of(bank.filters.odds())) {
+      const auto pixel = bank.grid.pixel_of(peak.cell);
+      if (!pixel || !holds(picture_, *pixel, 0)) continue;
+      const auto bounds = box_at(levels, *pixel, bank.cell_px);
+      // Large cells are for what moves fast and can be seen in a single frame.
+      if (!bounds && bank.cell_px > kCellsPx[0]) continue;
+      const Box box = bounds.value_or(smallest_box(*pixel));
+      const double score = std::round(peak.score * 1000) / 1000;
+      const auto same =
+          std::find_if(detections.begin(), detections.end(), [&](const Detection& other) {
+            return is_same_object(other.box_px, box) || holds(other.box_px, *pixel, kApartPx);
           });
-      if (is_taken) continue;
+      if (same != detections.end()) {
+        same->score = std::max(same->score, score);
+        continue;
+      }
       Detection detection;
       detection.box_px = box;
-      detection.score = std::round(peak.score * 1000) / 1000;
+      detection.score = score;
       detections.push_back(detection);
     }
-    return detections;
   }
 
-  std::optional<BearingGrid> grid_;
-  std::optional<FilterBank> bank_;
-  LikelihoodRatio ratio_;
+  std::vector<Bank> banks_;
   Box picture_;
 };
 

@@ -87,6 +87,20 @@ Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cel
   return measurement;
 }
 
+Measurement coarser(const Measurement& measurement, int factor, const cv::Size& cells) {
+  Measurement result;
+  // The extreme of `factor` neighbours along both directions, at every factor-th cell.
+  cv::Mat largest;
+  cv::dilate(measurement.response,
+             largest,
+             cv::Mat::ones(factor, factor, CV_8U),
+             {0, 0});  // the cell and those after it
+  const cv::Rect used(0, 0, cells.width * factor, cells.height * factor);
+  cv::resize(largest(used), result.response, cells, 0, 0, cv::INTER_NEAREST);
+  cv::resize(measurement.clutter(used), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
+  return result;
+}
+
 LikelihoodRatio::LikelihoodRatio() {
   for (int k = 0; k < kStrengths; ++k) {
     const double strength =

@@ -10,7 +10,7 @@
 
 namespace airtruth::detection {
 
-// Measurements for a filter over cells of 2 x 2 px, and how much more likely a target makes them
+// Measurements for a filter over square cells, and how much more likely a target makes them
 // than clutter does.
 
 // Responses are counted in this part of the typical response.
@@ -25,7 +25,10 @@ struct Measurement {
   // CV_8U for each cell: its class of clutter.
   cv::Mat clutter;
 };
+// Of cells of 2 x 2 px.
 Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cells);
+// Of cells `factor` times larger: the largest response in each.
+Measurement coarser(const Measurement& measurement, int factor, const cv::Size& cells);
 
 // p(response | target) / p(response | clutter), for each class of clutter. The denominator is the
 // histogram of all cells of the frames so far (of which targets are few), forgotten over

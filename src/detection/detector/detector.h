@@ -27,7 +27,9 @@ struct FrameInput {
   std::int64_t index = 0;  // in the sequence, from 0
   double time_s = 0;
   const image::Picture* picture = nullptr;
-  // Empty for the first frame of a shot, and where the motion is unknown.
+  // Nothing links the frame to those before it. True for the first frame of the sequence.
+  bool begins_shot = false;
+  // Empty for the first frame of a shot, and where the motion is unknown (a blank sky, blur).
   std::optional<CameraTurn> turn;
 };
 

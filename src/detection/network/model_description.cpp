@@ -157,8 +157,11 @@ std::filesystem::path description_path(const std::filesystem::path& model) {
 }
 
 ModelDescription read_description(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kMostBytes);
-  const JsonDocument document(text, {path.string()});
+  return description_from(read_file(path, kMostBytes), path.string());
+}
+
+ModelDescription description_from(std::string_view text, const std::string& file) {
+  const JsonDocument document(text, {file});
   const JsonObject json = document.with_lines_of(text);
   json.expect_keys_among(
       {"format", "input", "output", "classes", "score_threshold", "confident_score", "nms_iou"});

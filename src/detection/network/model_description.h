@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -71,5 +72,7 @@ std::filesystem::path description_path(const std::filesystem::path& model);
 // Throws Error where the file is missing, is no JSON, has an unknown key, or states what no network
 // can have.
 ModelDescription read_description(const std::filesystem::path& json);
+// The same from a text; `file` is its name in messages.
+ModelDescription description_from(std::string_view text, const std::string& file);
 
 }  // namespace airtruth::detection

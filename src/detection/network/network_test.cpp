@@ -61,7 +61,7 @@ class Networks : public testing::Test {
   }
   std::string fault(const std::string& onnx, const std::string& json) {
     try {
-      make(onnx, json);
+      make(onnx, json, 1);
     } catch (const Error& error) {
       return error.what();
     }

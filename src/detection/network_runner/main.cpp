@@ -50,14 +50,15 @@ void start_threads(int count) {
 
 // A cv::Exception has its place in the code before the words that help.
 std::string words_of(const cv::Exception& error) {
-  const std::string words = error.err.empty() ? error.what() : error.err;
+  std::string words = error.err.empty() ? error.what() : error.err;
+  if (words.starts_with("> ")) words.erase(0, 2);  // of a message with several parts
   return words.substr(0, words.find('\n')).substr(0, 300);
 }
 
 class Network {
  public:
   explicit Network(NetworkJob job) : job_(std::move(job)) {
-    net_ = cv::dnn::readNetFromONNX(job_.onnx.data(), job_.onnx.size());
+    read();
     if (net_.empty()) throw Error("it holds no network");
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
@@ -83,6 +84,20 @@ class Network {
   }
 
  private:
+  void read() {
+    try {
+      net_ = cv::dnn::readNetFromONNX(job_.onnx.data(), job_.onnx.size());
+    } catch (const cv::Exception& error) {
+      if (error.code == cv::Error::StsNoMem) throw;
+      const std::string words = words_of(error);
+      throw Error(
+          words.starts_with("Failed to parse")
+              ? "it is no ONNX file, or its end is missing"
+              : "OpenCV says: " + words +
+                    " (it reads networks of opset 12 and less, with a batch of 1 and fixed sizes)");
+    }
+  }
+
   std::string ends() const {
     std::string names;
     for (const std::string& name : net_.getUnconnectedOutLayersNames()) {

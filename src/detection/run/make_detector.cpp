@@ -17,8 +17,8 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr std::string_view kNetwork = "onnx:";
 constexpr std::string_view kExec = "exec:";
+constexpr std::string_view kNetwork = "onnx:";
 
 bool is_file_name(const std::string& name) {
   return !name.empty() && name.size() <= 80 && name.front() != '.' &&
@@ -28,11 +28,12 @@ bool is_file_name(const std::string& name) {
          });
 }
 
-// "exec" for exec:COMMAND (two of them need names), and "aircraft" for onnx:models/aircraft.onnx.
+// "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
 std::string usual_name(const std::string& command) {
-  if (command.starts_with(kNetwork))
-    return std::filesystem::path(command.substr(kNetwork.size())).stem().string();
-  return command.substr(0, command.find(':'));
+  const std::string scheme = command.substr(0, command.find(':'));
+  if (!command.starts_with(kNetwork)) return scheme;
+  const std::string stem = std::filesystem::path(command.substr(kNetwork.size())).stem().string();
+  return stem.empty() ? scheme : stem;
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ std::vector<std::filesystem::path> files_of(std::string_view command) {
 }
 
 std::vector<std::string> detector_forms() {
-  return {"onnx:MODEL.onnx for a network with the file MODEL.json beside it",
+  return {"onnx:MODEL.onnx for a network (docs/formats/detector-model.md)",
           "exec:COMMAND for a program that speaks docs/detector-protocol.md"};
 }
 
@@ -76,8 +77,13 @@ std::unique_ptr<Detector> make_detector(std::string_view command, const Detector
     if (model.empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
     return make_network_detector(model, {options.threads, options.stop});
   }
-  const std::vector<std::string> names = detector_names();
-  const auto near = nearest_spelling(command, names);
+  std::vector<std::string> names = detector_names();
+  names.insert(names.end(), {"onnx:MODEL.onnx", "exec:COMMAND"});
+  const std::string scheme(command.substr(0, command.find(':')));
+  const bool has_scheme = scheme.size() < command.size();
+  const auto near = has_scheme
+                        ? nearest_spelling(scheme + ":", std::vector<std::string>{"onnx:", "exec:"})
+                        : nearest_spelling(scheme, detector_names());
   throw Error(fmt::format(
       "there is no detector '{}'; {}",
       command.substr(0, 80),

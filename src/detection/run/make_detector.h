@@ -27,7 +27,8 @@ std::vector<std::string> detector_names();
 std::vector<std::string> detector_forms();
 
 // "mine=exec:./mine --fast" is the command "exec:./mine --fast" whose results are named "mine";
-// without a name they are named as the command up to its colon.
+// without a name they are named as the command up to its colon, and those of onnx:DIR/aircraft.onnx
+// "aircraft".
 struct DetectorName {
   std::string name;  // a plain file name
   std::string command;

@@ -23,9 +23,17 @@ Json settings_of(const AssociationOptions& association) {
           {"confident_score", score ? Json(*score) : Json()}};
 }
 
+// The command without the folder of its files, which are known by their content.
+std::string recorded(const std::string& command) {
+  const std::vector<fs::path> files = files_of(command);
+  if (files.empty()) return command;
+  return command.substr(0, command.find(':') + 1) + files.front().filename().string();
+}
+
 // What decides the bytes of the results.
 Json settings_of(const DetectorName& detector, const RunOptions& options) {
-  Json settings = {{"detector", detector.command}, {"max_per_frame", options.max_per_frame}};
+  Json settings = {{"detector", recorded(detector.command)},
+                   {"max_per_frame", options.max_per_frame}};
   settings["min_score"] = options.min_score ? Json(*options.min_score) : Json();
   settings["lens"] = options.lens ? Json(sha256_of_file(*options.lens)) : Json();
   settings["association"] = options.association ? settings_of(*options.association) : Json();

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""airtruth detect as its users run it, with the shipped clients and with programs that misbehave: python3 detect_test.py AIRTRUTH CLIENTS EXAMPLE"""
+
+import json
+import os
+import struct
+import sys
+import unittest
+import zlib
+
+import program
+from program import Case, made, path, read, run, write
+
+WIDTH, HEIGHT, COUNT = 320, 240, 30
+CLIENTS = EXAMPLE = ""
+HELLO = """echo '{"hello":{"protocol":1,"samples":"gray","frames":"shared_memory"}}'; """
+LOOP = HELLO + """while read -r line; do case "$line" in '{"frame":'*) k=${line#*:}; k=${k%%,*}; if [ $k -lt 3 ]; then echo "{\\"frame\\":$k,\\"detections\\":[]}"; else SAY; fi;; '{"quit"'*) exit 0;; esac; done"""
+ODD = {
+    "dies": ("kill -SEGV $$", "was ended by signal 11"),
+    "hangs": ("sleep 100", "did not answer in time"),
+    "floods": ("exec yes nonsense", "did not answer in time"),
+    "disorder": ("echo '{\"frame\":1,\"detections\":[]}'", "answered out of order: frame '1', when asked for frame 3"),
+    "nan": ("echo '{\"frame\":3,\"detections\":[{\"box\":[1,1,5,5],\"score\":NaN}]}'", "sent NaN"),
+    "outside": ("echo '{\"frame\":3,\"detections\":[{\"box\":[999,1,5,5],\"score\":1}]}'", "lies outside its image of 320x240"),
+    "empty": ("echo '{\"frame\":3,\"detections\":[{\"box\":[9,1,0,5],\"score\":1}]}'", "has no area"),
+}
+
+
+def files_of(folder):
+    """Relative path and content of every file but those that hold times."""
+    found = {}
+    for place, _, names in os.walk(path(folder)):
+        for name in names:
+            file = os.path.join(place, name)
+            text = read(file)
+            if name.endswith(".json") and '"seconds"' in text:
+                text = json.dumps({key: value for key, value in json.loads(text).items() if key != "seconds"})
+            found[os.path.relpath(file, path(folder))] = text
+    return found
+
+
+def target(number):
+    """A dark bar that crosses the sky."""
+    return 60 + 2 * number, 80 + number, 14, 6
+
+
+def brightest(number):
+    """The brightest pixel of a frame."""
+    return 200 + number, 40
+
+
+def png_of(number):
+    """A grey sky with a pattern as fine as noise."""
+    x0, y0, width, height = target(number)
+    rows = []
+    for y in range(HEIGHT):
+        row = bytearray(140 + y // 12 + (x * 7919 + y * 104729 + number * 1299709) % 97 % 5 for x in range(WIDTH))
+        if y0 <= y < y0 + height:
+            row[x0:x0 + width] = bytes([70]) * width
+        rows.append(row)
+    x, y = brightest(number)
+    rows[y][x] = 250
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    data = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0)) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
+
+
+def make_inputs():
+    pictures = [png_of(number) for number in range(COUNT)]
+    for name in ("one", "three", "two"):
+        for number, picture in enumerate(pictures):
+            write(f"otb/{name}/img/{number + 1:04}.png", picture)
+        write(f"otb/{name}/groundtruth_rect.txt", "".join(f"{x + 1},{y + 1},{w},{h}\n" for x, y, w, h in map(target, range(COUNT))))
+    made("dataset", "import", "otb", "-f", "otb", "-o", "set")
+
+
+class OverASet(Case):
+    def test_every_frame_of_every_sequence(self):
+        made("detect", "set", "-d", "cmo", "-d", "frame-difference", "-o", "all")
+        for name in ("one", "three", "two"):
+            facts = json.loads(read("all", "cmo", name + ".json"))
+            self.assertEqual((facts["frames"], facts["width"], facts["height"], len(facts["seconds"])), (COUNT, 320, 240, COUNT))
+        # Every frame's strongest detection is the target. Image ids count the frames of the set through.
+        lines = [line.split(",") for line in read("all", "cmo", "two.txt").splitlines()]
+        self.assertTrue(all(len(line) == 10 for line in lines))
+        for number in range(COUNT):
+            left, top, width, height = (float(v) for v in next(line for line in lines if int(line[0]) == number + 1)[2:6])
+            for found, wanted in zip((left - 1, top - 1, width, height), target(number)):
+                self.assertLessEqual(abs(found - wanted), 2, f"frame {number}: {left},{top} {width}x{height}")
+        coco = json.loads(read("all", "cmo", "detections.json"))
+        of_two = [one for one in coco if 2 * COUNT < one["image_id"] <= 3 * COUNT]
+        self.assertEqual(len(of_two), len(lines))
+        self.assertEqual([one["image_id"] - 2 * COUNT for one in of_two], [int(line[0]) for line in lines])
+        self.assertEqual([round(one["bbox"][0] + 1, 3) for one in of_two], [float(line[2]) for line in lines])
+
+    def test_the_same_bytes_for_any_number_of_jobs(self):
+        made("detect", "set", "-d", "cmo-hmm", "-o", "j1")
+        made("detect", "set", "-d", "cmo-hmm", "-o", "j3", "-j", "3")
+        self.assertEqual(files_of("j1"), files_of("j3"))
+
+    def test_a_second_run_goes_on(self):
+        made("detect", "set", "-d", "cmo", "-o", "parts", "--only", "t*")
+        self.assertFalse(os.path.exists(path("parts", "cmo", "detections.json")))
+        before = read("parts", "cmo", "two.json")
+        done = made("detect", "set", "-d", "cmo", "-o", "parts")
+        self.assertIn("of 1 sequences", done.stdout)
+        self.assertIn("2 were there", done.stdout)
+        self.assertEqual(read("parts", "cmo", "two.json"), before)
+        self.assertTrue(os.path.exists(path("parts", "cmo", "detections.json")))
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "parts", "--min-score", "9"), "min_score", "give another --out")
+
+    def test_scores_and_numbers_are_limited(self):
+        made("detect", "set", "-d", "few=cmo", "-o", "few", "--max-per-frame", "2", "--min-score", "5")
+        lines = [line.split(",") for line in read("few", "few", "one.txt").splitlines()]
+        self.assertTrue(lines)
+        self.assertTrue(all(float(line[6]) >= 5 for line in lines))
+        for frame in range(COUNT):
+            self.assertLessEqual(sum(int(line[0]) == frame + 1 for line in lines), 2)
+
+    def test_ctrl_c_leaves_whole_sequences_alone(self):
+        outcome = program.interrupted(["detect", "set", "-d", "cmo-hmm", "-o", "stopped"], program.has_written("stopped/cmo-hmm/one.json"))
+        self.assert_stopped(outcome)
+        for name in os.listdir(path("stopped", "cmo-hmm")):
+            self.assertNotIn("part", name)
+        made("detect", "set", "-d", "cmo-hmm", "-o", "stopped")
+        made("detect", "set", "-d", "cmo-hmm", "-o", "unstopped")
+        self.assertEqual(files_of("stopped"), files_of("unstopped"))
+
+
+class OverAVideo(Case):
+    def test_its_name_is_that_of_its_file(self):
+        made("detect", "otb/one/img", "-d", "cmo", "-o", "video")
+        self.assertEqual(sorted(os.listdir(path("video", "cmo"))), ["detector.json", "img.detections.json", "img.json", "img.txt"])
+
+
+class Refusals(Case):
+    def test_one_line_each(self):
+        self.assert_refused(run("detect", "set", "-d", "cmo-hnm", "-o", "x"), "did you mean 'cmo-hmm'")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-d", "cmo=cmo-hmm", "-o", "x"), "two detectors are named 'cmo'")
+        self.assert_refused(run("detect", "set", "-d", "../a=cmo", "-o", "x"), "no name")
+        self.assert_refused(run("detect", "set", "-d", "exec: ", "-o", "x"), "names no command")
+        self.assert_refused(run("detect", "nowhere", "-d", "cmo", "-o", "x"), "does not exist")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--only", "q*"), "no sequence fits")
+        self.assert_refused(run("detect", write("no.mp4", "none"), "-d", "cmo", "-o", "x"), "no.mp4")
+        self.assertFalse(os.path.exists(path("x")))
+
+
+class Programs(Case):
+    def test_both_clients_see_the_same(self):
+        detectors = []
+        for name, command in (("cpp", EXAMPLE), ("py", f"{sys.executable} {CLIENTS}/brightest_detector.py")):
+            detectors += ["-d", f"{name}=exec:{command}", "-d", f"{name}-shared=exec:{command} --shared"]
+        made("detect", "set", "--only", "one", "-o", "clients", *detectors)
+        texts = [read("clients", name, "one.txt") for name in ("cpp", "cpp-shared", "py", "py-shared")]
+        self.assertEqual(len(set(texts)), 1)
+        lines = [line.split(",") for line in texts[0].splitlines()]
+        self.assertEqual(len(lines), COUNT)
+        for number, line in enumerate(lines):
+            x, y = brightest(number)
+            self.assertEqual([float(v) for v in line[:6]], [number + 1, -1, x - 1, y - 1, 5, 5])
+
+    def test_each_fault_costs_its_sequence_alone(self):
+        for name, (say, words) in ODD.items():
+            write(name + ".sh", LOOP.replace("SAY", say))
+            done = run("detect", "set", "-d", f"{name}=exec:sh {path(name + '.sh')}", "-d", "cmo", "-o", "odd", "--only", "o*", "--timeout", "2")
+            self.assertEqual(done.returncode, 1, done.stderr)
+            lines = done.stderr.splitlines()
+            self.assertEqual(len(lines), 1, done.stderr)
+            self.assertTrue(lines[0].startswith(f"airtruth: warning: {name} on one: the detector "), lines[0])
+            self.assertIn(words, lines[0])
+            self.assertEqual(sorted(os.listdir(path("odd", name))), ["detector.json", "logs"])
+            self.assertIn(words, read("odd", name, "logs", "one.log"))
+            self.assertTrue(os.path.exists(path("odd", "cmo", "one.json")))
+
+    def test_the_next_sequence_is_run(self):
+        write("picky.sh", HELLO + """read -r line; case "$line" in *'"sequence":"one"'*) echo not this one >&2; exit 4;; esac; """
+              + LOOP[len(HELLO):].replace("SAY", "echo \"{\\\"frame\\\":$k,\\\"detections\\\":[]}\""))
+        done = run("detect", "set", "-d", f"picky=exec:sh {path('picky.sh')}", "-o", "picky")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("ended with status 4; its last words: not this one", done.stderr)
+        self.assertEqual(sorted(os.listdir(path("picky", "picky"))), ["detector.json", "logs", "three.json", "three.txt", "two.json", "two.txt"])
+
+
+if __name__ == "__main__":
+    EXAMPLE = os.path.abspath(sys.argv.pop())
+    CLIENTS = os.path.abspath(sys.argv.pop())
+    program.main(make_inputs)
