@@ -13,6 +13,7 @@
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -61,11 +62,12 @@ void ask_video(exchange::Clip& clip, const Warn& warn) {
 }
 
 Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
-  std::set<std::string> categories;
+  std::set<std::string> categories, distractors;
   std::int64_t labels = 0;
   for (const exchange::LabelledFrame& frame : clip.frames)
     for (const exchange::Label& label : frame.labels) {
       categories.insert(label.category);
+      if (!annotation::is_aircraft(label.object_class)) distractors.insert(label.category);
       ++labels;
     }
   Json record = {{"format", "airtruth labelled clip 1"},
@@ -75,6 +77,7 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
                  {"frames", clip.frames.size()},
                  {"labels", labels},
                  {"categories", categories}};
+  if (!distractors.empty()) record["distractors"] = distractors;
   if (!clip.media.empty()) record["media"] = clip.media.string();
   return record;
 }

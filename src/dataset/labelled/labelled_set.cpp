@@ -122,6 +122,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     facts.frames = record.count("frames");
     for (const std::string& category : record.texts("categories")) categories.insert(category);
   }
+  if (record.has("distractors")) facts.distractors = record.texts("distractors");
   facts.categories = {categories.begin(), categories.end()};
   return facts;
 }
