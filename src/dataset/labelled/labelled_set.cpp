@@ -115,8 +115,15 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
     facts.background = scene.background.video.string();
     facts.frames = record.object("summary").count("frames");
+    std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)
-      categories.insert(category_of(intruder.aircraft));
+      if (is_aircraft(intruder))
+        categories.insert(category_of(intruder.aircraft));
+      else
+        distractors.insert(enum_name(intruder.distractor->kind));
+    for (const scene::LensMark& mark : scene.lens_marks) distractors.insert(enum_name(mark.kind));
+    categories.insert(distractors.begin(), distractors.end());
+    facts.distractors = {distractors.begin(), distractors.end()};
   } else {
     facts.background = record.maybe_text("media").value_or(name);
     facts.frames = record.count("frames");

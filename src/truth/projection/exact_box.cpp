@@ -123,8 +123,9 @@ class Sweep {
   std::array<Matrix3, 3> rotation_;
 };
 
-// A part that spins or swings passes through many angles during the exposure. So many angles are taken that
-// neighbours are a few degrees apart, and the part counts as present at each of them all the time.
+// A part that spins or swings passes through many angles during the exposure. So many angles are
+// taken that neighbours are a few degrees apart, and the part counts as present at each of them all
+// the time.
 constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMaxSpinSteps = 120;
 
