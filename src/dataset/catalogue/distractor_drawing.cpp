@@ -102,7 +102,7 @@ DrawnMark drawn_mark(const DistractorRule& rule, Random random) {
   mark.size_px = drawn_evenly_in_logarithm(random, rule.spot_px);
   mark.length_px = slender * mark.size_px;
   mark.opacity = drawn(random, rule.opacity);
-  mark.softness = random.uniform(0.5, 1);
+  mark.softness = random.uniform(rule.kind == scene::DistractorKind::kInsect ? 0.85 : 0.5, 1);
   // Reflections of a sun in front of the camera lie beyond the image's centre.
   mark.along = random.uniform(-1.2, -0.2);
   result.across = random.uniform();

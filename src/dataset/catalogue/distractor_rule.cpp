@@ -103,7 +103,7 @@ DistractorRule usual_rule(DistractorKind kind) {
       break;
     case DistractorKind::kInsect:
       rule.spot_px = {8, 30};
-      rule.opacity = {0.5, 0.9};
+      rule.opacity = {0.4, 0.8};
       rule.speed_px_s = {600, 4000};
       break;
   }

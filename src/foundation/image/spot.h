@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
@@ -33,12 +32,15 @@ struct Spot {
   std::array<double, kLobes> cosines{};
   std::array<double, kLobes> sines{};
 
-  // The radius at an angle as a share of radius_px.
-  double lobe(double angle) const {
+  // The radius in a direction, given by the cosine and sine of its angle, as a share of radius_px.
+  double lobe(double cosine, double sine) const {
     double share = 1;
+    double c = cosine, s = sine;
     for (std::size_t k = 0; k < kLobes; ++k) {
-      const double turned = static_cast<double>(k + 2) * angle;
-      share += cosines[k] * std::cos(turned) + sines[k] * std::sin(turned);
+      const double next = c * cosine - s * sine;
+      s = s * cosine + c * sine;
+      c = next;
+      share += cosines[k] * c + sines[k] * s;
     }
     return share;
   }

@@ -10,11 +10,15 @@
 namespace airtruth::composite {
 namespace {
 
-// Samples along each side of a pixel, and in its exposure where the spot moves.
+// Samples along each side of a pixel where the spot fades within a few pixels, and where it fades
+// over kSoftPx or more: the curvature of the fade then changes a pixel's mean by less than 0.001.
 constexpr int kSide = 4;
+constexpr int kSoftSide = 1;
+constexpr double kSoftPx = 16;
+// Samples in the exposure where the spot moves.
 constexpr int kTimes = 16;
 // Samples along each side of a spot's bounds for its area.
-constexpr int kAreaSide = 160;
+constexpr int kAreaSide = 96;
 // Movement within the exposure below which a single moment is enough.
 constexpr double kStillPx = 0.05;
 
@@ -49,14 +53,11 @@ std::optional<PixelBox> pixels_in_frame(const image::Spot& spot, const Spots& al
 
 // Calls visit(x, y, alpha) for each pixel of the frame that the spot covers.
 template <typename Visit>
-void each_covered(const image::Spot& spot, const Spots& all, const Visit& visit) {
-  const auto box = pixels_in_frame(spot, all);
-  if (!box) return;
-  for (int y = box->y; y < box->bottom(); ++y)
-    for (int x = box->x; x < box->right(); ++x) {
-      const double alpha = pixel_alpha(spot, x, y, all.shutter, all.frame_width, all.frame_height);
-      if (alpha > 0) visit(x, y, alpha);
-    }
+void each_covered(const SpotCover& cover, const Visit& visit) {
+  std::size_t i = 0;
+  for (int y = cover.box.y; y < cover.box.bottom(); ++y)
+    for (int x = cover.box.x; x < cover.box.right(); ++x, ++i)
+      if (cover.alpha[i] > 0) visit(x, y, cover.alpha[i]);
 }
 
 // Areas of the spot's alpha, alone: in all, and within the frame.
@@ -124,16 +125,19 @@ image::Layer on_patch(const image::Layer& layer, const PixelBox& patch, std::siz
   return result;
 }
 
-PixelBox patch_with(const image::Layer& layer, const Spots& all, int margin_px) {
+PixelBox patch_with(const image::Layer& layer,
+                    const Spots& all,
+                    const std::vector<SpotCover>& covers,
+                    int margin_px) {
   std::optional<PixelBox> patch;
   if (!layer.empty()) patch = layer.patch;
-  for (const auto& spot : all.spots) {
-    const auto box = spot ? pixels_in_frame(*spot, all) : std::nullopt;
-    if (!box) continue;
-    const PixelBox wider = *intersection({box->x - margin_px,
-                                          box->y - margin_px,
-                                          box->width + 2 * margin_px,
-                                          box->height + 2 * margin_px},
+  for (const SpotCover& cover : covers) {
+    if (cover.alpha.empty()) continue;
+    const PixelBox& box = cover.box;
+    const PixelBox wider = *intersection({box.x - margin_px,
+                                          box.y - margin_px,
+                                          box.width + 2 * margin_px,
+                                          box.height + 2 * margin_px},
                                          {0, 0, all.frame_width, all.frame_height});
     patch = patch ? bounds(*patch, wider) : wider;
   }
@@ -142,11 +146,10 @@ PixelBox patch_with(const image::Layer& layer, const Spots& all, int margin_px) 
 }
 
 // Puts a spot over the layer, whose last intruder it is.
-void put_over(image::Layer& layer, const image::Spot& spot, const Spots& all) {
+void put_over(image::Layer& layer, const image::Spot& spot, const SpotCover& cover) {
   layer.coverage.back().assign(layer.pixels.size(), 0);
-  each_covered(spot, all, [&](int x, int y, double alpha) {
+  each_covered(cover, [&](int x, int y, float own) {
     const std::size_t i = layer.index(x, y);
-    const auto own = static_cast<float>(alpha);
     image::LayerPixel& under = layer.pixels[i];
     const float under_alpha = under.alpha;
     under = {own * spot.colour[0] + (1 - own) * under.red,
@@ -170,7 +173,8 @@ double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s) {
       std::clamp(off.dot(spot.direction), -spot.half_length_px, spot.half_length_px);
   const double distance = (off - along * spot.direction).norm();
   double radius = spot.radius_px;
-  if (spot.half_length_px == 0 && distance > 0) radius *= spot.lobe(std::atan2(off.y(), off.x()));
+  if (spot.half_length_px == 0 && distance > 0)
+    radius *= spot.lobe(off.x() / distance, off.y() / distance);
   if (!(distance < radius)) return 0;
   if (!(spot.softness > 0)) return spot.opacity;
   return spot.opacity *
@@ -188,29 +192,46 @@ double pixel_alpha(const image::Spot& spot,
   const double middle_s =
       shutter.is_instant() ? 0
                            : shutter.middle_s(Pixel(x + 0.5, y + 0.5), frame_width, frame_height);
+  const int side = spot.softness * spot.radius_px >= kSoftPx ? kSoftSide : kSide;
   double sum = 0;
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
-      const Pixel at(x + (i + 0.5) / kSide, y + (j + 0.5) / kSide);
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const Pixel at(x + (i + 0.5) / side, y + (j + 0.5) / side);
       for (int k = 0; k < times; ++k)
         sum += spot_alpha(spot, at, middle_s + shutter.exposure_s * ((k + 0.5) / times - 0.5));
     }
-  return sum / (kSide * kSide * times);
+  return sum / (side * side * times);
 }
 
-bool Spots::are_out_of_view() const {
-  return std::none_of(
-      spots.begin(), spots.end(), [&](const auto& s) { return s && pixels_in_frame(*s, *this); });
+std::vector<SpotCover> covers_of(const Spots& all) {
+  std::vector<SpotCover> covers;
+  for (const auto& spot : all.spots) {
+    SpotCover& cover = covers.emplace_back();
+    const auto box = spot ? pixels_in_frame(*spot, all) : std::nullopt;
+    if (!box) continue;
+    cover.box = *box;
+    for (int y = box->y; y < box->bottom(); ++y)
+      for (int x = box->x; x < box->right(); ++x)
+        cover.alpha.push_back(static_cast<float>(
+            pixel_alpha(*spot, x, y, all.shutter, all.frame_width, all.frame_height)));
+  }
+  return covers;
 }
 
-void hide_behind(image::Layer& layer, const Spots& all, const image::Mask* own_aircraft) {
+bool are_out_of_view(const std::vector<SpotCover>& covers) {
+  return std::all_of(
+      covers.begin(), covers.end(), [](const SpotCover& cover) { return cover.alpha.empty(); });
+}
+
+void hide_behind(image::Layer& layer,
+                 const std::vector<SpotCover>& covers,
+                 const image::Mask* own_aircraft) {
   if (layer.empty()) return;
   std::vector<float> clear(layer.pixels.size(), 1.0F);
-  for (const auto& spot : all.spots)
-    if (spot)
-      each_covered(*spot, all, [&](int x, int y, double alpha) {
-        if (layer.patch.contains(x, y)) clear[layer.index(x, y)] *= static_cast<float>(1 - alpha);
-      });
+  for (const SpotCover& cover : covers)
+    each_covered(cover, [&](int x, int y, float alpha) {
+      if (layer.patch.contains(x, y)) clear[layer.index(x, y)] *= 1 - alpha;
+    });
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     if (layer.coverage[a].empty()) continue;
     for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
@@ -226,19 +247,21 @@ void hide_behind(image::Layer& layer, const Spots& all, const image::Mask* own_a
 image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& all,
+                        const std::vector<SpotCover>& covers,
                         const image::Mask* own_aircraft,
                         int margin_px) {
   if (own_aircraft != nullptr && !layer.empty()) mask_out(layer, *own_aircraft);
-  image::Layer result = on_patch(layer, patch_with(layer, all, margin_px), intruders);
+  image::Layer result = on_patch(layer, patch_with(layer, all, covers, margin_px), intruders);
   result.is_masked = true;
-  for (const auto& spot : all.spots) {
+  for (std::size_t k = 0; k < all.spots.size(); ++k) {
+    const auto& spot = all.spots[k];
     result.coverage.emplace_back();
     const Areas areas = spot ? areas_of(*spot, all) : Areas{};
     result.area_alone_px.push_back(areas.all_px);
     result.area_alone_in_frame_px.push_back(areas.in_frame_px);
     result.area_seen_px.push_back(areas.in_frame_px);
     result.area_free_px.push_back(areas.in_frame_px);
-    if (spot) put_over(result, *spot, all);
+    if (spot) put_over(result, *spot, covers[k]);
   }
   return result;
 }

@@ -28,14 +28,24 @@ struct Spots {
   Shutter shutter;
   int frame_width = 0;
   int frame_height = 0;
-
-  // True where no spot touches the frame.
-  bool are_out_of_view() const;
 };
+
+// The alpha of one spot over the pixels that it can touch in the frame: box.height rows of
+// box.width. Empty where it touches none.
+struct SpotCover {
+  PixelBox box{};
+  std::vector<float> alpha;
+};
+// One for each spot.
+std::vector<SpotCover> covers_of(const Spots& spots);
+// True where no spot touches the frame.
+bool are_out_of_view(const std::vector<SpotCover>& covers);
 
 // Takes what the spots hide from the layer's areas of seen and free silhouettes. Call it before the
 // layer's point spread and after find_free_area() (cover.h). `own_aircraft` may be null.
-void hide_behind(image::Layer& layer, const Spots& spots, const image::Mask* own_aircraft);
+void hide_behind(image::Layer& layer,
+                 const std::vector<SpotCover>& covers,
+                 const image::Mask* own_aircraft);
 
 // Puts the spots over a layer of `intruders` intruders: each becomes one more intruder of the
 // layer, after the others. The patch grows to hold them with a margin, within the frame. The layer
@@ -44,6 +54,7 @@ void hide_behind(image::Layer& layer, const Spots& spots, const image::Mask* own
 image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& spots,
+                        const std::vector<SpotCover>& covers,
                         const image::Mask* own_aircraft,
                         int margin_px);
 

@@ -27,8 +27,16 @@ TEST(Spots, AlphaFallsFromTheMiddleToTheRim) {
   EXPECT_EQ(spot_alpha(spot, {50, 20}, 0), 0);
 }
 
+image::Layer over(image::Layer layer,
+                  std::size_t intruders,
+                  const Spots& all,
+                  const image::Mask* own = nullptr,
+                  int margin_px = 0) {
+  return with_spots(std::move(layer), intruders, all, covers_of(all), own, margin_px);
+}
+
 TEST(Spots, ASharpDiscCoversItsArea) {
-  const image::Layer layer = with_spots({}, 0, in_frame(circle(30.3, 20.7, 10)), nullptr, 0);
+  const image::Layer layer = over({}, 0, in_frame(circle(30.3, 20.7, 10)));
   double sum = 0;
   for (const image::LayerPixel& pixel : layer.pixels) sum += double(pixel.alpha);
   EXPECT_NEAR(sum, kPi * 100, 1.5);
@@ -37,7 +45,7 @@ TEST(Spots, ASharpDiscCoversItsArea) {
 }
 
 TEST(Spots, TheFrameCutsHalfOfASpotOnItsEdge) {
-  const image::Layer layer = with_spots({}, 0, in_frame(circle(0, 20, 10)), nullptr, 3);
+  const image::Layer layer = over({}, 0, in_frame(circle(0, 20, 10)), nullptr, 3);
   EXPECT_NEAR(layer.area_alone_in_frame_px[0] / layer.area_alone_px[0], 0.5, 0.01);
   EXPECT_GE(layer.patch.x, 0);
 }
@@ -53,10 +61,10 @@ TEST(Spots, AMovingSpotIsAStreakOfTheSameSum) {
     }
     return result;
   };
-  const auto [still, most_still] = sum_and_most(with_spots({}, 0, all, nullptr, 0));
+  const auto [still, most_still] = sum_and_most(over({}, 0, all));
   all.spots[0]->velocity_px_s = {2000, 0};
   all.shutter.exposure_s = 0.01;  // 20 px
-  const auto [moved, most_moved] = sum_and_most(with_spots({}, 0, all, nullptr, 0));
+  const auto [moved, most_moved] = sum_and_most(over({}, 0, all));
   EXPECT_NEAR(moved, still, 0.02 * still);
   EXPECT_NEAR(most_still, 1, 1e-6);
   EXPECT_NEAR(most_moved, 6.0 / 20, 0.05);
@@ -82,10 +90,10 @@ TEST(Spots, ASpotHidesItsShareOfAnIntruder) {
   spot.opacity = 0.25;
   spot.colour = {0.1F, 0.1F, 0.1F};
   image::Layer layer = grey_square();
-  hide_behind(layer, in_frame(spot), nullptr);
+  hide_behind(layer, covers_of(in_frame(spot)), nullptr);
   EXPECT_NEAR(layer.area_seen_px[0], 300, 1e-3);
   EXPECT_NEAR(layer.area_free_px[0], 300, 1e-3);
-  const image::Layer both = with_spots(std::move(layer), 1, in_frame(spot), nullptr, 0);
+  const image::Layer both = over(std::move(layer), 1, in_frame(spot));
   ASSERT_EQ(both.coverage.size(), 2U);
   const std::size_t i = both.index(25, 15);
   EXPECT_NEAR(both.pixels[i].red, 0.25 * 0.1 + 0.75 * 0.5, 1e-6);
@@ -103,10 +111,10 @@ TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
   spot.opacity = 0.5;
   image::Layer layer = grey_square();
   layer.area_free_px = {200};
-  hide_behind(layer, in_frame(spot), &own);
+  hide_behind(layer, covers_of(in_frame(spot)), &own);
   EXPECT_NEAR(layer.area_seen_px[0], 200, 1e-3);
   EXPECT_NEAR(layer.area_free_px[0], 100, 1e-3);
-  const image::Layer both = with_spots(std::move(layer), 1, in_frame(spot), &own, 0);
+  const image::Layer both = over(std::move(layer), 1, in_frame(spot), &own);
   EXPECT_TRUE(both.is_masked);
   EXPECT_NEAR(both.coverage[0][both.index(25, 15)], 0.5, 1e-6);
   EXPECT_EQ(both.coverage[0][both.index(35, 15)], 0);
@@ -114,9 +122,23 @@ TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
 }
 
 TEST(Spots, OneOutsideTheFrameIsOutOfView) {
-  EXPECT_TRUE(in_frame(circle(-30, 20, 10)).are_out_of_view());
-  EXPECT_FALSE(in_frame(circle(-5, 20, 10)).are_out_of_view());
-  EXPECT_TRUE((Spots{{std::nullopt}, {}, 64, 48}).are_out_of_view());
+  EXPECT_TRUE(are_out_of_view(covers_of(in_frame(circle(-30, 20, 10)))));
+  EXPECT_FALSE(are_out_of_view(covers_of(in_frame(circle(-5, 20, 10)))));
+  EXPECT_TRUE(are_out_of_view(covers_of({{std::nullopt}, {}, 64, 48})));
+}
+
+TEST(Spots, ASoftSpotNeedsOneSampleOfAPixel) {
+  image::Spot spot = circle(30, 20, 20);
+  spot.softness = 0.8;
+  spot.opacity = 0.9;
+  for (int y = 0; y < 40; y += 3)
+    for (int x = 0; x < 60; x += 3) {
+      double mean = 0;
+      for (int j = 0; j < 16; ++j)
+        for (int i = 0; i < 16; ++i)
+          mean += spot_alpha(spot, {x + (i + 0.5) / 16, y + (j + 0.5) / 16}, 0) / 256;
+      EXPECT_NEAR(pixel_alpha(spot, x, y, {}, 64, 48), mean, 1.5e-3);
+    }
 }
 
 }  // namespace

@@ -209,19 +209,24 @@ image::Layer render_layer(const scene::Scene& scene,
   }
   const lens::ImageSize size = world.lens.size();
   const composite::Spots on_lens{moment.spots, moment.sight.shutter, size.width, size.height};
-  const bool has_spots = !on_lens.are_out_of_view();
+  const std::vector<composite::SpotCover> covers = composite::covers_of(on_lens);
+  const bool has_spots = !composite::are_out_of_view(covers);
   if (!any && !has_spots) return {};
   image::Layer layer;
   if (any) {
     layer = render::render(
         view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
     if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
-    if (has_spots) composite::hide_behind(layer, on_lens, own_aircraft);
+    if (has_spots) composite::hide_behind(layer, covers, own_aircraft);
     layer = through_air_and_lens(std::move(layer), scene.camera_model, ambient, size);
   }
   if (!has_spots) return layer;
-  return composite::with_spots(
-      std::move(layer), world.actors.size(), on_lens, own_aircraft, margin_px(scene.camera_model));
+  return composite::with_spots(std::move(layer),
+                               world.actors.size(),
+                               on_lens,
+                               covers,
+                               own_aircraft,
+                               margin_px(scene.camera_model));
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/setup/lens_marks.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "camera/lens/lens.h"
@@ -67,7 +69,8 @@ TEST(LensMarks, DirtHasAShapeOfItsOwnAndKeepsIt) {
   const auto other = spot_of(dirt, level_sight(), {0, 0, -1}, 0, 1);
   EXPECT_EQ(first->cosines, later->cosines);
   EXPECT_NE(first->cosines, other->cosines);
-  for (double angle = 0; angle < 6.3; angle += 0.1) EXPECT_GT(first->lobe(angle), 0.2);
+  for (double angle = 0; angle < 6.3; angle += 0.1)
+    EXPECT_GT(first->lobe(std::cos(angle), std::sin(angle)), 0.2);
 }
 
 }  // namespace

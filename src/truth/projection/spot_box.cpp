@@ -17,7 +17,8 @@ Box outline_about_centre(const image::Spot& spot) {
   BoxBounds bounds;
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * kPi * i / kPoints;
-    bounds.add(radius_px * spot.lobe(angle) * Pixel(std::cos(angle), std::sin(angle)));
+    const Pixel outwards(std::cos(angle), std::sin(angle));
+    bounds.add(radius_px * spot.lobe(outwards.x(), outwards.y()) * outwards);
   }
   return *bounds.box();
 }

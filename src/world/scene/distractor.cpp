@@ -25,10 +25,11 @@ LensMark usual_mark(DistractorKind kind) {
     mark.opacity = 0.3;
     mark.colour = {1, 0.96, 0.86};
   } else if (kind == DistractorKind::kInsect) {
-    mark.size_px = 14;
-    mark.length_px = 36;
-    mark.softness = 0.7;
-    mark.opacity = 0.8;
+    // Nothing of it is in focus.
+    mark.size_px = 16;
+    mark.length_px = 48;
+    mark.softness = 1;
+    mark.opacity = 0.6;
     mark.velocity_px_s = {1500, -400};
     mark.end_s = 1;
   }
