@@ -10,11 +10,13 @@
 namespace airtruth::composite {
 namespace {
 
-// Samples along each side of a pixel where the spot fades within a few pixels, and where it fades
-// over kSoftPx or more: the curvature of the fade then changes a pixel's mean by less than 0.001.
-constexpr int kSide = 4;
-constexpr int kSoftSide = 1;
-constexpr double kSoftPx = 16;
+// Samples along each side of a pixel. The fade over w pixels bends by 6 / w^2 at most, and the mean of
+// n x n samples is off by that over 24 n^2: by 0.004 at most where w is 4 or more. A sharp rim, which
+// nothing on a lens has, is right within 1/8.
+int samples_a_side(const image::Spot& spot) {
+  const double fade_px = spot.softness * spot.radius_px;
+  return fade_px >= 16 ? 1 : fade_px >= 4 ? 2 : 4;
+}
 // Samples in the exposure where the spot moves.
 constexpr int kTimes = 16;
 // Samples along each side of a spot's bounds for its area.
@@ -192,7 +194,7 @@ double pixel_alpha(const image::Spot& spot,
   const double middle_s =
       shutter.is_instant() ? 0
                            : shutter.middle_s(Pixel(x + 0.5, y + 0.5), frame_width, frame_height);
-  const int side = spot.softness * spot.radius_px >= kSoftPx ? kSoftSide : kSide;
+  const int side = samples_a_side(spot);
   double sum = 0;
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
