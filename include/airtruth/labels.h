@@ -117,7 +117,8 @@ AIRTRUTH_API bool can_write(Format format);
 // that information) and ends with the last that shows it.
 AIRTRUTH_API bool is_single_object(Format format);
 
-// The clips that a format stores for one clip: the clip itself, or one clip for each of its tracks.
+// The clips that a format stores for one clip: the clip itself, or, for the formats of one object,
+// one clip for each track of an aircraft. A distractor is no tracking target.
 // The sequences on which `airtruth track` and `airtruth evaluate` work are arranged(Format::kOtb).
 //
 // Example: a clip named "pass" with the tracks 1 and 2 has the sequences "pass-1" and "pass-2";

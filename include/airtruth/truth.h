@@ -74,7 +74,7 @@ struct EncounterTruth {
 // The truth of one intruder in one frame. The optional fields are all empty in the state kEnded.
 struct IntruderTruth {
   std::string id;
-  // Name in the catalogue of aircraft, or file name of the model.
+  // Name in the catalogue of aircraft, file name of the model, or the class of a distractor.
   std::string aircraft;
   IntruderState state = IntruderState::kEnded;
   std::optional<std::array<double, 3>> position_ned_m;
@@ -110,7 +110,8 @@ struct IntruderTruth {
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
   // "aircraft", or what a detector may take for one: "bird", "multirotor", "balloon", "glint",
-  // "dirt" or "insect".
+  // "dirt" or "insect". The last three are on the lens and have no place in the world: of the
+  // optional fields they have only boxes and a centroid.
   std::string object_class = "aircraft";
 
   bool operator==(const IntruderTruth&) const = default;

@@ -70,10 +70,23 @@ void build(DatasetArguments arguments, Context& context) {
   if (!summary.failures.empty()) context.exit_code = 1;
 }
 
+// "; bird 12, dirt 1"; empty where there is none.
+std::string distractors_of(const scene::Scene& scene) {
+  std::map<std::string, std::int64_t> counts;
+  for (const scene::Intruder& intruder : scene.intruders)
+    if (!is_aircraft(intruder)) ++counts[intruder.aircraft];
+  for (const scene::LensMark& mark : scene.lens_marks) ++counts[enum_name(mark.kind)];
+  std::string text;
+  for (const auto& [kind, count] : counts)
+    text += fmt::format("{} {} {}", text.empty() ? ";" : ",", kind, count);
+  return text;
+}
+
 // "r000012   90  day   c172/news at 31 px"
 std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& item) {
   std::string aircraft;
   for (std::size_t k = 0; k < item.scene.intruders.size(); ++k) {
+    if (!is_aircraft(item.scene.intruders[k])) continue;
     aircraft += (k > 0 ? ", " : "") + item.scene.intruders[k].aircraft;
     if (k >= item.drawn.encounters.size()) continue;
     const dataset::Encounter& encounter = item.drawn.encounters[k];
@@ -91,7 +104,7 @@ std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& 
                      item.name,
                      item.frame_count > 0 ? std::to_string(item.frame_count) : "all",
                      catalogue.backgrounds[item.background].name,
-                     aircraft.empty() ? "no intruder" : aircraft);
+                     (aircraft.empty() ? "no intruder" : aircraft) + distractors_of(item.scene));
 }
 
 // "8 to 120 px, half of them below 31 px"
@@ -117,6 +130,10 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
                              plan.intruders,
                              plan.sequences - plan.negatives,
                              plan.negatives));
+  std::string distractors;
+  for (const auto& [kind, count] : plan.distractors)
+    distractors += fmt::format("{}{} {}", distractors.empty() ? "" : ", ", kind, count);
+  if (!distractors.empty()) console.result("distractors: " + distractors);
   if (!types.empty())
     console.result(
         fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));

@@ -60,8 +60,33 @@ struct Triangle {
   bool operator==(const Triangle&) const = default;
 };
 
+// A hinge about which a part swings to and fro, such as the root of a wing. In the pose of the
+// mesh's own positions its angle is 0.
+struct Hinge {
+  Eigen::Vector3f axis_in_body{1, 0, 0};  // unit
+  Eigen::Vector3f centre_in_body{0, 0, 0};
+  float rest_rad = 0;
+  float amplitude_rad = 0;
+  // By how much of a stroke the hinge follows the stroke.
+  float lag_strokes = 0;
+  bool operator==(const Hinge&) const = default;
+};
+
+// Wing beats: bouts of strokes with glides between them, in which the hinges are at rest. A bout
+// and its glide last kStrokesOfBout strokes.
+struct Beat {
+  double strokes_per_s = 0;
+  // Strokes that are done at the time 0.
+  double phase_strokes = 0;
+  // Share of the time that is spent gliding, 0..1.
+  double glide = 0;
+  bool operator==(const Beat&) const = default;
+};
+constexpr double kStrokesOfBout = 10;
+
 // Triangles that move together. Part 0 is the airframe. A part that spins (propeller, rotor) turns
-// about its axis through its centre.
+// about its axis through its centre. A part with hinges swings: the last hinge moves it first, and
+// the hinges before it carry the later ones along.
 struct Part {
   std::string name;
   std::vector<Triangle> triangles;
@@ -69,6 +94,10 @@ struct Part {
   Eigen::Vector3f axis_in_body{1, 0, 0};
   Eigen::Vector3f centre_in_body{0, 0, 0};
   double revolutions_per_s = 0;
+  // Of a part that swings; centre_in_body is the centre of the first hinge.
+  std::vector<Hinge> hinges = {};
+  Beat beat = {};
+  bool moves() const { return spins || !hinges.empty(); }
   bool operator==(const Part&) const = default;
 };
 
@@ -85,9 +114,15 @@ struct Mesh {
   bool operator==(const Mesh&) const = default;
 };
 
-// The transform from a part to the body at a time: the identity for the airframe, and a rotation
-// about the axis for a part that spins.
+// The transform from a part to the body at a time: the identity for the airframe, a rotation about
+// the axis for a part that spins, and the rotations about its hinges for a part that swings.
 Eigen::Affine3f body_from_part(const Part& part, double time_s);
+
+// Radius of the sphere about part.centre_in_body that holds the part at all times.
+float reach_m(const Mesh& mesh, const Part& part);
+
+// An upper bound of how fast the part turns, in revolutions a second.
+double fastest_turn_per_s(const Part& part);
 
 // The points whose projections bound the visible silhouette, as one list per part in part
 // coordinates. An opaque triangle contributes its vertices. A translucent triangle (a propeller

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -182,11 +184,15 @@ class LentFiles {
   Assimp::Importer& importer_;
 };
 
-// Removes all importers except that of the ending, so that the content of a file cannot choose one.
-void keep_importer_of(Assimp::Importer& importer, const std::string& ending) {
-  const Assimp::BaseImporter* const wanted = importer.GetImporter(ending.c_str());
-  for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
-    if (importer.GetImporter(i) != wanted) importer.UnregisterLoader(importer.GetImporter(i));
+// Removes all importers except those of the ending, so that the content of a file cannot choose
+// another. An ending may have several: those of glTF 1 and of glTF 2 share two.
+void keep_importers_of(Assimp::Importer& importer, const std::string& ending) {
+  const std::string wanted = ending.substr(ending.find_first_not_of('.'));
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    std::set<std::string> endings;
+    importer.GetImporter(i)->GetExtensionList(endings);
+    if (!endings.contains(wanted)) importer.UnregisterLoader(importer.GetImporter(i));
+  }
 }
 
 void warn_of_missing(Assembly& assembly, const AssimpFiles& files) {
@@ -219,7 +225,7 @@ void append_other_format(Assembly& assembly,
   Assimp::Importer importer;
   const LentFiles lent(importer, files);
   const std::string ending = aircraft::ending_of(file);
-  keep_importer_of(importer, ending);
+  keep_importers_of(importer, ending);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);

@@ -61,6 +61,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg = camera_pitch_deg;
   scene.motion.model = scene::MotionModel::kNone;
   scene.intruders.resize(1);
+  scene.lens_marks.clear();
   scene::Intruder& intruder = scene.intruders[0];
   intruder.path_file.reset();
   intruder.encounter.reset();
@@ -85,7 +86,8 @@ class Comparing {
             const Options& options)
       : real_(real), options_(options), staged_(out, options.overwrite) {
     require_utf8(fs::absolute(real));
-    if (scene.intruders.empty()) throw Error("has no intruder to compare", {scene.file.string()});
+    if (scene.intruders.empty() || !is_aircraft(scene.intruders[0]))
+      throw Error("has no intruder to compare", {scene.file.string()});
     const match::RealAircraft found =
         match::find_real(real, boxes, options.most_frames, options.warn, options.stop);
     boxes_ = found.boxes;

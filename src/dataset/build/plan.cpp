@@ -41,10 +41,7 @@ class Planner {
     plan_.core_s += static_cast<double>(frames) * facts.size * kCoreSecondsPerFrame;
     plan_.bytes +=
         static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
-    plan_.negatives += item.scene.intruders.empty() ? 1 : 0;
-    plan_.intruders += std::ssize(item.scene.intruders);
-    for (const scene::Intruder& intruder : item.scene.intruders)
-      ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
+    count_things(item.scene);
     for (const Encounter& encounter : item.drawn.encounters) {
       if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
       if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
@@ -56,6 +53,21 @@ class Planner {
   Plan result() { return std::move(plan_); }
 
  private:
+  void count_things(const scene::Scene& scene) {
+    std::int64_t aircraft = 0;
+    for (const scene::Intruder& intruder : scene.intruders) {
+      if (is_aircraft(intruder)) {
+        ++aircraft;
+        ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
+      } else {
+        ++plan_.distractors[enum_name(intruder.distractor->kind)];
+      }
+    }
+    for (const scene::LensMark& mark : scene.lens_marks) ++plan_.distractors[enum_name(mark.kind)];
+    plan_.negatives += aircraft == 0 ? 1 : 0;
+    plan_.intruders += aircraft;
+  }
+
   struct Facts {
     BackgroundFiles files;
     // Pixels of a frame relative to 1280x960.
@@ -112,7 +124,8 @@ class Planner {
   void fly(const Item& item, double clip_s) {
     const trajectory::Path camera = sequence::camera_path(item.scene.camera);
     for (const scene::Intruder& intruder : item.scene.intruders) {
-      if (!intruder.seen.empty()) continue;  // its path follows from the measured motion
+      // The path of what is seen follows from the measured motion.
+      if (!intruder.seen.empty() || !is_aircraft(intruder)) continue;
       const std::string words = words_of_flight(intruder, camera, clip_s);
       if (words.empty()) continue;
       ++plan_.not_flyable;

@@ -34,9 +34,11 @@ class Spread {
 // Summary of what a catalogue would make. Nothing is rendered; only the headers of videos are read.
 struct Plan {
   std::int64_t sequences = 0;
-  std::int64_t negatives = 0;  // sequences without an intruder
-  // Total over all sequences.
+  std::int64_t negatives = 0;  // sequences without an aircraft
+  // Aircraft in all sequences.
   std::int64_t intruders = 0;
+  // What is no aircraft, by kind: "bird" -> 12.
+  std::map<std::string, std::int64_t> distractors;
   // Total over the sequences whose length is known.
   std::int64_t frames = 0;
   // Sequences that run to the end of a video of unknown length.

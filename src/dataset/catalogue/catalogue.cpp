@@ -139,6 +139,7 @@ Product product_from(const TableReader& table, const Catalogue& catalogue) {
   varies("{background}", product.backgrounds.size());
   varies("{trajectory}", product.trajectories.size());
   varies("{aircraft}", product.aircraft.size());
+  product.negatives = table.number("negatives", scene::kShare).value_or(catalogue.negatives);
   return product;
 }
 
@@ -183,7 +184,8 @@ void add_rules(const TableReader& root, Catalogue& catalogue) {
        root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
     catalogue.rules.emplace_back(listed_from(table, catalogue));
   for (const TableReader& table :
-       root.tables("product", {"name", "backgrounds", "trajectories", "aircraft", "frame_count"}))
+       root.tables("product",
+                   {"name", "backgrounds", "trajectories", "aircraft", "frame_count", "negatives"}))
     catalogue.rules.emplace_back(product_from(table, catalogue));
   for (const Drawn& rule : drawn_rules(root, catalogue)) catalogue.rules.emplace_back(rule);
   for (EncounterRule& rule : encounter_rules(root, catalogue))
@@ -216,6 +218,8 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
                           "product",
                           "random",
                           "encounter_model",
+                          "distractor",
+                          "negatives",
                           "truth",
                           "render",
                           "composite",
@@ -232,8 +236,10 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);
   catalogue.slurm = slurm_in(root);
+  catalogue.negatives = root.number("negatives", scene::kShare).value_or(0);
   add_parts(root, catalogue);
   add_rules(root, catalogue);
+  catalogue.distractors = distractor_rules(root);
   return catalogue;
 }
 

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "dataset/catalogue/distractor_rule.h"
 #include "dataset/catalogue/drawn_path.h"
 #include "encounter/pairing/geometric.h"
 #include "foundation/base/enum_names.h"
@@ -83,6 +84,8 @@ struct Product {
   std::string name;  // pattern with {background}, {trajectory}, {aircraft}
   std::vector<std::size_t> backgrounds, trajectories, aircraft;
   std::optional<std::int64_t> frame_count;
+  // Share of sequences without an intruder, from 0 to 1.
+  double negatives = 0;
 };
 
 struct Range {
@@ -186,6 +189,10 @@ struct Catalogue {
   std::vector<Aircraft> aircraft;
   std::vector<Trajectory> trajectories;
   std::vector<Rule> rules;
+  // Share of sequences without an intruder of the rules that state none of their own.
+  double negatives = 0;
+  // Of all sequences.
+  std::vector<DistractorRule> distractors;
   scene::Truth truth;
   scene::Render render;
   scene::Composite composite;

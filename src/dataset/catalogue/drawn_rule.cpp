@@ -83,10 +83,10 @@ std::optional<DaytimeRange> daytime_from(const TableReader& table) {
   return daytime;
 }
 
-void read_intruders(const TableReader& table, Drawn& drawn) {
+void read_intruders(const TableReader& table, double usual_negatives, Drawn& drawn) {
   drawn.negatives =
       table.number("negatives", {.expected = "a share from 0 to 1", .low = 0, .high = 1})
-          .value_or(0);
+          .value_or(usual_negatives);
   drawn.numbers_intruders = table.has("intruders");
   if (!drawn.numbers_intruders) return;
   if (table.is_array("intruders")) {
@@ -159,7 +159,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   drawn.types = types_in(table);
   read_paths(table, drawn);
-  read_intruders(table, drawn);
+  read_intruders(table, catalogue.negatives, drawn);
   read_start(table, catalogue, drawn);
   drawn.daytime = daytime_from(table);
   drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg", scene::kTurn);

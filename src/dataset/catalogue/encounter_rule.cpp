@@ -140,7 +140,7 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   rule.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   rule.types = types_in(table);
   const Limits share{.expected = "a share from 0 to 1", .low = 0, .high = 1};
-  rule.negatives = table.number("negatives", share).value_or(0);
+  rule.negatives = table.number("negatives", share).value_or(catalogue.negatives);
   rule.two_intruders = table.number("two_intruders", share).value_or(0);
   read_geometry(table, rule);
   const auto kind = table.choice("kind", {kBayes, kGeometric});

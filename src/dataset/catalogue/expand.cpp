@@ -14,6 +14,8 @@ namespace {
 
 // Frame rate that is assumed for a background of unknown rate.
 constexpr double kAssumedRateHz = 30;
+// Length until place() knows the video's.
+constexpr std::int64_t kProvisionalFrames = 300;
 // Range until place() derives it from the size.
 constexpr double kProvisionalRangeM = 1000;
 
@@ -84,7 +86,10 @@ Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index
   std::string name = filled(rule.name, "{background}", catalogue.backgrounds[background].name);
   name = filled(name, "{trajectory}", catalogue.trajectories[trajectory].name);
   name = filled(name, "{aircraft}", catalogue.aircraft[aircraft].name);
-  return item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
+  Item item = item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
+  if (is_chosen("negatives of " + rule.name, rule.negatives, catalogue.seed, index))
+    item.scene.intruders.clear();
+  return item;
 }
 
 // The random values of a rule of [[random]] for one sequence. Until place() knows the background,
@@ -179,6 +184,9 @@ Item Expansion::at(std::int64_t index) const {
                  catalogue_.rules[rule]);
   item.index = index;
   item.scene.name = item.name;
+  item.distractors = draw_distractors(catalogue_.distractors, catalogue_.seed, index);
+  const std::int64_t frames = item.frame_count > 0 ? item.frame_count : kProvisionalFrames;
+  lay_distractors(item.scene, item.distractors, {frames, kAssumedRateHz}, {0, 0}, nullptr);
   return item;
 }
 
@@ -212,14 +220,17 @@ void place(Item& item,
   placed.first_frame = background.first_frame;
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   check_length(item, files);
-  if (item.rule == nullptr) return;
-  if (item.rule->start == ClipStart::kRandom)
+  if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
-  if (files.frames > placed.first_frame)
-    clip.frames = std::min(clip.frames, files.frames - placed.first_frame);
-  for (std::size_t k = 0; k < item.scene.intruders.size(); ++k)
-    meet(item.scene, k, item.drawn.encounters[k], clip, {files.width, files.height}, shared);
+  const std::int64_t left = files.frames - placed.first_frame;
+  if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;
+  if (clip.frames == 0) clip.frames = kProvisionalFrames;
+  const lens::ImageSize size{files.width, files.height};
+  if (item.rule != nullptr)
+    for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k)
+      meet(item.scene, k, item.drawn.encounters[k], clip, size, shared);
+  lay_distractors(item.scene, item.distractors, clip, size, shared);
 }
 
 }  // namespace airtruth::dataset

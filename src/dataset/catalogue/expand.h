@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/distractor_drawing.h"
 #include "dataset/catalogue/drawing.h"
 
 namespace airtruth::sequence {
@@ -35,6 +36,8 @@ struct Item {
   scene::Scene scene;
   const Drawn* rule = nullptr;  // the rule of [[random]]; nullptr for a listed sequence
   DrawnSequence drawn;          // valid where there is a rule
+  // In the scene already, with provisional places until place().
+  DrawnDistractors distractors;
   // Of a rule of [[encounter_model]]: how long its tracks are, in seconds of the clip; else 0.
   double encounter_s = 0;
 };

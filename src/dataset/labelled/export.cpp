@@ -14,6 +14,7 @@
 #include "foundation/json/json_object.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -156,8 +157,14 @@ class Export {
     std::set<std::string> categories;
     for (const std::string& name : set_.names()) {
       facts.push_back(set_.facts(name));
-      for (const std::string& category : facts.back().categories)
-        categories.insert(options_.one_class ? "aircraft" : category);
+      for (const std::string& category : facts.back().categories) categories.insert(category);
+    }
+    if (options_.one_class) {
+      std::set<std::string> distractors;
+      for (const ClipFacts& one : facts)
+        distractors.insert(one.distractors.begin(), one.distractors.end());
+      categories = std::move(distractors);
+      categories.insert("aircraft");
     }
     parts_ = parted(facts, options_.split, options_.shares, options_.seed, options_.warn);
     // GOT-10k's toolkit asserts that a subset is train, val or test, and scores val by its truth.
@@ -183,7 +190,8 @@ class Export {
     if (clip.frame_rate_hz) *clip.frame_rate_hz /= static_cast<double>(options_.every);
     if (options_.one_class)
       for (exchange::LabelledFrame& frame : clip.frames)
-        for (exchange::Label& label : frame.labels) label.category = "aircraft";
+        for (exchange::Label& label : frame.labels)
+          if (annotation::is_aircraft(label.object_class)) label.category = "aircraft";
     return clip;
   }
 
@@ -267,13 +275,14 @@ class Export {
       summary_.frames += std::ssize(clip.frames);
       summary_.frames_of_part[part] += std::ssize(clip.frames);
       const auto clips = arranged(clip);
-      if (const std::size_t tracks = exchange::tracks_of(clip).size();
-          exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
-        warn(options_.warn,
-             name +
-                 (tracks == 0 ? " never shows an object" : " shows an object in one frame alone") +
-                 ", and " + exchange::name(options_.format) +
-                 " has no place for such a sequence: it is left out");
+      const std::size_t tracks = exchange::tracks_of(exchange::aircraft_alone(clip)).size();
+      if (exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
+        warn(
+            options_.warn,
+            name +
+                (tracks == 0 ? " never shows an aircraft" : " shows an object in one frame alone") +
+                ", and " + exchange::name(options_.format) +
+                " has no place for such a sequence: it is left out");
       for (const exchange::Clip& one : clips) writer_->add(one, part);
     }
     writer_->finish();

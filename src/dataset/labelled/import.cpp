@@ -63,11 +63,12 @@ void ask_video(exchange::Clip& clip, const Warn& warn) {
 }
 
 Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
-  std::set<std::string> categories;
+  std::set<std::string> categories, distractors;
   std::int64_t labels = 0;
   for (const exchange::LabelledFrame& frame : clip.frames)
     for (const exchange::Label& label : frame.labels) {
       categories.insert(label.category);
+      if (!annotation::is_aircraft(label.object_class)) distractors.insert(label.category);
       ++labels;
     }
   Json record = {{"format", "airtruth labelled clip 1"},
@@ -77,6 +78,7 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
                  {"frames", clip.frames.size()},
                  {"labels", labels},
                  {"categories", categories}};
+  if (!distractors.empty()) record["distractors"] = distractors;
   if (!clip.media.empty()) record["media"] = clip.media.string();
   return record;
 }

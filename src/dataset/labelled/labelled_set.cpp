@@ -115,13 +115,21 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
     facts.background = scene.background.video.string();
     facts.frames = record.object("summary").count("frames");
+    std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)
-      categories.insert(category_of(intruder.aircraft));
+      if (is_aircraft(intruder))
+        categories.insert(category_of(intruder.aircraft));
+      else
+        distractors.insert(enum_name(intruder.distractor->kind));
+    for (const scene::LensMark& mark : scene.lens_marks) distractors.insert(enum_name(mark.kind));
+    categories.insert(distractors.begin(), distractors.end());
+    facts.distractors = {distractors.begin(), distractors.end()};
   } else {
     facts.background = record.maybe_text("media").value_or(name);
     facts.frames = record.count("frames");
     for (const std::string& category : record.texts("categories")) categories.insert(category);
   }
+  if (record.has("distractors")) facts.distractors = record.texts("distractors");
   facts.categories = {categories.begin(), categories.end()};
   return facts;
 }

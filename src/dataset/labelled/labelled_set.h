@@ -22,6 +22,8 @@ struct ClipFacts {
   std::string background;
   // The categories of the objects that may appear in the sequence.
   std::vector<std::string> categories;
+  // Those of them that are no aircraft.
+  std::vector<std::string> distractors;
   std::int64_t frames = 0;
 };
 

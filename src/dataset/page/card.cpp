@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -93,7 +94,8 @@ std::string aircraft_text(const Scenes& scenes) {
   bool any_of_flightgear = false, any_file = false;
   for (const Scene& s : scenes)
     for (const scene::Intruder& intruder : s.intruders)
-      (aircraft::is_model_file(intruder.aircraft) ? any_file : any_of_flightgear) = true;
+      if (is_aircraft(intruder))
+        (aircraft::is_model_file(intruder.aircraft) ? any_file : any_of_flightgear) = true;
   std::vector<std::string> parts;
   if (any_of_flightgear)
     parts.emplace_back(
@@ -102,6 +104,24 @@ std::string aircraft_text(const Scenes& scenes) {
         "them in this set derive from those models");
   if (any_file) parts.emplace_back("model files, whose licence is their owners' to state");
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// The sequences without an aircraft, and what else is in the pictures.
+std::string negatives_text(const Scenes& scenes) {
+  std::map<std::string, std::size_t> counts;
+  for (const Scene& s : scenes) {
+    for (const scene::Intruder& intruder : s.intruders)
+      if (!is_aircraft(intruder)) ++counts[enum_name(intruder.distractor->kind)];
+    for (const scene::LensMark& mark : s.lens_marks) ++counts[enum_name(mark.kind)];
+  }
+  const std::size_t negatives = count_of(scenes, [](const Scene& s) {
+    return std::none_of(s.intruders.begin(), s.intruders.end(), scene::is_aircraft);
+  });
+  std::string text = fmt::format("{} of {} sequences have no aircraft", negatives, scenes.size());
+  for (const auto& [kind, count] : counts)
+    text += fmt::format(
+        "{} {} {}", &kind == &counts.begin()->first ? "; distractors:" : ",", count, kind);
+  return text;
 }
 
 std::string labels_text(const std::vector<Portrait>& portraits, const Scenes& scenes) {
@@ -197,6 +217,7 @@ Card card_of(const std::filesystem::path& set, const std::vector<Portrait>& port
   if (scenes.empty()) return card;
   card.emplace_back("rendering", rendering_text(scenes));
   card.emplace_back("aircraft", aircraft_text(scenes));
+  card.emplace_back("negatives and distractors", negatives_text(scenes));
   card.emplace_back("labels", labels_text(portraits, scenes));
   add_encounters(portraits, scenes, card);
   card.emplace_back("on the intruder's light", camera_sentence(scenes));

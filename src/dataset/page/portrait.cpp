@@ -11,6 +11,7 @@
 #include "sequence/setup/world.h"
 #include "truth/annotation/in_view.h"
 #include "truth/annotation/lens_facts.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -67,13 +68,14 @@ void count(const sequence::Finished& finished, Portrait& portrait) {
   for (const annotation::Frame& frame : finished.truth.frames) {
     bool is_seen = false;
     for (const annotation::Intruder& intruder : frame.intruders) {
-      ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
-      portrait.covered_boxes += intruder.covered_box_px ? 1 : 0;
+      const bool is_aircraft = annotation::is_aircraft(intruder.object_class);
+      if (is_aircraft) ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
+      portrait.covered_boxes += is_aircraft && intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && annotation::lacks_box(frame, intruder, *lens) ? 1 : 0;
       const auto box = annotation::box_to_show(intruder);
       if (!box) continue;
-      is_seen = true;
-      ++portrait.boxes_by_class[category_of(intruder.aircraft)];
+      is_seen = is_seen || is_aircraft;
+      ++portrait.boxes_by_class[category_of(intruder)];
       ++portrait.centres[cell_of(*box, portrait.width, portrait.height)];
     }
     portrait.frames_with_intruder += is_seen ? 1 : 0;
@@ -86,7 +88,8 @@ void add_series(const sequence::Finished& finished, Portrait& portrait) {
   for (const std::size_t i : thinned(frames.size(), Portrait::kMaxPoints)) {
     for (const annotation::Intruder& intruder : frames[i].intruders) {
       const auto [place, is_new] = places.emplace(intruder.id, portrait.intruders.size());
-      if (is_new) portrait.intruders.push_back({intruder.id, intruder.aircraft, {}});
+      if (is_new)
+        portrait.intruders.push_back({intruder.id, intruder.aircraft, intruder.object_class, {}});
       Portrait::Point point = point_of(frames[i], intruder);
       if (const auto closest = closest_s(portrait.encounters, intruder.id))
         point.to_closest_s = *closest - point.time_s;

@@ -40,6 +40,7 @@ struct Portrait {
   struct Intruder {
     std::string id;
     std::string aircraft;
+    std::string object_class;  // truth/annotation/object_class.h
     std::vector<Point> points;
   };
   struct Camera {
@@ -64,13 +65,13 @@ struct Portrait {
   std::vector<Camera> camera;
   // In the order of the scene; empty for an imported clip and an older sequence.
   std::vector<Encountered> encounters;
-  // Frames with the state visible, hidden, outside, behind and ended, in this order.
+  // Frames of aircraft with the state visible, hidden, outside, behind and ended, in this order.
   std::array<std::int64_t, 5> frames_by_state{};
-  // Number of visible states that have a covered box.
+  // Number of these visible states that have a covered box.
   std::int64_t covered_boxes = 0;
   // Number of states that are in view by geometry and have no box (truth/annotation/in_view.h).
   std::int64_t without_box = 0;
-  // Frames for which a label describes an intruder.
+  // Frames for which a label describes an aircraft.
   std::int64_t frames_with_intruder = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
   // Number of box centres in each cell, row by row from the top.

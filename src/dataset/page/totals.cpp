@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "truth/annotation/object_class.h"
+
 namespace airtruth::dataset {
 namespace {
 
@@ -77,7 +79,8 @@ void Totals::add(const Portrait& portrait) {
   negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
   for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
-  for (const Portrait::Intruder& intruder : portrait.intruders)
+  for (const Portrait::Intruder& intruder : portrait.intruders) {
+    if (!annotation::is_aircraft(intruder.object_class)) continue;
     for (const Portrait::Point& point : intruder.points) {
       if (!point.width_px) continue;
       size_px.add(std::max(*point.width_px, *point.height_px));
@@ -85,6 +88,7 @@ void Totals::add(const Portrait& portrait) {
       if (point.to_closest_s) to_closest_s.add(*point.to_closest_s);
       if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
     }
+  }
   for (const Encountered& one : portrait.encounters) add_encounter(one.record, *this);
   for (const double value : portrait.film.contrasts) contrast.add(value);
 }

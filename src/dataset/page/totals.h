@@ -27,12 +27,12 @@ struct Totals {
   static constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
 
   std::int64_t frames = 0;
-  // Intruders, one count a frame, by state: visible, hidden, outside, behind, ended.
+  // Aircraft, one count a frame, by state: visible, hidden, outside, behind, ended.
   std::array<std::int64_t, 5> by_state{};
   // Intruders that are in view by geometry and have no box.
   std::int64_t without_box = 0;
   std::int64_t frames_with_intruder = 0;
-  // Sequences that show no intruder in any frame.
+  // Sequences that show no aircraft in any frame.
   std::int64_t negative_sequences = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
   // Centres of boxes by cell of the picture, row by row.

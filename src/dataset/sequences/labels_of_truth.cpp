@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {
@@ -42,7 +43,8 @@ exchange::Label label_of(const annotation::Intruder& intruder,
                          const Box& box) {
   exchange::Label label;
   label.track = track;
-  label.category = category_of(intruder.aircraft);
+  label.category = category_of(intruder);
+  label.object_class = intruder.object_class;
   label.box_px = box;
   const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_intruder;
   label.visible = std::clamp(1 - hidden - intruder.cut_by_frame, 0.0, 1.0);
@@ -70,6 +72,11 @@ std::string category_of(const std::string& aircraft) {
   const std::filesystem::path path(aircraft);
   if (path.has_extension()) return path.stem().string();
   return aircraft.substr(0, aircraft.find('/'));
+}
+
+std::string category_of(const annotation::Intruder& intruder) {
+  return annotation::is_aircraft(intruder.object_class) ? category_of(intruder.aircraft)
+                                                        : intruder.object_class;
 }
 
 exchange::LabelledFrame labels_of(const annotation::Frame& truth,

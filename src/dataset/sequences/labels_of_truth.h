@@ -19,6 +19,9 @@ Boxes boxes_from_name(const std::string& name);
 // without its extension.
 std::string category_of(const std::string& aircraft);
 
+// The category of an intruder's labels: that of its aircraft, and for a distractor its class.
+std::string category_of(const annotation::Intruder& intruder);
+
 // The labels of one frame of a picture of this size: one for each intruder that is visible and has
 // the requested box. The track is the intruder's number in the scene, from 1.
 exchange::LabelledFrame labels_of(const annotation::Frame& truth,

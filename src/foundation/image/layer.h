@@ -43,6 +43,10 @@ struct Layer {
   // The part of area_seen_px that the own aircraft's mask leaves free.
   std::vector<double> area_free_px;
 
+  // True where the own aircraft's mask has been applied already: what is on the lens is in front of
+  // the own aircraft.
+  bool is_masked = false;
+
   bool empty() const { return patch.width == 0; }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +

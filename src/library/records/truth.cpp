@@ -81,6 +81,7 @@ void copy_scalars(const From& from, To& to) {
   to.hidden_by_own_aircraft = from.hidden_by_own_aircraft;
   to.hidden_by_intruder = from.hidden_by_intruder;
   to.cut_by_frame = from.cut_by_frame;
+  to.object_class = from.object_class;
 }
 
 IntruderTruth public_intruder(const annotation::Intruder& intruder) {

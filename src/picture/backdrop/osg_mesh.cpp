@@ -96,7 +96,8 @@ double radius(const aircraft::Mesh& mesh) {
   float result = 0;
   for (const aircraft::Part& part : mesh.parts) {
     const Eigen::Vector3f centre =
-        part.spins ? part.centre_in_body : Eigen::Vector3f::Zero().eval();
+        part.moves() ? part.centre_in_body : Eigen::Vector3f::Zero().eval();
+    if (part.moves()) result = std::max(result, centre.norm() + aircraft::reach_m(mesh, part));
     for (const aircraft::Triangle& triangle : part.triangles) {
       for (std::uint32_t vertex : triangle.vertex)
         result = std::max(result, centre.norm() + (mesh.positions[vertex] - centre).norm());

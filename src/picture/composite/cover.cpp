@@ -21,6 +21,7 @@ AlphaMask alpha_mask(const image::Layer& layer,
                      std::size_t intruder,
                      const image::Mask* own_aircraft) {
   AlphaMask mask;
+  if (layer.is_masked) own_aircraft = nullptr;
   if (intruder >= layer.coverage.size() || layer.coverage[intruder].empty()) return mask;
   const std::vector<float>& coverage = layer.coverage[intruder];
   mask.patch = layer.patch;

@@ -124,7 +124,7 @@ Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOpti
       log2_height_(image::log2_chroma_height(picture.colour.chroma)),
       across_(footprint(log2_width_, picture.colour.siting != image::Siting::kCenter)),
       down_(footprint(log2_height_, picture.colour.siting == image::Siting::kTopLeft)) {
-  const image::Mask* own_aircraft = options.own_aircraft;
+  const image::Mask* own_aircraft = layer.is_masked ? nullptr : options.own_aircraft;
   const std::size_t size = layer.pixels.size();
   free_.assign(size, 1);
   drawn_.assign(size, 0);

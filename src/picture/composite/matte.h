@@ -59,7 +59,8 @@ class PatchCoder {
 
 // Options of the matte.
 struct MatteOptions {
-  // Nothing is drawn where this mask is not free; null: everywhere is free.
+  // Nothing is drawn where this mask is not free; null: everywhere is free. A layer to which it has
+  // been applied (Layer::is_masked) is drawn everywhere.
   const image::Mask* own_aircraft = nullptr;
   // The camera's effect on the samples. Sharpening and chroma blur reach beyond the layer but stay
   // inside its patch: spread() enlarges the patch for them. Each pixel's own noise is scaled to the

@@ -157,7 +157,7 @@ bool is_blocked(const Model::Impl& model,
                 const Eigen::Vector3f& direction,
                 float reach_m) {
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-    if (model.mesh.parts[i].spins) continue;
+    if (model.mesh.parts[i].moves()) continue;
     RTCRay ray{};
     ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
     ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
@@ -186,7 +186,7 @@ std::optional<Hit> nearest_blocker(const Model::Impl& model,
   query.ray.mask = 0xffffffffu;
   std::optional<Hit> best;
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-    if (model.mesh.parts[i].spins) continue;
+    if (model.mesh.parts[i].moves()) continue;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -230,14 +230,15 @@ void Model::Impl::find_sphere() {
   if (bounds.isEmpty()) bounds.extend(Eigen::Vector3f::Zero());
   centre_in_body = bounds.center().cast<double>();
   for (const aircraft::Part& part : mesh.parts) {
+    const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
+    if (!part.hinges.empty())
+      radius_m = std::max(radius_m,
+                          (hub - centre_in_body).norm() + double(aircraft::reach_m(mesh, part)));
     for (const aircraft::Triangle& triangle : part.triangles) {
       for (std::uint32_t v : triangle.vertex) {
         const Eigen::Vector3d p = mesh.positions[v].cast<double>();
         double reach = (p - centre_in_body).norm();
-        if (part.spins) {
-          const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
-          reach = (hub - centre_in_body).norm() + (p - hub).norm();
-        }
+        if (part.spins) reach = (hub - centre_in_body).norm() + (p - hub).norm();
         radius_m = std::max(radius_m, reach);
       }
     }

@@ -118,7 +118,7 @@ template <typename Visit>
 void each_corner(const Model::Impl& model, ModelOpenness& openness, const Visit& visit) {
   for (std::size_t p = 0; p < model.mesh.parts.size(); ++p) {
     const aircraft::Part& part = model.mesh.parts[p];
-    if (part.spins) continue;
+    if (part.moves()) continue;
     tbb::parallel_for(std::size_t{0}, part.triangles.size(), [&](std::size_t i) {
       const Eigen::Vector3f face = face_of(model.mesh, part.triangles[i]);
       if (!face.allFinite()) return;

@@ -38,7 +38,7 @@ std::string geometry_bytes(const aircraft::Mesh& mesh) {
   for (const aircraft::Part& part : mesh.parts) {
     const std::uint64_t triangles = part.triangles.size();
     append(bytes, &triangles, 1);
-    bytes.push_back(part.spins ? 's' : '-');
+    bytes.push_back(part.moves() ? 's' : '-');
     for (const aircraft::Triangle& triangle : part.triangles)
       append(bytes, triangle.vertex.data(), 3);
   }

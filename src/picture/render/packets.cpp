@@ -47,7 +47,7 @@ void nearest_hits_of_eight(const Placed& placed,
   alignas(32) Lanes valid;
   set_rays(packet.ray, valid, rays);
   for (std::size_t part = 0; part < placed.model->scenes.size(); ++part) {
-    const bool spins = placed.model->mesh.parts[part].spins;
+    const bool spins = placed.model->mesh.parts[part].moves();
     for (std::size_t i = 0; spins && i < rays.size(); ++i) {
       const Eigen::Affine3f here = part_from_body(placed, part, dt_s[i]);
       set_ray(packet.ray, i, {here * rays[i].origin, here.linear() * rays[i].direction});
@@ -75,7 +75,7 @@ void find_blocked_of_eight(const Model::Impl& model,
   alignas(32) Lanes valid;
   set_rays(packet, valid, rays);
   for (std::size_t part = 0; part < model.scenes.size(); ++part) {
-    if (model.mesh.parts[part].spins) continue;
+    if (model.mesh.parts[part].moves()) continue;
     RTCIntersectContext context = coherent();
     rtcOccluded8(valid.data(), model.scenes[part].get(), &context, &packet);
     for (std::size_t i = 0; i < rays.size(); ++i)

@@ -135,11 +135,7 @@ Reach reach_of_disc(const PixelBox& patch,
                     const aircraft::Mesh& mesh,
                     const aircraft::Part& part,
                     const std::vector<Eye>& eyes) {
-  float radius_m = 0;
-  for (const aircraft::Triangle& triangle : part.triangles)
-    for (const std::uint32_t v : triangle.vertex)
-      radius_m = std::max(radius_m, (mesh.positions[v] - part.centre_in_body).norm());
-  const double reach_m = std::sqrt(3.0) * static_cast<double>(radius_m);
+  const double reach_m = std::sqrt(3.0) * static_cast<double>(aircraft::reach_m(mesh, part));
   BoxBounds bounds;
   for (const Eye& eye : eyes)
     for (int axis = 0; axis < 3; ++axis)

@@ -154,7 +154,7 @@ void Silhouette::add_part(const TracedIntruder& actor,
   const Model::Impl& model = *actor.placed.model;
   const aircraft::Part& mesh_part = model.mesh.parts[part];
   // Rays handle a part that spins during the exposure.
-  const bool spins = actor.moves && mesh_part.spins;
+  const bool spins = actor.moves && mesh_part.moves();
   const std::optional<Reach> disc =
       spins ? std::optional(reach_of_disc(patch_, model.mesh, mesh_part, eyes)) : std::nullopt;
   const Span& span = grid_.span();

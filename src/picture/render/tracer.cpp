@@ -37,7 +37,7 @@ BodyRay body_ray(const TracedIntruder& actor, const Shot& shot) {
 std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from, double dt_s) {
   std::optional<Hit> best;
   for (std::size_t i = 0; i < placed.model->scenes.size(); ++i) {
-    const bool moves = placed.model->mesh.parts[i].spins;
+    const bool moves = placed.model->mesh.parts[i].moves();
     Eigen::Vector3f o = ray.origin;
     Eigen::Vector3f d = ray.direction;
     if (moves) {

@@ -7,7 +7,9 @@
 
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
+#include "sequence/setup/lens_marks.h"
 #include "truth/projection/bearing.h"
+#include "truth/projection/spot_box.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -102,6 +104,31 @@ void add_pixels(annotation::Intruder& truth,
     if (*share < kRounding) *share = 0;
 }
 
+// What is on the lens has boxes alone.
+annotation::Intruder mark_truth(const World& world,
+                                const Moment& moment,
+                                std::size_t mark,
+                                const image::Layer& layer,
+                                const std::vector<composite::Visible>& visible) {
+  using annotation::State;
+  annotation::Intruder truth;
+  truth.id = world.lens_marks[mark].id;
+  truth.aircraft = truth.object_class = enum_name(world.lens_marks[mark].kind);
+  if (!is_there(world.lens_marks[mark], moment.time_s)) return truth;
+  truth.state = State::kOutside;
+  const auto& spot = moment.spots[mark];
+  if (!spot) return truth;
+  const lens::ImageSize size = world.lens.size();
+  truth.exact_box_px = projection::spot_box(*spot, moment.sight.shutter, size.width, size.height);
+  const std::size_t i = world.actors.size() + mark;
+  const bool drawn = i < layer.area_alone_in_frame_px.size() && layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) truth.state = State::kHidden;
+  if (i >= visible.size()) return truth;
+  if (visible[i].box) truth.state = State::kVisible;
+  add_pixels(truth, i, layer, visible[i]);
+  return truth;
+}
+
 std::vector<annotation::Intruder> intruders_of(const World& world,
                                                const Moment& moment,
                                                const image::Layer& layer,
@@ -111,6 +138,7 @@ std::vector<annotation::Intruder> intruders_of(const World& world,
     annotation::Intruder truth;
     truth.id = world.actors[i].id;
     truth.aircraft = world.actors[i].aircraft;
+    truth.object_class = world.actors[i].object_class;
     if (moment.states[i]) {
       add_geometry(truth, moment, *moment.states[i]);
       truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
@@ -121,6 +149,8 @@ std::vector<annotation::Intruder> intruders_of(const World& world,
     }
     result.push_back(std::move(truth));
   }
+  for (std::size_t mark = 0; mark < world.lens_marks.size(); ++mark)
+    result.push_back(mark_truth(world, moment, mark, layer, visible));
   return result;
 }
 

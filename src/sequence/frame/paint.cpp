@@ -8,6 +8,7 @@
 #include "picture/composite/chroma_key.h"
 #include "picture/composite/codec_blocks.h"
 #include "picture/composite/cover.h"
+#include "picture/composite/spots.h"
 #include "picture/composite/spread.h"
 #include "picture/video/still.h"
 #include "sequence/frame/frame_coder.h"
@@ -206,15 +207,35 @@ image::Layer render_layer(const scene::Scene& scene,
     any = any || moment.search[i].has_value();
     instances.push_back(instance);
   }
-  if (!any) return {};
-  image::Layer layer = render::render(
-      view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
-  if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
-  return through_air_and_lens(std::move(layer), scene.camera_model, ambient, world.lens.size());
+  const lens::ImageSize size = world.lens.size();
+  const composite::Spots on_lens{moment.spots, moment.sight.shutter, size.width, size.height};
+  const std::vector<composite::SpotCover> covers = composite::covers_of(on_lens);
+  const bool has_spots = !composite::are_out_of_view(covers);
+  if (!any && !has_spots) return {};
+  image::Layer layer;
+  if (any) {
+    layer = render::render(
+        view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
+    if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
+    if (has_spots) composite::hide_behind(layer, covers, own_aircraft);
+    layer = through_air_and_lens(std::move(layer), scene.camera_model, ambient, size);
+  }
+  if (!has_spots) return layer;
+  return composite::with_spots(std::move(layer),
+                               world.actors.size(),
+                               on_lens,
+                               covers,
+                               own_aircraft,
+                               margin_px(scene.camera_model));
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {
   if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
+  if (!scene.lens_marks.empty())
+    throw Error(std::string("composite.method chroma-key has no picture of what is on the lens; "
+                            "expected method = \"matte\", or no ") +
+                    enum_name(scene.lens_marks.front().kind),
+                scene.lens_marks.front().where);
   if (!std::holds_alternative<lens::Pinhole>(lens.model()))
     throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole "
                             "alone; the lens is ") +

@@ -187,7 +187,10 @@ class Previewer {
         order.begin(), order.end(), [&](double a, double b) { return range_at[a] > range_at[b]; });
     for (const double time_s : order) {
       stop_if_asked();
-      painter_->paint(frame.picture, moment(time_s), ambient);
+      Moment here = moment(time_s);
+      // What is on the lens covers the picture once.
+      if (time_s != order.back()) here.spots.clear();
+      painter_->paint(frame.picture, here, ambient);
     }
     image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
     const double scale = static_cast<double>(kMainWidthPx) / rgb.width;

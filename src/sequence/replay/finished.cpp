@@ -70,6 +70,7 @@ annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
     annotation::Intruder intruder;
     intruder.id = label.category + " " + std::to_string(label.track);
     intruder.aircraft = label.category;
+    intruder.object_class = label.object_class;
     intruder.state = annotation::State::kVisible;
     intruder.exact_box_px = label.box_px;
     intruder.visible_box_px = pixels_of(label.box_px);

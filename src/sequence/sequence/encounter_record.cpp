@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "truth/annotation/object_class.h"
+
 namespace airtruth::sequence {
 namespace {
 
@@ -96,7 +98,8 @@ Json json_of(const EncounterRecord& record) {
 
 std::optional<FirstSeen> seen_in(const annotation::Frame& frame,
                                  const annotation::Intruder& intruder) {
-  if (intruder.state != annotation::State::kVisible || !intruder.exact_box_px) return std::nullopt;
+  if (intruder.state != annotation::State::kVisible || !intruder.exact_box_px || !intruder.range_m)
+    return std::nullopt;
   return FirstSeen{frame.frame, frame.time_s, *intruder.range_m, *intruder.exact_box_px};
 }
 
@@ -104,8 +107,9 @@ std::vector<EncounterRecord> encounter_records(
     const World& world, const std::vector<std::optional<FirstSeen>>& first_seen, double last_s) {
   std::vector<EncounterRecord> records;
   for (std::size_t i = 0; i < world.actors.size(); ++i)
-    records.push_back(record_of(
-        world, world.actors[i], i < first_seen.size() ? first_seen[i] : std::nullopt, last_s));
+    if (annotation::is_aircraft(world.actors[i].object_class))
+      records.push_back(record_of(
+          world, world.actors[i], i < first_seen.size() ? first_seen[i] : std::nullopt, last_s));
   return records;
 }
 

@@ -103,6 +103,7 @@ void FrameMaker::measure() {
   setting_.scene = resolved(stated_, setting_.size, setting_.own_aircraft(), options_);
   check_codec(setting_.scene, reader_.info().colour);
   setting_.world.shutter = shutter_of(setting_.scene.camera_model);
+  setting_.world.to_sun_in_world = to_sun_in_world(setting_.scene.light);
 
   video_sha256_ = sha256_of_video(setting_.scene.background.video, setting_.inputs.get());
   motion_.emplace(setting_.scene,

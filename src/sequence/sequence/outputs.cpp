@@ -38,6 +38,11 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
   return frame;
 }
 
+std::size_t aircraft_of(const scene::Scene& scene) {
+  return static_cast<std::size_t>(
+      std::count_if(scene.intruders.begin(), scene.intruders.end(), scene::is_aircraft));
+}
+
 nlohmann::ordered_json json_of(const std::vector<Checksum>& files) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Checksum& file : files) list.push_back({{"name", file.name}, {"sha256", file.sha256}});
@@ -69,7 +74,7 @@ Outputs::Outputs(const fs::path& folder,
       video_(folder / (scene.name + video::extension(format_of(scene.output.video)))),
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),
-      evision_(std::max<std::size_t>(1, scene.intruders.size())),
+      evision_(std::max<std::size_t>(1, aircraft_of(scene))),
       sheet_(scene.name, info.frame_count_estimate) {
   if (!truth_)
     throw Error(std::string("cannot create: ") + std::strerror(errno),
@@ -89,8 +94,9 @@ void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
     throw Error(std::string("cannot write: ") + std::strerror(errno),
                 {(folder_ / "truth.jsonl").string()});
   camera_ned_m_.push_back(truth.camera_position_ned_m);
-  if (truth.intruders.empty()) evision_[0].push_back(std::nullopt);
-  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
+  // The format is one of aircraft, which come first.
+  if (aircraft_of(scene_) == 0) evision_[0].push_back(std::nullopt);
+  for (std::size_t i = 0; i < aircraft_of(scene_); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
     evision_[i].push_back(intruder.state == annotation::State::kEnded
                               ? std::nullopt

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "sequence/setup/flyable.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -122,7 +123,7 @@ void add_frame(Tally& tally,
   bool any = false;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const bool visible = truth.intruders[i].state == annotation::State::kVisible;
-    any = any || visible;
+    any = any || (visible && annotation::is_aircraft(truth.intruders[i].object_class));
     if (!tally.first_seen[i]) tally.first_seen[i] = seen_in(truth, truth.intruders[i]);
   }
   tally.frames_visible += any ? 1 : 0;

@@ -19,12 +19,12 @@ namespace airtruth::sequence {
 
 struct Tally {
   std::int64_t frames = 0;
-  std::int64_t frames_visible = 0;  // at least one intruder is visible
+  std::int64_t frames_visible = 0;  // at least one aircraft is visible
   std::int64_t frames_bridged = 0;  // the camera's motion was not measured
   std::int64_t frames_turned = 0;   // of these: the camera has turned beyond a homography's reach
   std::int64_t frames_damaged = 0;  // the background's data was corrupt
   std::vector<std::int64_t> cuts;   // frames that begin a shot
-  // Per intruder: the first frame that shows it; empty: never visible.
+  // Per intruder with a range: the first frame that shows it; empty: never visible.
   std::vector<std::optional<FirstSeen>> first_seen;
   double last_time_s = 0;  // of the last frame
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/setup/from_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -60,10 +62,54 @@ trajectory::Path camera_path(const scene::Camera& camera) {
       camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
 }
 
-trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path& own) {
-  check(intruder.seen.empty(), "an intruder that is given by what is seen has been placed");
-  const trajectory::AttitudeOverride attitude{
-      intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+namespace {
+
+// Nose down for each metre a second of a multirotor's speed, and at most: a camera drone leans by
+// 25 to 35 degrees at its greatest speed, 16 to 20 m/s.
+constexpr double kLeanDegPerMps = 1.6;
+constexpr double kMostLeanDeg = 30;
+
+// The speed of an intruder over its whole path, as far as its scene states it.
+double stated_speed_mps(const scene::Intruder& intruder) {
+  if (intruder.position_ned_m) return intruder.velocity_ned_mps.norm();
+  if (intruder.encounter) return intruder.encounter->speed_mps;
+  if (intruder.speed_mps) return *intruder.speed_mps;
+  if (intruder.times_s.size() < 2) return 0;
+  double length_m = 0;
+  for (std::size_t i = 1; i < intruder.waypoints_ned_m.size(); ++i)
+    length_m += (intruder.waypoints_ned_m[i] - intruder.waypoints_ned_m[i - 1]).norm();
+  return length_m / (intruder.times_s.back() - intruder.times_s.front());
+}
+
+// A balloon hangs upright and a multirotor leans into its flight, whatever way the path goes.
+trajectory::AttitudeOverride attitude_of(const scene::Intruder& intruder) {
+  trajectory::AttitudeOverride attitude{intruder.yaw_deg, intruder.pitch_deg, intruder.roll_deg};
+  if (scene::is_aircraft(intruder) || intruder.distractor->kind == scene::DistractorKind::kBird)
+    return attitude;
+  const bool leans = intruder.distractor->kind == scene::DistractorKind::kMultirotor;
+  const double lean_deg =
+      leans ? std::min(kMostLeanDeg, kLeanDegPerMps * stated_speed_mps(intruder)) : 0;
+  if (!attitude.pitch_deg) attitude.pitch_deg = -lean_deg;
+  if (!attitude.roll_deg) attitude.roll_deg = 0;
+  return attitude;
+}
+
+// Steady flight from a place; its nose points along the velocity.
+trajectory::Path drift_of(const scene::Intruder& intruder) {
+  const trajectory::AttitudeOverride stated = attitude_of(intruder);
+  const Vector3& v = intruder.velocity_ned_mps;
+  const double along_deg = v.head<2>().norm() > 0 ? degrees(std::atan2(v.y(), v.x())) : 0;
+  const double climb_deg = v.norm() > 0 ? degrees(std::atan2(-v.z(), v.head<2>().norm())) : 0;
+  return trajectory::uniform(*intruder.position_ned_m,
+                             v,
+                             {stated.yaw_deg.value_or(along_deg),
+                              stated.pitch_deg.value_or(climb_deg),
+                              stated.roll_deg.value_or(0)});
+}
+
+trajectory::Path flown_path(const scene::Intruder& intruder, const trajectory::Path& own) {
+  if (intruder.position_ned_m) return drift_of(intruder);
+  const trajectory::AttitudeOverride attitude = attitude_of(intruder);
   if (intruder.encounter) return encounter::path_to_approach(*intruder.encounter, own, attitude);
   return at_place(intruder.where, [&] {
     const trajectory::Path path =
@@ -73,6 +119,15 @@ trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path
             : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);
     return intruder.start_s == 0 ? path : trajectory::shifted(path, intruder.start_s);
   });
+}
+
+}  // namespace
+
+trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path& own) {
+  check(intruder.seen.empty(), "an intruder that is given by what is seen has been placed");
+  const trajectory::Path path = flown_path(intruder, own);
+  return intruder.offset_ned_m.isZero(0) ? path
+                                         : trajectory::displaced(path, intruder.offset_ned_m);
 }
 
 std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth) {

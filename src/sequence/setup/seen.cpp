@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -116,11 +117,6 @@ scene::Intruder through_places(const scene::Intruder& intruder, const std::vecto
   return result;
 }
 
-trajectory::Path flown(const scene::Intruder& placed) {
-  return trajectory::spline_at_times(
-      placed.waypoints_ned_m, placed.times_s, {placed.yaw_deg, placed.pitch_deg, placed.roll_deg});
-}
-
 // The width of the exact box over the stated one; empty where a part of the aircraft has no pixel.
 std::optional<double> width_share(const Ray& ray,
                                   const trajectory::Path& path,
@@ -148,7 +144,7 @@ void settle_widths(const scene::Intruder& intruder,
   constexpr int kDampedRound = 20;
   const Ray* off = nullptr;
   for (int round = 0; round < kMaxRounds; ++round) {
-    const trajectory::Path path = flown(through_places(intruder, rays));
+    const trajectory::Path path = path_of(through_places(intruder, rays), *through.camera);
     off = nullptr;
     for (Ray& ray : rays) {
       if (!ray.seen->width_px) continue;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "aircraft/fleet/configuration.h"
 #include "foundation/base/files.h"
 #include "sequence/setup/world.h"
@@ -13,6 +16,19 @@ namespace {
 
 // What decides how an intruder's aircraft is loaded.
 std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  if (intruder.distractor) {
+    const scene::Distractor& one = *intruder.distractor;
+    return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}",
+                       enum_name(one.kind),
+                       one.size_m,
+                       enum_name(one.plumage),
+                       one.aspect_ratio,
+                       one.flap_hz,
+                       one.flap_phase,
+                       one.glide,
+                       one.rotors,
+                       fmt::join(one.colour, ","));
+  }
   const aircraft::LoadOptions options = load_options(intruder, path);
   std::string key =
       intruder.aircraft + '|' + aircraft::configuration_of(intruder.aircraft, options);
@@ -57,7 +73,8 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
                                                   const trajectory::Path& path,
                                                   const Warn& warn,
                                                   const std::stop_token& stop) {
-  aircraft::aircraft_file(intruder.aircraft);  // a missing file is an error at the scene's line
+  // A missing file is an error at the scene's line.
+  if (is_aircraft(intruder)) aircraft::aircraft_file(intruder.aircraft);
   const std::shared_ptr<Slot> slot = slot_of(type_key(intruder, path));
   const std::lock_guard lock(slot->loading);
   std::shared_ptr<const Type> type = known(*slot);
@@ -66,7 +83,9 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
     const auto collect = [&](const std::string& text) { warnings.push_back(text); };
     const auto loaded = aircraft_of(intruder, path, collect, stop);
     type = twin_of(*loaded);
-    if (!type || type->warnings != warnings) type = prepared(loaded, warnings, openness_cache_);
+    // The openness of a distractor is found faster than it is read.
+    const std::filesystem::path kept = is_aircraft(intruder) ? openness_cache_ : "";
+    if (!type || type->warnings != warnings) type = prepared(loaded, warnings, kept);
     keep(*slot, type);
   }
   for (const std::string& text : type->warnings) airtruth::warn(warn, text);

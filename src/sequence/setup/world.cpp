@@ -7,9 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "aircraft/shapes/shapes.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/lens_marks.h"
 #include "sequence/setup/shared_inputs.h"
+#include "truth/annotation/object_class.h"
 
 namespace airtruth::sequence {
 namespace {
@@ -46,8 +49,16 @@ Actor actor_of(const scene::Intruder& intruder,
   const trajectory::Path path = path_of(intruder, world.camera);
   const auto type =
       at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
-  return {
-      intruder.id, intruder.aircraft, path, type->aircraft, type->model, type->silhouette, type};
+  const char* object_class =
+      intruder.distractor ? enum_name(intruder.distractor->kind) : annotation::kAircraft.data();
+  return {intruder.id,
+          intruder.aircraft,
+          object_class,
+          path,
+          type->aircraft,
+          type->model,
+          type->silhouette,
+          type};
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed
@@ -64,6 +75,22 @@ Loaded load_actor(const scene::Intruder& intruder,
       actor_of(placed_as_seen(intruder, through, nullptr), world, types, warn, stop);
   const scene::Intruder placed = placed_as_seen(intruder, through, &first.silhouette);
   return {placed, actor_of(placed, world, types, {}, stop)};
+}
+
+aircraft::Mesh mesh_of(const scene::Distractor& one) {
+  switch (one.kind) {
+    case scene::DistractorKind::kBird:
+      return aircraft::bird(
+          {one.size_m, one.aspect_ratio, one.plumage, one.flap_hz, one.flap_phase, one.glide});
+    case scene::DistractorKind::kMultirotor:
+      return aircraft::multirotor({one.size_m, one.rotors, one.colour});
+    case scene::DistractorKind::kBalloon:
+      return aircraft::balloon({one.size_m, one.colour});
+    default:
+      break;
+  }
+  check(false, "a distractor in the air has a mesh");
+  return {};
 }
 
 }  // namespace
@@ -98,6 +125,12 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const trajectory::Path& path,
                                                       const Warn& warn,
                                                       const std::stop_token& stop) {
+  if (intruder.distractor) {
+    auto made = std::make_shared<aircraft::Aircraft>();
+    made->name = intruder.aircraft;
+    made->mesh = mesh_of(*intruder.distractor);
+    return made;
+  }
   return std::make_shared<const aircraft::Aircraft>(
       aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
 }
@@ -112,7 +145,10 @@ World load_world(const scene::Scene& scene,
               {},
               shutter_of(scene.camera_model),
               volumes_of(scene.truth),
-              scene.truth.lookahead_s};
+              scene.truth.lookahead_s,
+              scene.lens_marks,
+              to_sun_in_world(scene.light),
+              scene.seed};
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
   for (const scene::Intruder& intruder : scene.intruders)
@@ -161,7 +197,8 @@ void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   const lens::Lens lens = lens_of(scene.lens, {info.width, info.height});
   const SeenThrough through{&lens, &camera, shutter_of(scene.camera_model), steady_frame};
   for (const scene::Intruder& intruder : scene.intruders) {
-    at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
+    if (is_aircraft(intruder))
+      at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
     path_of(intruder.seen.empty() ? intruder : placed_as_seen(intruder, through, nullptr), camera);
   }
 }
@@ -195,6 +232,8 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
               : projection::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }
+  for (const scene::LensMark& mark : world.lens_marks)
+    moment.spots.push_back(spot_of(mark, moment.sight, world.to_sun_in_world, time_s, world.seed));
   return moment;
 }
 

@@ -13,6 +13,7 @@
 #include "camera/lens/lens.h"
 #include "encounter/separation/volumes.h"
 #include "foundation/base/log.h"
+#include "foundation/image/spot.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "picture/video/reader.h"
@@ -31,6 +32,8 @@ class SharedInputs;
 struct Actor {
   std::string id;
   std::string aircraft;
+  // "aircraft", or the kind of a distractor (truth/annotation/object_class.h).
+  std::string object_class;
   trajectory::Path path;
   std::shared_ptr<const aircraft::Aircraft> type;
   std::shared_ptr<const render::Model> model;
@@ -46,6 +49,11 @@ struct World {
   // What the truth says of encounters ([truth]).
   std::vector<encounter::AskedVolume> volumes;
   double lookahead_s = 180;
+  // What is on the lens.
+  std::vector<scene::LensMark> lens_marks;
+  // For glints that follow the sun: it is known once the scene's values are (resolve.h).
+  Vector3 to_sun_in_world{0, 0, -1};
+  std::uint64_t seed = 1;
 };
 
 // True where a part of the box is in the picture.
@@ -103,6 +111,8 @@ struct Moment {
   // By actor: the box in which its pixels are searched (its box with a margin); empty: it is not
   // in view.
   std::vector<std::optional<Box>> search;
+  // By mark on the lens; empty: it is not there, or its sun is not in the lens's field.
+  std::vector<std::optional<image::Spot>> spots;
 };
 
 // The bounding box of all the search boxes.

@@ -101,6 +101,9 @@ struct Intruder {
   double hidden_by_own_aircraft = 0;
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
+  // One of object_class.h. What is on the lens has no place in the world: of the optional fields it
+  // has only boxes and a centroid.
+  std::string object_class = "aircraft";
 };
 
 // The box that marks an intruder for a viewer: its covered box, or the visible box where no pixel

@@ -95,6 +95,7 @@ Intruder intruder_from(const JsonObject& object) {
   Intruder intruder;
   intruder.id = object.text("id");
   intruder.aircraft = object.text("aircraft");
+  intruder.object_class = object.maybe_text("class").value_or(intruder.object_class);
   intruder.state = state_from(object);
   intruder.position_ned_m = maybe_vector(object, "position_ned_m");
   intruder.velocity_ned_mps = maybe_vector(object, "velocity_ned_mps");

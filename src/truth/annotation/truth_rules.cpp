@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "truth/annotation/object_class.h"
+
 namespace airtruth::annotation {
 namespace {
 
@@ -68,20 +70,35 @@ std::optional<std::string> fault(const EncounterTruth& truth) {
   return std::nullopt;
 }
 
-std::optional<std::string> fault(const Intruder& i) {
-  if (!all_finite(i)) return "holds a number that is not finite";
-  if (i.visible_box_px.has_value() != (i.state == State::kVisible))
-    return fmt::format(
-        "is {} and has {} visible_box_px", name(i.state), i.visible_box_px ? "a" : "no");
+// What is on the lens has no place in the world; everything else has one unless it is ended.
+std::optional<std::string> fault_of_place(const Intruder& i) {
   const bool placed = i.position_ned_m && i.velocity_ned_mps && i.attitude_yaw_pitch_roll_deg &&
                       i.position_in_cam_m && i.range_m;
   const bool any_place = i.position_ned_m || i.velocity_ned_mps || i.attitude_yaw_pitch_roll_deg ||
                          i.position_in_cam_m || i.range_m || i.range_rate_mps || i.azimuth_deg ||
                          i.elevation_deg || i.nominal_azimuth_deg || i.nominal_elevation_deg ||
-                         i.encounter || i.exact_box_px;
-  if (i.state == State::kEnded && any_place) return "is ended and has a place";
+                         i.encounter;
+  if (i.state == State::kEnded && (any_place || i.exact_box_px)) return "is ended and has a place";
+  if (is_on_lens(i.object_class)) {
+    if (any_place) return fmt::format("is a {} and has a place in the world", i.object_class);
+    if (i.state == State::kBehind) return fmt::format("is a {} and behind", i.object_class);
+    return std::nullopt;
+  }
   if (i.state != State::kEnded && !placed)
     return fmt::format("is {} and lacks its place", name(i.state));
+  return std::nullopt;
+}
+
+std::optional<std::string> fault(const Intruder& i) {
+  if (!all_finite(i)) return "holds a number that is not finite";
+  if (!is_object_class(i.object_class))
+    return fmt::format(
+        "is of the class '{}'; expected aircraft, bird, multirotor, balloon, glint, dirt or insect",
+        i.object_class.substr(0, 40));
+  if (i.visible_box_px.has_value() != (i.state == State::kVisible))
+    return fmt::format(
+        "is {} and has {} visible_box_px", name(i.state), i.visible_box_px ? "a" : "no");
+  if (const auto found = fault_of_place(i)) return found;
   if (i.azimuth_deg.has_value() != i.elevation_deg.has_value() ||
       i.nominal_azimuth_deg.has_value() != i.nominal_elevation_deg.has_value())
     return "has half a bearing";

@@ -12,6 +12,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "truth/annotation/truth_rules.h"
 
 namespace airtruth::annotation {
 namespace {
@@ -288,6 +289,62 @@ Schema published_schema() {
 
 TEST(TruthSchema, HoldsWhatIsWritten) {
   EXPECT_EQ(published_schema().fault(Json::parse(jsonl_line(frame_of_two(), kLens))), "");
+}
+
+// A frame with dirt on the lens, which has boxes and no place.
+Frame frame_with_dirt() {
+  Frame frame = frame_of_two();
+  Intruder dirt;
+  dirt.id = dirt.aircraft = dirt.object_class = "dirt";
+  dirt.state = State::kVisible;
+  dirt.exact_box_px = Box{100, 50, 40, 30};
+  dirt.visible_box_px = PixelBox{98, 48, 44, 34};
+  dirt.visible_area_px = 900;
+  frame.intruders.push_back(dirt);
+  return frame;
+}
+
+TEST(Truth, TheClassOfAnAircraftIsNotWrittenAndThatOfAnotherIs) {
+  Frame frame = frame_with_dirt();
+  frame.intruders[0].object_class = "bird";
+  const Json json = Json::parse(jsonl_line(frame, kLens));
+  EXPECT_EQ(json["intruders"][0]["class"], "bird");
+  EXPECT_FALSE(json["intruders"][1].contains("class"));
+  EXPECT_EQ(json["intruders"][2]["class"], "dirt");
+  const Frame again = parse_jsonl_line(json.dump(), "truth.jsonl", 1);
+  EXPECT_EQ(again.intruders[0].object_class, "bird");
+  EXPECT_EQ(again.intruders[1].object_class, "aircraft");
+  EXPECT_EQ(again.intruders[2].object_class, "dirt");
+}
+
+TEST(Truth, WhatIsOnTheLensHasNoPlaceAndEverythingElseHasOne) {
+  const auto fault_of = [](const std::function<void(Intruder&)>& spoil) {
+    Frame frame = frame_with_dirt();
+    spoil(frame.intruders[2]);
+    return fault(frame).value_or("");
+  };
+  EXPECT_EQ(fault_of([](Intruder&) {}), "");
+  EXPECT_EQ(fault_of([](Intruder& i) { i.range_m = 3; }),
+            "intruder 'dirt' is a dirt and has a place in the world");
+  EXPECT_EQ(fault_of([](Intruder& i) {
+              i.state = State::kBehind;
+              i.visible_box_px.reset();
+            }),
+            "intruder 'dirt' is a dirt and behind");
+  EXPECT_EQ(fault_of([](Intruder& i) { i.object_class = "balloon"; }),
+            "intruder 'dirt' is visible and lacks its place");
+  EXPECT_EQ(fault_of([](Intruder& i) {
+              i.state = State::kEnded;
+              i.visible_box_px.reset();
+            }),
+            "intruder 'dirt' is ended and has a place");
+  EXPECT_EQ(fault_of([](Intruder& i) { i.object_class = "ufo"; }),
+            "intruder 'dirt' is of the class 'ufo'; expected aircraft, bird, multirotor, balloon, "
+            "glint, dirt or insect");
+}
+
+TEST(TruthSchema, HoldsDistractors) {
+  EXPECT_EQ(published_schema().fault(Json::parse(jsonl_line(frame_with_dirt(), kLens))), "");
 }
 
 TEST(TruthSchema, RefusesWhatIsNot) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
+#include "truth/annotation/object_class.h"
 #include "truth/annotation/truth.h"
 #include "truth/annotation/truth_rules.h"
 
@@ -59,6 +60,7 @@ OrderedJson json(const Intruder& intruder) {
   OrderedJson object;
   object["id"] = intruder.id;
   object["aircraft"] = intruder.aircraft;
+  if (!is_aircraft(intruder.object_class)) object["class"] = intruder.object_class;
   object["state"] = name(intruder.state);
   add(object, "position_ned_m", intruder.position_ned_m);
   add(object, "velocity_ned_mps", intruder.velocity_ned_mps);

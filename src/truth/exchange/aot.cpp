@@ -9,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
+#include "truth/annotation/object_class.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/python_json.h"
 #include "truth/exchange/text.h"
@@ -126,6 +127,14 @@ class AotWriter : public Writer {
     return std::to_string(kTimeOriginNs + time_ns) + clip.name + ".png";
   }
 
+  // The set's own word for an object; empty for what is not in the air.
+  static std::string_view kind_of(const Label& label) {
+    if (annotation::is_aircraft(label.object_class)) return "Airplane";
+    if (label.object_class == "bird") return "Bird";
+    if (label.object_class == "multirotor") return "Drone";
+    return label.object_class == "balloon" ? "Airborne" : "";
+  }
+
   static void add_frame(const Clip& clip, std::size_t i, std::int64_t time_ns, Json& entities) {
     const LabelledFrame& frame = clip.frames[i];
     Json bare = Json::object();
@@ -133,12 +142,16 @@ class AotWriter : public Writer {
     bare["blob"] = {{"frame", i}};
     bare["flight_id"] = clip.name;
     bare["img_name"] = name_of(clip, time_ns);
-    if (frame.labels.empty()) bare["labels"] = Json::object();
-    if (frame.labels.empty()) entities.push_back(bare);
+    bool any = false;
+    for (const Label& label : frame.labels) any = any || !kind_of(label).empty();
+    if (!any) bare["labels"] = Json::object();
+    if (!any) entities.push_back(bare);
     for (const Label& label : frame.labels) {
+      const std::string_view kind = kind_of(label);
+      if (kind.empty()) continue;
       Json entity = bare;
       const Box& b = label.box_px;
-      entity["id"] = fmt::format("Airplane{}", label.track);
+      entity["id"] = fmt::format("{}{}", kind, label.track);
       entity["bb"] = {b.x, b.y, b.width, b.height};
       if (label.range_m) entity["blob"]["range_distance_m"] = *label.range_m;
       entity["blob"]["category"] = label.category;

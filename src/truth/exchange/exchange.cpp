@@ -6,6 +6,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/suggest.h"
+#include "truth/annotation/object_class.h"
 #include "truth/exchange/parts.h"
 
 namespace airtruth::exchange {
@@ -41,7 +42,8 @@ constexpr std::array<About, 11> kAll = {{
      "MOTChallenge",
      "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
      "the "
-     "class of a track in tracks.txt, and as the number of the class where that was asked for",
+     "class of a track in tracks.txt, and as the number of the class where that was asked for; "
+     "otherwise what is no aircraft is marked as not to be considered",
      "time stamps (a frame rate alone), occlusion and truncation as such"},
     {Format::kVoc,
      "voc",
@@ -59,7 +61,8 @@ constexpr std::array<About, 11> kAll = {{
      "box, track, time in nanoseconds, range, above or below the horizon; the class as a further "
      "key "
      "of `blob`",
-     "visibility, occlusion, truncation; every id is an `Airplane`"},
+     "visibility, occlusion, truncation; the id of every aircraft is an `Airplane`, that of a "
+     "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; what is on the lens"},
     {Format::kOtb,
      "otb",
      "OTB",
@@ -125,12 +128,20 @@ std::vector<fs::path> IndexedWriter::images(const Clip& clip, const std::string&
   return files;
 }
 
+Clip aircraft_alone(Clip clip) {
+  for (LabelledFrame& frame : clip.frames)
+    std::erase_if(frame.labels,
+                  [](const Label& label) { return !annotation::is_aircraft(label.object_class); });
+  return clip;
+}
+
 std::vector<Clip> arranged(Format format, const Clip& clip) {
   if (!is_single_object(format)) return {clip};
   std::vector<Clip> clips;
-  const std::vector<std::int64_t> tracks = tracks_of(clip);
+  const Clip aircraft = aircraft_alone(clip);
+  const std::vector<std::int64_t> tracks = tracks_of(aircraft);
   for (const std::int64_t track : tracks) {
-    Clip one = clip;
+    Clip one = aircraft;
     if (tracks.size() > 1) one.name += "-" + std::to_string(track);
     for (LabelledFrame& frame : one.frames) {
       std::erase_if(frame.labels, [&](const Label& label) { return label.track != track; });

@@ -22,7 +22,8 @@ struct WriteOptions {
   std::string image_extension = ".jpg";
   // True: pictures are written beside the labels.
   bool with_images = true;
-  // MOT only. True: classes are numbered from 1; false: every object has the class 1.
+  // MOT only. True: classes are numbered from 1; false: every object has the class 1, and what is
+  // no aircraft is not to be considered.
   bool mot_classes = false;
 };
 
@@ -40,6 +41,9 @@ class Writer {
 std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);
+
+// The clip without its distractors.
+Clip aircraft_alone(Clip clip);
 
 // What the format's own reader requires of pictures: AOT's opens PNG only, those of OTB and GOT-10k
 // look for *.jpg.

@@ -651,6 +651,68 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
   EXPECT_EQ(of_head(R"("width":640,"height":480,"frame_rate_hz":29.97)"), "no error");
 }
 
+// One frame with an aircraft, a bird and dirt.
+Clip clip_with_distractors() {
+  Clip clip;
+  clip.name = "sky";
+  clip.width = 640;
+  clip.height = 480;
+  clip.frame_rate_hz = 30;
+  Label aircraft{.track = 1, .category = "c172", .box_px = {10, 20, 30, 40}};
+  Label bird{.track = 2, .category = "bird", .box_px = {100, 20, 8, 4}};
+  bird.object_class = "bird";
+  Label dirt{.track = 3, .category = "dirt", .box_px = {200, 200, 60, 60}};
+  dirt.object_class = "dirt";
+  clip.frames = {{0, 0.0, {aircraft, bird, dirt}}, {1, 1.0 / 30, {aircraft, bird, dirt}}};
+  return clip;
+}
+
+std::size_t times_in(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(Distractors, AreNoTrackingTargets) {
+  for (const Format format : {Format::kOtb, Format::kGot10k, Format::kVot}) {
+    const std::vector<Clip> clips = arranged(format, clip_with_distractors());
+    ASSERT_EQ(clips.size(), 1U);
+    EXPECT_EQ(clips[0].name, "sky");
+    EXPECT_EQ(clips[0].frames[0].labels[0].category, "c172");
+  }
+  Clip birds = aircraft_alone(clip_with_distractors());
+  EXPECT_EQ(birds.frames[0].labels.size(), 1U);
+  for (LabelledFrame& frame : birds.frames) frame.labels.clear();
+  EXPECT_TRUE(arranged(Format::kOtb, birds).empty());
+  EXPECT_EQ(arranged(Format::kCoco, clip_with_distractors())[0].frames[0].labels.size(), 3U);
+}
+
+TEST(Distractors, HaveTheirPlaceInEachFormat) {
+  const Folder folder;
+  const Part part{"train", {clip_with_distractors()}};
+  write_clips(Format::kCoco, folder.path() / "coco", {&part, 1});
+  const auto again = read_clips(Format::kCoco, folder.path() / "coco", {}, {});
+  std::vector<std::string> categories;
+  for (const Label& label : again[0].frames[0].labels) categories.push_back(label.category);
+  std::sort(categories.begin(), categories.end());
+  EXPECT_EQ(categories, (std::vector<std::string>{"bird", "c172", "dirt"}));
+
+  write_clips(Format::kMot, folder.path() / "mot", {&part, 1});
+  const std::string truth = read_file(folder.path() / "mot" / "train" / "sky" / "gt" / "gt.txt");
+  // frame, id, box, to be considered, class
+  EXPECT_NE(truth.find("1,1,11,21,30,40,1,1,"), std::string::npos) << truth;
+  EXPECT_NE(truth.find("1,2,101,21,8,4,0,1,"), std::string::npos) << truth;
+  EXPECT_NE(truth.find("1,3,201,201,60,60,0,1,"), std::string::npos) << truth;
+
+  write_clips(Format::kAot, folder.path() / "aot", {&part, 1});
+  const std::string flights =
+      read_file(folder.path() / "aot" / "train" / "ImageSets" / "groundtruth.json");
+  EXPECT_EQ(times_in(flights, "\"Airplane1\""), 2U);
+  EXPECT_EQ(times_in(flights, "\"Bird2\""), 2U);
+  EXPECT_EQ(times_in(flights, "dirt"), 0U);
+}
+
 TEST(Format, IsKnownByNameAndNearMissesAreHelped) {
   for (const Format format : kWritten) EXPECT_EQ(format_from_name(name(format)), format);
   try {

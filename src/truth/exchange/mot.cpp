@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "truth/annotation/object_class.h"
 #include "truth/exchange/parts.h"
 #include "truth/exchange/text.h"
 
@@ -105,13 +106,16 @@ class MotWriter : public IndexedWriter {
 
   std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
     const Box& b = label.box_px;
-    return fmt::format("{},{},{},{},{},{},1,{},{},{}\n",
+    // MOTChallenge's evaluation of one class passes over what is not to be considered.
+    const bool is_considered = options_.mot_classes || annotation::is_aircraft(label.object_class);
+    return fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
                        i + 1,
                        label.track,
                        b.x + 1,
                        b.y + 1,
                        b.width,
                        b.height,
+                       is_considered ? 1 : 0,
                        class_of(label),
                        label.visible.value_or(unknown_visibility),
                        label.range_m.value_or(kUnknown));

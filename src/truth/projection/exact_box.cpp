@@ -123,8 +123,9 @@ class Sweep {
   std::array<Matrix3, 3> rotation_;
 };
 
-// A spinning part passes through many angles during the exposure. So many angles are taken that
-// neighbours are a few degrees apart, and the part counts as present at each of them all the time.
+// A part that spins or swings passes through many angles during the exposure. So many angles are
+// taken that neighbours are a few degrees apart, and the part counts as present at each of them all
+// the time.
 constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMaxSpinSteps = 120;
 
@@ -139,7 +140,7 @@ void add_swept(const Sight& sight,
   const double open_s = sight.shutter.exposure_s + sight.shutter.readout_s;
   for (std::size_t i = 0; i < silhouette.points.size(); ++i) {
     const aircraft::Part& part = silhouette.mesh->parts[i];
-    const double turns = part.spins ? std::abs(part.revolutions_per_s) * open_s : 0;
+    const double turns = aircraft::fastest_turn_per_s(part) * open_s;
     const int steps =
         1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
     for (int step = 0; step < steps; ++step) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "foundation/base/files.h"
+#include "world/scene/parse_distractor.h"
 #include "world/scene/parse_intruder.h"
 #include "world/scene/scene.h"
 #include "world/scene/table_reader.h"
@@ -47,7 +48,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       file.string(),
       with_camera_tables(
           {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
-          {"realism", "intruder", "truth", "render", "composite", "output"}));
+          {"realism", "intruder", "distractor", "truth", "render", "composite", "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -62,6 +63,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.camera_model = camera_model_in(root);
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
+  add_distractors(root, scene);
   scene.truth = truth_in(root);
   scene.render = render_in(root);
   scene.composite = composite_in(root);

@@ -59,7 +59,20 @@ void check_times(const TableReader& table,
                   table.where("times_s", i));
 }
 
-void read_path(const TableReader& table, Intruder& intruder) {
+Intruder intruder_from(const TableReader& table) {
+  Intruder intruder;
+  intruder.where = table.where();
+  intruder.id = table.file_name("id").value_or("");
+  intruder.aircraft = aircraft_in(table);
+  read_axes(table, intruder);
+  read_path(table, "[[intruder]]", intruder);
+  read_attitude(table, intruder);
+  return intruder;
+}
+
+}  // namespace
+
+void read_path(const TableReader& table, const char* title, Intruder& intruder) {
   table.exclude("path_file", {"waypoints_ned_m", "speed_mps", "times_s"});
   table.exclude("encounter",
                 {"seen", "waypoints_ned_m", "speed_mps", "times_s", "path_file", "start_s"});
@@ -73,34 +86,26 @@ void read_path(const TableReader& table, Intruder& intruder) {
   if (intruder.path_file) return;
   const auto points = table.points("waypoints_ned_m", kPosition);
   if (!points)
-    throw Error(
-        "[[intruder]] has no path; expected waypoints_ned_m with speed_mps or times_s, path_file, "
-        "[intruder.encounter] or [[intruder.seen]]",
-        table.where());
+    throw Error(std::string(title) +
+                    " has no path; expected waypoints_ned_m with speed_mps or times_s, path_file, "
+                    "[intruder.encounter] or [[intruder.seen]]",
+                table.where());
   check_waypoints(table, *points);
   intruder.waypoints_ned_m = *points;
   intruder.speed_mps = table.number("speed_mps", kSpeed);
   intruder.times_s = table.numbers("times_s", kTime).value_or(std::vector<double>{});
   if (table.has("times_s")) check_times(table, intruder.times_s, points->size());
   if (!intruder.speed_mps && !table.has("times_s"))
-    throw Error("[[intruder]] has waypoints_ned_m alone; expected speed_mps or times_s with them",
-                table.where());
+    throw Error(
+        std::string(title) + " has waypoints_ned_m alone; expected speed_mps or times_s with them",
+        table.where());
 }
 
-Intruder intruder_from(const TableReader& table) {
-  Intruder intruder;
-  intruder.where = table.where();
-  intruder.id = table.file_name("id").value_or("");
-  intruder.aircraft = aircraft_in(table);
-  read_axes(table, intruder);
-  read_path(table, intruder);
+void read_attitude(const TableReader& table, Intruder& intruder) {
   intruder.yaw_deg = table.number("yaw_deg", kTurn);
   intruder.pitch_deg = table.number("pitch_deg", kPitch);
   intruder.roll_deg = table.number("roll_deg", kTurn);
-  return intruder;
 }
-
-}  // namespace
 
 std::vector<Intruder> intruders_from(const TableReader& root) {
   std::vector<Intruder> result;

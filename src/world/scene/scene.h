@@ -14,6 +14,7 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
 #include "world/scene/choices.h"
+#include "world/scene/distractor.h"
 
 // A scene file as a value: what the user wrote, with types and ranges checked, and before any other
 // file is loaded. Each struct is a table of the file and each field is a key of the same name;
@@ -188,11 +189,14 @@ struct Seen {
   Where where;
 };
 
-// [[intruder]]: an aircraft and its path. A path comes from waypoints with a speed or with times,
-// from a file, from an encounter, or from what is seen.
+// [[intruder]]: an aircraft and its path; or [[distractor]] in the air. A path comes from waypoints
+// with a speed or with times, from a file, from an encounter, or from what is seen.
 struct Intruder {
   std::string id;
+  // Of a distractor: the name of its kind.
   std::string aircraft;
+  // Empty for an aircraft.
+  std::optional<Distractor> distractor;
   // For a bare model file: the axes of the model that point to the nose and upwards.
   std::optional<std::string> model_forward;
   std::optional<std::string> model_up;
@@ -211,8 +215,15 @@ struct Intruder {
   double start_s = 0;
   // Each angle replaces that of the path.
   std::optional<double> yaw_deg, pitch_deg, roll_deg;
+  // Of a distractor, in place of a path: where it is at the time 0, and its steady velocity.
+  std::optional<Vector3> position_ned_m;
+  Vector3 velocity_ned_mps = Vector3::Zero();
+  // Of a distractor: its place beside the path, which a flock shares.
+  Vector3 offset_ned_m = Vector3::Zero();
   Where where;
 };
+
+inline bool is_aircraft(const Intruder& intruder) { return !intruder.distractor; }
 
 // [[truth.volume]]: a volume of airspace by own thresholds (encounter/separation/volumes.h).
 struct TruthVolume {
@@ -269,7 +280,10 @@ struct Scene {
   Light light;
   CameraModel camera_model;
   Realism realism;
+  // The aircraft first, in the order of the file, then the distractors in the air.
   std::vector<Intruder> intruders;
+  // The distractors on the lens.
+  std::vector<LensMark> lens_marks;
   Truth truth;
   Render render;
   Composite composite;

@@ -143,8 +143,8 @@ std::string aircraft_text(const std::string& aircraft) {
                                            : aircraft;
 }
 
-void add_encounter(Text& text, const Encounter& encounter) {
-  text.heading("[intruder.encounter]");
+void add_encounter(Text& text, const Encounter& encounter, std::string_view table) {
+  text.heading(fmt::format("[{}.encounter]", table));
   text.add("cpa_time_s", encounter.cpa_time_s);
   text.add("cpa_right_m", encounter.cpa_right_m);
   text.add("cpa_above_m", encounter.cpa_above_m);
@@ -155,12 +155,32 @@ void add_encounter(Text& text, const Encounter& encounter) {
   text.add("turn_rate_dps", encounter.turn_rate_dps);
 }
 
-void add_seen(Text& text, const Seen& seen) {
-  text.heading("[[intruder.seen]]");
+void add_seen(Text& text, const Seen& seen, std::string_view table) {
+  text.heading(fmt::format("[[{}.seen]]", table));
   text.add("time_s", seen.time_s);
   text.add("pixel", std::array<double, 2>{seen.pixel.x(), seen.pixel.y()});
   text.add("range_m", seen.range_m);
   text.add("width_px", seen.width_px);
+}
+
+void add_path(Text& text, const Intruder& intruder, std::string_view table) {
+  text.add("path_file", intruder.path_file);
+  const bool has_tables = intruder.encounter || !intruder.seen.empty();
+  if (intruder.position_ned_m) {
+    text.add("position_ned_m", *intruder.position_ned_m);
+    text.add("velocity_ned_mps", intruder.velocity_ned_mps);
+  } else if (!intruder.path_file && !has_tables) {
+    text.add("waypoints_ned_m", intruder.waypoints_ned_m);
+    text.add("speed_mps", intruder.speed_mps);
+    if (!intruder.speed_mps) text.add("times_s", intruder.times_s);
+  }
+  if (!has_tables && !intruder.position_ned_m) text.add("start_s", intruder.start_s);
+  text.add("yaw_deg", intruder.yaw_deg);
+  text.add("pitch_deg", intruder.pitch_deg);
+  text.add("roll_deg", intruder.roll_deg);
+  // Tables come last: a key after them would belong to them.
+  if (intruder.encounter) add_encounter(text, *intruder.encounter, table);
+  for (const Seen& seen : intruder.seen) add_seen(text, seen, table);
 }
 
 void add_intruder(Text& text, const Intruder& intruder) {
@@ -171,20 +191,54 @@ void add_intruder(Text& text, const Intruder& intruder) {
   text.add("model_up", intruder.model_up);
   text.add("model_scale", intruder.model_scale);
   text.add("catalogue_scale", intruder.catalogue_scale);
-  text.add("path_file", intruder.path_file);
-  const bool has_tables = intruder.encounter || !intruder.seen.empty();
-  if (!intruder.path_file && !has_tables) {
-    text.add("waypoints_ned_m", intruder.waypoints_ned_m);
-    text.add("speed_mps", intruder.speed_mps);
-    if (!intruder.speed_mps) text.add("times_s", intruder.times_s);
+  add_path(text, intruder, "intruder");
+}
+
+void add_distractor(Text& text, const Intruder& intruder) {
+  const Distractor& one = *intruder.distractor;
+  text.heading("[[distractor]]");
+  text.add("kind", one.kind);
+  text.add("id", intruder.id);
+  text.add("size_m", one.size_m);
+  if (one.kind == DistractorKind::kBird) {
+    text.add("plumage", one.plumage);
+    text.add("aspect_ratio", one.aspect_ratio);
+    text.add("flap_hz", one.flap_hz);
+    text.add("flap_phase", one.flap_phase);
+    text.add("glide", one.glide);
+  } else {
+    text.add("colour", one.colour);
   }
-  if (!has_tables) text.add("start_s", intruder.start_s);
-  text.add("yaw_deg", intruder.yaw_deg);
-  text.add("pitch_deg", intruder.pitch_deg);
-  text.add("roll_deg", intruder.roll_deg);
-  // Tables come last: a key after them would belong to them.
-  if (intruder.encounter) add_encounter(text, *intruder.encounter);
-  for (const Seen& seen : intruder.seen) add_seen(text, seen);
+  if (one.kind == DistractorKind::kMultirotor) text.add("rotors", one.rotors);
+  text.add("offset_ned_m", intruder.offset_ned_m);
+  add_path(text, intruder, "distractor");
+}
+
+std::array<double, 2> pair_of(const Pixel& pixel) { return {pixel.x(), pixel.y()}; }
+
+void add_mark(Text& text, const LensMark& mark) {
+  text.heading("[[distractor]]");
+  text.add("kind", mark.kind);
+  text.add("id", mark.id);
+  if (mark.pixel) {
+    text.add("pixel", pair_of(*mark.pixel));
+    text.add("velocity_px_s", pair_of(mark.velocity_px_s));
+  } else {
+    text.add("along", mark.along);
+  }
+  text.add("size_px", mark.size_px);
+  text.add("length_px", mark.length_px);
+  text.add("softness", mark.softness);
+  text.add("opacity", mark.opacity);
+  text.add("colour", mark.colour);
+  text.add("begin_s", mark.begin_s);
+  text.add("end_s", mark.end_s);
+}
+
+void add_things(Text& text, const Scene& scene) {
+  for (const Intruder& intruder : scene.intruders)
+    is_aircraft(intruder) ? add_intruder(text, intruder) : add_distractor(text, intruder);
+  for (const LensMark& mark : scene.lens_marks) add_mark(text, mark);
 }
 
 void add_truth(Text& text, const Truth& truth) {
@@ -221,7 +275,7 @@ std::string toml_from_scene(const Scene& scene) {
   text.add("reference", scene.motion.reference);
   text.add("smoothing_s", scene.motion.smoothing_s);
   add_light(text, scene.light);
-  for (const Intruder& intruder : scene.intruders) add_intruder(text, intruder);
+  add_things(text, scene);
   add_camera_model(text, scene.camera_model);
   add_realism(text, scene.realism);
   add_truth(text, scene.truth);

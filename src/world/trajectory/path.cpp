@@ -245,6 +245,22 @@ class Shifted : public Path::Impl {
   double by_;
 };
 
+class Displaced : public Path::Impl {
+ public:
+  Displaced(Path path, const Vector3& by) : path_(std::move(path)), by_(by) {}
+  double start_s() const override { return path_.start_s(); }
+  double end_s() const override { return path_.end_s(); }
+  State at(double t) const override {
+    State state = *path_.at(t);
+    state.position_in_world += by_;
+    return state;
+  }
+
+ private:
+  Path path_;
+  Vector3 by_;
+};
+
 void check_waypoints(std::span<const Vector3> points) {
   if (points.size() < 2)
     throw Error("waypoints_ned_m has " + std::to_string(points.size()) +
@@ -323,6 +339,10 @@ std::shared_ptr<const Path::Impl> path_through(std::vector<double> times_s,
                                                std::vector<Vector3> positions,
                                                const AttitudeOverride& attitude) {
   return std::make_shared<AtTimes>(std::move(times_s), std::move(positions), attitude);
+}
+
+Path displaced(const Path& path, const Vector3& offset_ned_m) {
+  return Path(std::make_shared<Displaced>(path, offset_ned_m));
 }
 
 Path shifted(const Path& path, double start_s) {

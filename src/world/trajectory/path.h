@@ -78,6 +78,9 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
 // The same path, delayed by `start_s` seconds.
 Path shifted(const Path& path, double start_s);
 
+// The same path, displaced by a constant vector.
+Path displaced(const Path& path, const Vector3& offset_ned_m);
+
 // Straight flight at constant velocity and attitude. The path has neither start nor end.
 Path uniform(const Vector3& position_ned_m,
              const Vector3& velocity_ned_mps,

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "aircraft/shapes/mesh_builder.h"
+#include "aircraft/shapes/shapes.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+using V = Eigen::Vector3f;
+
+std::array<float, 3> floats(const std::array<double, 3>& rgb) {
+  return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+}
+
+// Lengths below are shares of the size, the distance between opposite rotors.
+constexpr float kArmAbove = 0.02f;  // height of the arms above the middle
+constexpr float kRotorAbove = 0.085f;
+constexpr float kSkidBelow = 0.20f;
+
+// Radius of a rotor as a share of the size: neighbours leave a tenth of their distance free.
+float rotor_radius(int rotors) {
+  const double between_neighbours = std::sin(kPi / rotors);
+  return static_cast<float>(0.45 * between_neighbours);
+}
+
+// Unit vectors to the rotors; the nose is between the first and the last.
+std::vector<V> directions(int rotors) {
+  std::vector<V> result;
+  for (int k = 0; k < rotors; ++k) {
+    const double angle = 2 * kPi * (k + 0.5) / rotors;
+    result.emplace_back(
+        static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0.0f);
+  }
+  return result;
+}
+
+void add_shell(MeshBuilder& builder, float size, std::uint32_t shell, std::uint32_t dark) {
+  const auto ring = [&](float ahead, float half_width, float half_height) {
+    return Ring{V(ahead, 0, 0) * size, half_width * size, half_height * size};
+  };
+  const std::array<Ring, 6> rings = {ring(0.225f, 0.045f, 0.030f),
+                                     ring(0.200f, 0.075f, 0.050f),
+                                     ring(0.100f, 0.110f, 0.070f),
+                                     ring(-0.100f, 0.110f, 0.070f),
+                                     ring(-0.190f, 0.080f, 0.055f),
+                                     ring(-0.215f, 0.045f, 0.030f)};
+  builder.add_body(rings, V(0, 1, 0), V(0, 0, 1), 12, shell);
+  // The battery on top, and the camera with its gimbal below the nose.
+  builder.add_box(V(-0.13f, -0.055f, -0.105f) * size, V(0.08f, 0.055f, -0.055f) * size, dark);
+  builder.add_tube(V(0.15f, 0, 0.05f) * size, V(0.15f, 0, 0.085f) * size, 0.016f * size, 6, dark);
+  builder.add_box(V(0.115f, -0.035f, 0.08f) * size, V(0.195f, 0.035f, 0.135f) * size, dark);
+}
+
+void add_skids(MeshBuilder& builder, float size, std::uint32_t dark) {
+  for (const float side : {-1.0f, 1.0f}) {
+    const float out = side * 0.17f;
+    for (const float ahead : {-0.07f, 0.07f})
+      builder.add_tube(V(ahead, side * 0.07f, 0.04f) * size,
+                       V(ahead, out, kSkidBelow) * size,
+                       0.010f * size,
+                       6,
+                       dark);
+    builder.add_tube(V(-0.19f, out, kSkidBelow) * size,
+                     V(0.19f, out, kSkidBelow) * size,
+                     0.012f * size,
+                     6,
+                     dark);
+  }
+}
+
+// Two blades, twisted and tapered.
+void add_rotor(MeshBuilder& builder, const V& hub, float radius, std::uint32_t dark) {
+  for (const float side : {-1.0f, 1.0f}) {
+    const auto rib = [&](float out, float chord, float twist) {
+      const V middle = hub + V(0, side * out * radius, 0);
+      const V half(side * 0.5f * chord * radius, 0, 0.5f * chord * radius * twist);
+      return Rib{middle + half, middle - half, 0.012f * radius};
+    };
+    const std::array<Rib, 4> ribs = {rib(0.06f, 0.12f, 0.4f),
+                                     rib(0.30f, 0.20f, 0.35f),
+                                     rib(0.75f, 0.14f, 0.18f),
+                                     rib(1, 0.07f, 0.1f)};
+    builder.add_wing(ribs, dark, dark);
+  }
+}
+
+}  // namespace
+
+Mesh multirotor(const MultirotorShape& shape) {
+  check(shape.size_m > 0 && shape.rotors >= 3, "a multirotor has a size and rotors");
+  const auto size = static_cast<float>(shape.size_m);
+  MeshBuilder builder;
+  const std::uint32_t shell = builder.add_material(floats(shape.colour), Finish::kPaint);
+  const std::uint32_t dark = builder.add_material({0.02f, 0.02f, 0.022f});
+  const std::uint32_t blade = builder.add_material({0.03f, 0.03f, 0.032f});
+  builder.begin_part({"airframe", {}});
+  add_shell(builder, size, shell, dark);
+  add_skids(builder, size, dark);
+  const std::vector<V> rotors = directions(shape.rotors);
+  const float radius = rotor_radius(shape.rotors) * size;
+  for (const V& direction : rotors) {
+    const V at = 0.5f * size * direction;
+    builder.add_tube(V(0, 0, 0) + 0.08f * size * direction,
+                     at - V(0, 0, kArmAbove * size),
+                     0.020f * size,
+                     8,
+                     shell);
+    builder.add_tube(
+        at + V(0, 0, 0.012f * size), at - V(0, 0, 0.07f * size), 0.034f * size, 10, dark);
+  }
+  for (std::size_t k = 0; k < rotors.size(); ++k) {
+    const V hub = 0.5f * size * rotors[k] - V(0, 0, kRotorAbove * size);
+    Part part;
+    part.name = "rotor " + std::to_string(k + 1);
+    part.spins = true;
+    part.axis_in_body = V(0, 0, 1);
+    part.centre_in_body = hub;
+    // Neighbours turn in opposite directions.
+    part.revolutions_per_s =
+        (k % 2 == 0 ? 1 : -1) * kRotorTipMps / (2 * kPi * static_cast<double>(radius));
+    builder.begin_part(part);
+    add_rotor(builder, hub, radius, blade);
+  }
+  return builder.take();
+}
+
+}  // namespace airtruth::aircraft

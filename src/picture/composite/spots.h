@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "foundation/geometry/within_frame.h"
+#include "foundation/image/layer.h"
+#include "foundation/image/spot.h"
+
+// What is on the lens, in front of every intruder and of the own aircraft.
+namespace airtruth::composite {
+
+// The alpha of a spot at a place of the picture, a time after the frame's.
+double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s);
+
+// The mean alpha of a spot over a pixel's area and its exposure.
+double pixel_alpha(const image::Spot& spot,
+                   int x,
+                   int y,
+                   const Shutter& shutter,
+                   int frame_width,
+                   int frame_height);
+
+// The spots of one frame. An empty one is not there. Later spots are in front of earlier ones.
+struct Spots {
+  std::vector<std::optional<image::Spot>> spots;
+  Shutter shutter;
+  int frame_width = 0;
+  int frame_height = 0;
+};
+
+// The alpha of one spot over the pixels that it can touch in the frame: box.height rows of
+// box.width. Empty where it touches none.
+struct SpotCover {
+  PixelBox box{};
+  std::vector<float> alpha;
+};
+// One for each spot.
+std::vector<SpotCover> covers_of(const Spots& spots);
+// True where no spot touches the frame.
+bool are_out_of_view(const std::vector<SpotCover>& covers);
+
+// Takes what the spots hide from the layer's areas of seen and free silhouettes. Call it before the
+// layer's point spread and after find_free_area() (cover.h). `own_aircraft` may be null.
+void hide_behind(image::Layer& layer,
+                 const std::vector<SpotCover>& covers,
+                 const image::Mask* own_aircraft);
+
+// Puts the spots over a layer of `intruders` intruders: each becomes one more intruder of the
+// layer, after the others. The patch grows to hold them with a margin, within the frame. The layer
+// may be empty. `own_aircraft`, which may be null, is behind the lens: it is taken out of the layer
+// first, and the result is marked so (Layer::is_masked).
+image::Layer with_spots(image::Layer layer,
+                        std::size_t intruders,
+                        const Spots& spots,
+                        const std::vector<SpotCover>& covers,
+                        const image::Mask* own_aircraft,
+                        int margin_px);
+
+}  // namespace airtruth::composite
