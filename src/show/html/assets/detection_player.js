@@ -136,8 +136,10 @@ airtruth.detectionPlayer = (data, dotOf) => {
         }
         i = end;
       }
-      context.fillStyle = '#D55E00';
-      for (const index of one.false_alarms) context.fillRect(place(index), top + 11, Math.max(1, width / count), 4);
+      context.fillStyle = ink;
+      context.globalAlpha = 0.55;
+      for (const index of one.false_alarms) context.fillRect(place(index), top + 11.5, Math.max(1, width / count), 3);
+      context.globalAlpha = 1;
     });
     const still = sequence.stills[at];
     if (!still) return;
