@@ -61,10 +61,6 @@ std::string row_of(const detection::DetectorScore& detector) {
                  : "-");
 }
 
-std::string mean_with(const std::optional<detection::MeanOf>& mean, const char* unit) {
-  return mean ? fmt::format("{:.0f} {}", mean->mean, unit) : std::string("unknown");
-}
-
 std::string share_of(const detection::Share& share) {
   return fmt::format("{:.3f} ({})", share.value, between(share.low, share.high));
 }
@@ -75,21 +71,22 @@ void print_declarations(const char* kind,
                         const detection::Assessment& assessment,
                         Console& console) {
   if (!(summary.declared.trials > 0)) return;
-  std::string line = fmt::format(
-      "{}: {} {} of its encounters, at a mean range of {}, {} before the closest approach",
-      name,
-      kind,
-      share_of(summary.declared),
-      mean_with(summary.range_m, "m"),
-      mean_with(summary.to_closest_approach_s, "s"));
+  std::string line =
+      fmt::format("{}: {} {} of its encounters", name, kind, share_of(summary.declared));
+  if (summary.range_m) line += fmt::format(", at {:.0f} m in the mean", summary.range_m->mean);
+  if (summary.to_closest_approach_s)
+    line += fmt::format(", {:.1f} s before the closest approach in the mean",
+                        summary.to_closest_approach_s->mean);
   if (summary.in_time)
-    line += fmt::format("; in time for {:g} s before {}: {} of {:.0f}",
+    line += fmt::format("; {:g} s before {}: {} of those in {} sequences",
                         assessment.manoeuvre_s.value_or(0),
                         assessment.volume,
                         share_of(*summary.in_time),
-                        summary.in_time->trials);
+                        summary.in_time->clusters);
   if (summary.impossible > 0)
     line += fmt::format("; {} clips begin too late for it", summary.impossible);
+  if (summary.no_violation > 0)
+    line += fmt::format("; {} never violate {}", summary.no_violation, assessment.volume);
   console.result(line);
 }
 

@@ -160,7 +160,9 @@ AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scor
   return flight;
 }
 
-TrackFrames track_frames_of(const TruthSequence& truth, const ScoredDetections& scored) {
+TrackFrames track_frames_of(const TruthSequence& truth,
+                            const ScoredDetections& scored,
+                            std::optional<double> score) {
   TrackFrames frames(scored.verdicts.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
     for (const TruthObject& object : truth.frames[i].objects)
@@ -168,7 +170,8 @@ TrackFrames track_frames_of(const TruthSequence& truth, const ScoredDetections& 
         frames[i].truths.push_back({object.id, object.box_px});
   for_each_detection(scored,
                      [&](std::size_t i, const Detection& detection, const Verdict& verdict) {
-                       if (detection.track && verdict.fate != Fate::kIgnored)
+                       if (detection.track && verdict.fate != Fate::kIgnored &&
+                           (!score || detection.score >= *score))
                          frames[i].answers.push_back({*detection.track, detection.box_px});
                      });
   return frames;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "detection/scoring/aot.h"
@@ -39,7 +40,9 @@ std::vector<BearingSample> bearing_samples_of(std::size_t sequence,
 // the challenge's truth. Ignored detections are left out.
 AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scored);
 
-// Aircraft that count, and detections with a track that are not ignored.
-TrackFrames track_frames_of(const TruthSequence& truth, const ScoredDetections& scored);
+// Aircraft that count, and detections with a track that are not ignored, of this score or more.
+TrackFrames track_frames_of(const TruthSequence& truth,
+                            const ScoredDetections& scored,
+                            std::optional<double> score);
 
 }  // namespace airtruth::detection

@@ -81,7 +81,7 @@ class Scoring {
     std::vector<double> weights;
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
-      const TrackFrames frames = track_frames_of(truth(scored), scored);
+      const TrackFrames frames = track_frames_of(truth(scored), scored, options_.point.score);
       hotas.push_back(hota_of(frames));
       clears.push_back(clear_mot_of(frames));
       identities.push_back(identity_of(frames));
