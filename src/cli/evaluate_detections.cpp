@@ -78,13 +78,15 @@ void print_declarations(const char* kind,
     line += fmt::format(", {:.1f} s before the closest approach in the mean",
                         summary.to_closest_approach_s->mean);
   if (summary.in_time)
-    line += fmt::format("; in time for {:g} s before {}: {} of {:.0f}",
+    line += fmt::format("; {:g} s before {}: {} of those in {} sequences",
                         assessment.manoeuvre_s.value_or(0),
                         assessment.volume,
                         share_of(*summary.in_time),
-                        summary.in_time->trials);
+                        summary.in_time->clusters);
   if (summary.impossible > 0)
     line += fmt::format("; {} clips begin too late for it", summary.impossible);
+  if (summary.no_violation > 0)
+    line += fmt::format("; {} never violate {}", summary.no_violation, assessment.volume);
   console.result(line);
 }
 

@@ -152,6 +152,8 @@ void add_encounters(const sequence::Finished& finished,
       if (object.is_aircraft()) aircraft.insert(object.id);
   const std::vector<JsonObject> records =
       record.has("encounters") ? record.objects("encounters") : std::vector<JsonObject>{};
+  truth.never_seen = std::count_if(
+      records.begin(), records.end(), [](const JsonObject& one) { return !one.has("first_seen"); });
   for (const std::int64_t id : aircraft) {
     const auto actor = static_cast<std::size_t>(id) - 1;
     const std::string& name = finished.truth.frames.front().intruders[actor].id;

@@ -147,6 +147,11 @@ void leave_out(SetTruth& set,
 }
 
 void say_what_is_missing(SetTruth& set, const std::string& volume) {
+  std::int64_t never_seen = 0;
+  for (const TruthSequence& truth : set.sequences) never_seen += truth.never_seen;
+  if (never_seen > 0)
+    set.left_out.push_back(fmt::format(
+        "{} intruders are never in view; shares of encounters leave them out", never_seen));
   leave_out(
       set,
       [](const TruthSequence& truth) {

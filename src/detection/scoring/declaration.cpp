@@ -2,6 +2,8 @@
 #include "detection/scoring/declaration.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -228,6 +230,27 @@ std::int64_t false_tracks(const SequenceDetections& detections,
   });
 }
 
+namespace {
+
+// Scores at ranks that grow by a constant factor from the first to the last: the part of the curve
+// with few false tracks has most of the points.
+std::vector<double> thresholds_of(std::vector<double> scores, std::size_t most) {
+  std::sort(scores.begin(), scores.end(), std::greater<>());
+  scores.erase(std::unique(scores.begin(), scores.end()), scores.end());
+  if (scores.size() <= most) return scores;
+  std::vector<double> thresholds;
+  const double last = static_cast<double>(scores.size() - 1);
+  for (std::size_t i = 0; i < most; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(most - 1);
+    const double score =
+        scores[static_cast<std::size_t>(std::lround(std::pow(last + 1, share)) - 1)];
+    if (thresholds.empty() || score < thresholds.back()) thresholds.push_back(score);
+  }
+  return thresholds;
+}
+
+}  // namespace
+
 std::vector<OperatingPoint> operating_curve(std::span<const TrackedSequence> sequences,
                                             std::size_t most) {
   std::vector<double> scores;
@@ -238,15 +261,8 @@ std::vector<OperatingPoint> operating_curve(std::span<const TrackedSequence> seq
       for (const Detection& detection : frame)
         if (detection.track) scores.push_back(detection.score);
   }
-  std::sort(scores.begin(), scores.end(), std::greater<>());
-  std::vector<double> thresholds;
-  const std::size_t steps = std::min(most, scores.size());
-  for (std::size_t i = 0; i < steps; ++i) {
-    const std::size_t at = steps > 1 ? i * (scores.size() - 1) / (steps - 1) : scores.size() - 1;
-    if (thresholds.empty() || scores[at] < thresholds.back()) thresholds.push_back(scores[at]);
-  }
   std::vector<OperatingPoint> curve;
-  for (const double threshold : thresholds) {
+  for (const double threshold : thresholds_of(std::move(scores), most)) {
     std::vector<EncounterScore> encounters;
     std::int64_t alarms = 0;
     Weighted all;

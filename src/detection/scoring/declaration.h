@@ -113,7 +113,7 @@ struct OperatingPoint {
   // Over all encounters of aircraft with ranges; 0 m where not declared.
   std::optional<MeanOf> range_all_m;
 };
-// By falling score, at most `most` points: quantiles of the scores of detections with a track.
+// By falling score, at most `most` points, over the scores of detections with a track.
 std::vector<OperatingPoint> operating_curve(std::span<const TrackedSequence> sequences,
                                             std::size_t most = 40);
 

@@ -163,6 +163,19 @@ TEST(Declaration, TheOperatingCurve) {
   EXPECT_NEAR(curve[2].range_all_m->mean, 2500, 1e-9);
 }
 
+TEST(Declaration, ALongOperatingCurveIsThinned) {
+  const TruthSequence truth = encounter();
+  SequenceDetections detections = nothing();
+  for (int i = 0; i < kFrames; ++i) add(detections, i, i + 1, 1, 1.0 / (i + 1));
+  const auto verdicts = verdicts_of(detections, truth, 10);
+  const std::vector<TrackedSequence> sequences = {{&truth, &detections, &verdicts}};
+  const auto curve = operating_curve(sequences, 20);
+  EXPECT_LE(curve.size(), 20u);
+  EXPECT_GE(curve.size(), 12u);
+  EXPECT_EQ(curve.front().score, 1);
+  EXPECT_EQ(curve.back().score, 1.0 / kFrames);
+}
+
 TEST(Galleries, RunsAreListedOnce) {
   const TruthSequence truth = encounter();
   SequenceDetections detections = nothing();

@@ -88,6 +88,8 @@ struct TruthSequence {
   double weight = 1;
   std::vector<TruthFrame> frames;
   std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
+  // Number of intruders that no frame shows. No measure holds them: no detector could find them.
+  std::int64_t never_seen = 0;
 
   const TruthEncounter* encounter(std::int64_t id) const {
     for (const TruthEncounter& one : encounters)

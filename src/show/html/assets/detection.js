@@ -66,8 +66,8 @@
       bounded('AP50', 'average_precision.ap_50', 3), plain('AP', 'average_precision.ap', 3),
       { name: 'PD at the point', of: (d) => at(d, 'point.detection.share'), text: (d) => shareText(at(d, 'point.detection')) },
       plain('false alarms an image', 'point.false_alarms_per_image', 4, true),
-      plain('an hour', 'point.false_alarms_per_hour', 0, true),
-      plain('a flight', 'point.false_alarms_per_flight', 2, true),
+      plain('false alarms an hour', 'point.false_alarms_per_hour', 0, true),
+      plain('a sequence', 'point.false_alarms_per_flight', 2, true),
       plain('score', 'point.score', 3),
       plain('EDR (300 m)', 'aot.edr.rate', 3), plain('AFDR', 'aot.afdr.rate', 3), plain('FPPI', 'aot.fppi', 4, true), plain('HFAR', 'aot.hfar', 1, true),
       plain('fps, median', 'frames_per_second_median', 1),
@@ -87,7 +87,7 @@
     const columns = [
       name, plain('HOTA', 'tracks.hota.hota.mean', 3), plain('MOTA', 'tracks.clear.mota', 3), plain('IDF1', 'tracks.identity.idf1', 3),
       plain('switches', 'tracks.clear.identity_switches', 0, true),
-      plain('false tracks', 'tracks.false_tracks', 0, true), plain('an hour', 'tracks.false_tracks_per_hour', 1, true),
+      plain('false tracks', 'tracks.false_tracks', 0, true), plain('false tracks an hour', 'tracks.false_tracks_per_hour', 1, true),
     ];
     for (const [word, key] of kinds) {
       const of = (part) => (d) => at(d, `tracks.${key}.${part}`);

@@ -38,6 +38,25 @@ airtruth.detectionPlayer = (data, dotOf) => {
       rectangle(context, view, object.box, isAircraft ? '#ffffff' : '#9aa7b4', 2, isAircraft ? [] : [2, 3]);
     }
   };
+  // Where a track was in the pictures before this one, as far as it was drawn in them.
+  const trailLength = 12;
+  const drawTrail = (context, view, one, track) => {
+    context.setLineDash([]);
+    context.globalAlpha = 0.7;
+    context.lineWidth = 1.2;
+    context.beginPath();
+    let isOpen = false;
+    for (let k = Math.max(0, at - trailLength); k <= at; ++k) {
+      const found = one.drawn[k].find((detection) => detection[2] === track);
+      if (!found) continue;
+      const [x, y, width, height] = found[0];
+      const [px, py] = [(x + width / 2 - view.x) * view.scale, (y + height / 2 - view.y) * view.scale];
+      if (isOpen) context.lineTo(px, py); else context.moveTo(px, py);
+      isOpen = true;
+    }
+    context.stroke();
+    context.globalAlpha = 1;
+  };
   const drawDetections = (context, view) => {
     for (const one of shown()) {
       const { colour } = detectors[one.detector].style;
@@ -47,6 +66,7 @@ airtruth.detectionPlayer = (data, dotOf) => {
         rectangle(context, view, box, colour, 1.8, strong ? [] : [5, 4]);
         if (fate === 'false alarm' && strong) cross(context, view, box);
         if (track === null) continue;
+        drawTrail(context, view, one, track);
         context.fillStyle = colour;
         context.font = 'bold 13px system-ui, sans-serif';
         context.fillText(String(track), (box[0] - view.x + box[2]) * view.scale + 3, (box[1] - view.y) * view.scale);
@@ -136,8 +156,10 @@ airtruth.detectionPlayer = (data, dotOf) => {
         }
         i = end;
       }
-      context.fillStyle = '#D55E00';
-      for (const index of one.false_alarms) context.fillRect(place(index), top + 11, Math.max(1, width / count), 4);
+      context.fillStyle = ink;
+      context.globalAlpha = 0.55;
+      for (const index of one.false_alarms) context.fillRect(place(index), top + 11.5, Math.max(1, width / count), 3);
+      context.globalAlpha = 1;
     });
     const still = sequence.stills[at];
     if (!still) return;

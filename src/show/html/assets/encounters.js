@@ -141,6 +141,7 @@ airtruth.encounters = (() => {
     return chosen('meeting', e.meeting) && chosen('climb', e.vertical_motion) && chosen('horizon', seen.horizon) &&
       (!byId('violates').value || e.violations.some((v) => v.volume === byId('violates').value)) &&
       within('closest', e.closest_approach && e.closest_approach.distance_m) &&
+      within('closest-s', e.closest_approach && e.closest_approach.time_s) &&
       within('first-m', seen.range_m) && within('first-px', seen.width_px && Math.max(seen.width_px, seen.height_px)) &&
       within('first-s', seen.to_closest_approach_s);
   };
