@@ -353,7 +353,12 @@ class Classes(program.Case):
             refused(write("bad.json", text), words=words)
         refused(results, "--volume", "f3443", words=["f3443", "f3442"])
         refused(results, "--manoeuvre-s", "20", words=["--volume"])
-        refused(results, "--score", "nan", words=["--score"])
+        for option in ("--score", "--centre-px", "--false-alarms"):
+            refused(results, option, "nan", words=[option])
+        refused(results, "--volume", "f3442", "--manoeuvre-s", "nan", words=["--manoeuvre-s"])
+        refused(path("absent"), words=["absent"])
+        os.makedirs(path("nothing"), exist_ok=True)
+        refused("nothing", words=["nothing"])
         write("mot/other.txt", "1,-1,10,10,5,5,0.5,-1,-1,-1\n")
         self.assertEqual(run("evaluate", "wrong", "mot", "-o", "no", "--no-page").returncode, 2)
         self.assertFalse(os.path.exists(path("no")))
