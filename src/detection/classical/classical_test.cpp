@@ -296,7 +296,7 @@ TEST(Classical, TakesAnyPicture) {
       for (int k = 0; k < 3; ++k) {
         const image::Picture picture = sky({}, k == 1 ? 0 : 3, random, width, height);
         const std::optional<CameraTurn> turn = k > 0 ? std::optional(CameraTurn{}) : std::nullopt;
-        EXPECT_NO_THROW(detector->detect({k, k / 30.0, &picture, turn}))
+        EXPECT_NO_THROW(detector->detect({k, k / 30.0, &picture, k == 0, turn}))
             << name << " " << width << "x" << height;
       }
     }

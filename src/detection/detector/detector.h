@@ -27,7 +27,9 @@ struct FrameInput {
   std::int64_t index = 0;  // in the sequence, from 0
   double time_s = 0;
   const image::Picture* picture = nullptr;
-  // Empty for the first frame of a shot, and where the motion is unknown.
+  // Nothing links the frame to those before it. True for the first frame of the sequence.
+  bool begins_shot = false;
+  // Empty for the first frame of a shot, and where the motion is unknown (a blank sky, blur).
   std::optional<CameraTurn> turn;
 };
 
@@ -59,6 +61,9 @@ class Detector {
   virtual std::vector<Detection> detect(const FrameInput& frame) = 0;
   // True where detect() uses FrameInput::turn; the caller measures the motion only then.
   virtual bool needs_motion() const = 0;
+  // The least score with which a detection may begin a track; empty where the detector has no
+  // opinion, and every detection may.
+  virtual std::optional<double> confident_score() const { return {}; }
   // Output of the detector's process other than its answers.
   virtual std::string log() const { return {}; }
 };

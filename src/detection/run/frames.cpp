@@ -54,6 +54,7 @@ std::optional<FrameInput> ClipFrames::next() {
   input.index = index_++;
   input.time_s = frame_->time_s;
   input.picture = &frame_->picture;
+  input.begins_shot = input.index == 0 || frame_->begins_shot;
   if (estimator_)
     input.turn = turn_of(
         estimator_->next(frame_->picture, frame_->time_s, frame_->damaged, frame_->begins_shot));
