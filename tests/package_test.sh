@@ -191,7 +191,7 @@ check_files() { # check_files PREFIX
   local file
   for file in doc/airtruth/copyright doc/airtruth/changelog.gz doc/airtruth/changelog.Debian.gz doc/airtruth/README.md \
     doc/airtruth/CITATION.cff doc/airtruth/docs/formats/scene.md airtruth/catalogues/quickstart.toml airtruth/examples/render.toml \
-    airtruth/clients/airtruth_trax.py airtruth/data/real-aircraft/README.md bash-completion/completions/airtruth; do
+    airtruth/clients/airtruth_trax.py airtruth/clients/airtruth_detector.py airtruth/data/real-aircraft/README.md bash-completion/completions/airtruth; do
     [ -s "$1/share/$file" ] || fail "share/$file is not installed"
   done
   for file in "$source"/docs/formats/*.schema.json; do

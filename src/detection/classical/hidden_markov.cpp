@@ -112,14 +112,17 @@ struct Bank {
 class HiddenMarkov : public Detector {
  public:
   void begin(const SequenceInput& sequence) override {
-    banks_.clear();
-    for (const int cell_px : kCellsPx) banks_.emplace_back(sequence.lens, cell_px);
+    lens_.emplace(sequence.lens);
     picture_ = {0, 0, double(sequence.width), double(sequence.height)};
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
     const std::vector<Level> levels = scale_space(*frame.picture);
     if (levels.empty()) return {};  // a picture smaller than the elements
+    if (frame.begins_shot || frame.index == 0) {
+      banks_.clear();
+      for (const int cell_px : kCellsPx) banks_.emplace_back(*lens_, cell_px);
+    }
     std::vector<Detection> detections;
     const Measurement fine = measurement_of(levels, banks_.front().grid.size());
     for (Bank& bank : banks_) {
@@ -208,6 +211,7 @@ class HiddenMarkov : public Detector {
     }
   }
 
+  std::optional<lens::Lens> lens_;
   std::vector<Bank> banks_;
   Box picture_;
 };

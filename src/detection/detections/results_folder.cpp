@@ -21,7 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "airtruth detections 1";
 constexpr const char* kAircraft = "aircraft";
 constexpr int kMaxSide = 65'536;
-constexpr std::int64_t kMaxFrames = 500'000;
+// 46 hours at 30 frames/s.
+constexpr std::int64_t kMaxFrames = 5'000'000;
 
 fs::path text_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".txt");

@@ -109,7 +109,7 @@ std::string fault_of(const ExternalOptions& settings) {
   try {
     const auto detector = make_external(settings);
     detector->begin(sequence());
-    for (int k = 0; k < 3; ++k) detector->detect({k, k / 30.0, &one, CameraTurn{}});
+    for (int k = 0; k < 3; ++k) detector->detect({k, k / 30.0, &one, k == 0, CameraTurn{}});
     return "";
   } catch (const DetectorFailed& error) {
     return error.what();
