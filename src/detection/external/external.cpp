@@ -27,9 +27,9 @@ Clock::time_point in(double seconds) {
 }
 
 // Rows of samples without padding: red, green and blue, or luma alone as the video has it.
-std::string samples_of(const image::Picture& picture, Samples samples) {
+std::string samples_of(const image::Picture& picture, SampleOrder samples) {
   std::string bytes;
-  if (samples == Samples::kRgb) {
+  if (samples == SampleOrder::kRgb) {
     const image::Rgb8 rgb = image::rgb8_from_picture(picture);
     const auto count =
         3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height);

@@ -21,11 +21,11 @@ using testing::HasSubstr;
 
 TEST(Protocol, HelloSaysWhatAProgramTakes) {
   const Hello plain = hello_of(R"({"hello":{"protocol":1}})");
-  EXPECT_EQ(plain.samples, Samples::kRgb);
+  EXPECT_EQ(plain.samples, SampleOrder::kRgb);
   EXPECT_EQ(plain.frames, FramesBy::kPipe);
   const Hello other =
       hello_of(R"({"hello":{"protocol":1,"samples":"gray","frames":"shared_memory","new":1}})");
-  EXPECT_EQ(other.samples, Samples::kGray);
+  EXPECT_EQ(other.samples, SampleOrder::kGray);
   EXPECT_EQ(other.frames, FramesBy::kSharedMemory);
   for (const char* bad : {"",
                           "{",

@@ -76,7 +76,7 @@ Hello hello_of(std::string_view line) {
   Hello result;
   const Json samples = hello.value("samples", Json("rgb"));
   if (samples == "gray")
-    result.samples = Samples::kGray;
+    result.samples = SampleOrder::kGray;
   else if (samples != "rgb")
     fail("asks for samples of " + shown(samples.dump()) + "; expected \"rgb\" or \"gray\"");
   const Json frames = hello.value("frames", Json("pipe"));
@@ -122,11 +122,11 @@ std::vector<Detection> detections_of(std::string_view line, std::int64_t index) 
         "answered out of order: frame {}, when asked for frame {}", shown(frame.dump()), index));
   const Json list = json.value("detections", Json());
   if (!list.is_array()) fail(fmt::format("answered no list of detections for frame {}", index));
-  if (list.size() > kMostDetections)
+  if (list.size() > kMostInAnAnswer)
     fail(fmt::format("answered {} detections for frame {}; expected at most {}",
                      list.size(),
                      index,
-                     kMostDetections));
+                     kMostInAnAnswer));
   std::vector<Detection> detections;
   for (const Json& one : list) detections.push_back(detection_of(one));
   return detections;

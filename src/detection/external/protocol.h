@@ -14,15 +14,15 @@ namespace airtruth::detection {
 
 inline constexpr int kProtocol = 1;
 // More in one frame are taken for an error of the program.
-inline constexpr std::size_t kMostDetections = 100'000;
+inline constexpr std::size_t kMostInAnAnswer = 100'000;
 
-enum class Samples { kRgb, kGray };
+enum class SampleOrder { kRgb, kGray };
 enum class FramesBy { kPipe, kSharedMemory };
 
 struct Hello {
-  Samples samples = Samples::kRgb;
+  SampleOrder samples = SampleOrder::kRgb;
   FramesBy frames = FramesBy::kPipe;
-  int bytes_per_pixel() const { return samples == Samples::kRgb ? 3 : 1; }
+  int bytes_per_pixel() const { return samples == SampleOrder::kRgb ? 3 : 1; }
 };
 // Throws DetectorFailed for what is no hello.
 Hello hello_of(std::string_view line);

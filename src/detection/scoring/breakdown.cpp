@@ -10,7 +10,7 @@ namespace {
 class Trials {
  public:
   explicit Trials(std::size_t sequences) : clusters_(sequences, Cluster{0, 0, 1}) {}
-  void add(const Sighting& sighting) {
+  void add(const AircraftInFrame& sighting) {
     clusters_[sighting.sequence].trials += 1;
     clusters_[sighting.sequence].successes += sighting.is_found ? 1 : 0;
   }
@@ -22,7 +22,7 @@ class Trials {
 
 }  // namespace
 
-std::vector<DetectionBin> detection_by(std::span<const Sighting> sightings,
+std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
                                        std::span<const std::optional<double>> values,
                                        std::span<const double> edges,
                                        std::size_t sequences) {
@@ -44,7 +44,7 @@ std::vector<DetectionBin> detection_by(std::span<const Sighting> sightings,
   return result;
 }
 
-std::vector<DetectionBin> detection_by_name(std::span<const Sighting> sightings,
+std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
                                             std::span<const std::optional<std::string>> names,
                                             std::size_t sequences) {
   std::map<std::string, Trials> bins;

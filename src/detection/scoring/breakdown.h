@@ -15,7 +15,7 @@
 namespace airtruth::detection {
 
 // One aircraft in one frame.
-struct Sighting {
+struct AircraftInFrame {
   // Index in DetectorScore::sequences.
   std::size_t sequence = 0;
   std::size_t frame = 0;   // index in TruthSequence::frames
@@ -36,11 +36,11 @@ struct DetectionBin {
 
 // values[i] belongs to sightings[i]; one without a value, or below the first edge, is in no bin.
 // Bins without a sighting are left out. `sequences`: their number.
-std::vector<DetectionBin> detection_by(std::span<const Sighting> sightings,
+std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
                                        std::span<const std::optional<double>> values,
                                        std::span<const double> edges,
                                        std::size_t sequences);
-std::vector<DetectionBin> detection_by_name(std::span<const Sighting> sightings,
+std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
                                             std::span<const std::optional<std::string>> names,
                                             std::size_t sequences);
 

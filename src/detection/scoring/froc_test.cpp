@@ -66,7 +66,7 @@ TEST(Froc, LongCurvesAreThinnedAndKeepTheirEnds) {
 }
 
 TEST(Breakdown, BinsHoldTheirLowerEdge) {
-  const std::vector<Sighting> sightings = {
+  const std::vector<AircraftInFrame> sightings = {
       {0, 0, 0, true}, {0, 1, 0, false}, {1, 0, 0, true}, {1, 1, 0, true}, {1, 2, 0, false}};
   const std::vector<std::optional<double>> values = {100, 199.9, 200, 5000, std::nullopt};
   const std::vector<double> edges = {100, 200, 300};

@@ -101,11 +101,11 @@ FrocSequence froc_sequence_of(const TruthSequence& truth, const ScoredDetections
   return sequence;
 }
 
-std::vector<Sighting> sightings_of(std::size_t sequence,
-                                   const TruthSequence& truth,
-                                   const ScoredDetections& scored,
-                                   double score) {
-  std::vector<Sighting> sightings;
+std::vector<AircraftInFrame> sightings_of(std::size_t sequence,
+                                          const TruthSequence& truth,
+                                          const ScoredDetections& scored,
+                                          double score) {
+  std::vector<AircraftInFrame> sightings;
   for (std::size_t i = 0; i < scored.verdicts.size(); ++i) {
     const auto best = best_of(scored, i);
     for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {

@@ -24,10 +24,10 @@ std::vector<ScoredImage> images_of(const TruthSequence& truth, const ScoredDetec
 FrocSequence froc_sequence_of(const TruthSequence& truth, const ScoredDetections& scored);
 
 // `sequence` is the number that the sightings and samples get.
-std::vector<Sighting> sightings_of(std::size_t sequence,
-                                   const TruthSequence& truth,
-                                   const ScoredDetections& scored,
-                                   double score);
+std::vector<AircraftInFrame> sightings_of(std::size_t sequence,
+                                          const TruthSequence& truth,
+                                          const ScoredDetections& scored,
+                                          double score);
 
 // Of the detection of the highest score that finds the aircraft, in each frame. Empty without a
 // lens.

@@ -107,7 +107,7 @@ class Scoring {
   }
 
   void score_at_point(double score) {
-    std::vector<Sighting> sightings;
+    std::vector<AircraftInFrame> sightings;
     std::vector<BearingSample> samples;
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
@@ -137,11 +137,11 @@ class Scoring {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   }
 
-  void break_down(const std::vector<Sighting>& sightings) {
+  void break_down(const std::vector<AircraftInFrame>& sightings) {
     for (const Quantity& quantity : quantities()) {
       std::vector<std::optional<double>> values;
       std::vector<std::optional<std::string>> names;
-      for (const Sighting& sighting : sightings) {
+      for (const AircraftInFrame& sighting : sightings) {
         const TruthSequence& of = truth(result_.sequences[sighting.sequence]);
         const TruthObject& object = of.frames[sighting.frame].objects[sighting.object];
         if (quantity.edges.empty())
