@@ -139,6 +139,8 @@ class Refusals(Case):
         self.assert_refused(run("detect", "set", "-d", "cmo", "-d", "cmo=cmo-hmm", "-o", "x"), "two detectors are named 'cmo'")
         self.assert_refused(run("detect", "set", "-d", "../a=cmo", "-o", "x"), "no name")
         self.assert_refused(run("detect", "set", "-d", "exec: ", "-o", "x"), "names no command")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--min-score", "nan"), "--min-score is nan")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--lens", "no.yml"), "no.yml")
         self.assert_refused(run("detect", "nowhere", "-d", "cmo", "-o", "x"), "does not exist")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--only", "q*"), "no sequence fits")
         self.assert_refused(run("detect", write("no.mp4", "none"), "-d", "cmo", "-o", "x"), "no.mp4")

@@ -55,8 +55,8 @@ Results::Results(const DetectorName& detector, const fs::path& out, const RunOpt
 
 bool Results::is_open() const {
   const fs::path file = summary_.folder / kRecord;
+  const Json mine = settings_of(detector_, options_);  // an Error for a lens that is not there
   if (!fs::exists(file)) return false;
-  const Json mine = settings_of(detector_, options_);
   try {
     const Json there = Json::parse(read_file(file));
     for (const auto& [key, value] : mine.items())

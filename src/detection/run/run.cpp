@@ -2,6 +2,7 @@
 #include "detection/run/run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <thread>
@@ -106,6 +107,8 @@ class Running {
       : options_(options),
         detector_options_{options.start_s, options.answer_s, threads_of(options), options.stop} {
     if (options.association) validate(*options.association);
+    if (options.min_score && !std::isfinite(*options.min_score))
+      throw Error(fmt::format("--min-score is {}; expected a finite number", *options.min_score));
     std::set<std::string> names;
     for (const std::string& text : options.detectors) {
       require_utf8(text);
