@@ -50,8 +50,6 @@ struct AssociationOptions {
   // small aircraft rolls and yaws by some ten to twenty degrees in a second.
   double unknown_turn_rps = 0.3;
   MotionModel motion;
-
-  bool operator==(const AssociationOptions&) const;
 };
 
 // Throws Error where a value is out of its range.

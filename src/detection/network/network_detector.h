@@ -12,7 +12,7 @@
 namespace airtruth::detection {
 
 struct NetworkOptions {
-  int threads = 1;  // of the network, 1 to 256
+  int threads = 1;  // of the network; no more than there are processors are started
   std::stop_token stop;
 };
 

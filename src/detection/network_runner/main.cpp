@@ -27,11 +27,13 @@ using namespace airtruth;  // the program's own top level
 using namespace airtruth::detection;
 
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
-constexpr int kMostThreads = 256;
+// OpenCV starts no more threads than there are processors.
+const int kMostThreads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 constexpr unsigned long kMemoryBytes = 4ul << 30;
 // A thread reserves addresses for its stack (8 MiB) and its heap (128 MiB).
 constexpr unsigned long kThreadBytes = 160ul << 20;
-constexpr auto kThreadsAreThere = std::chrono::seconds(1);
+// On a machine that is busy with other work threads begin late.
+constexpr auto kThreadsAreThere = std::chrono::seconds(10);
 
 // Has OpenCV start its threads: a confined process can start none. Each waits until all are there.
 void start_threads(int count) {
