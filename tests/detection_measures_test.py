@@ -353,10 +353,37 @@ class Classes(program.Case):
             refused(write("bad.json", text), words=words)
         refused(results, "--volume", "f3443", words=["f3443", "f3442"])
         refused(results, "--manoeuvre-s", "20", words=["--volume"])
-        refused(results, "--score", "nan", words=["--score"])
+        for option in ("--score", "--centre-px", "--false-alarms"):
+            refused(results, option, "nan", words=[option])
+        refused(results, "--volume", "f3442", "--manoeuvre-s", "nan", words=["--manoeuvre-s"])
+        refused(path("absent"), words=["absent"])
+        os.makedirs(path("nothing"), exist_ok=True)
+        refused("nothing", words=["nothing"])
         write("mot/other.txt", "1,-1,10,10,5,5,0.5,-1,-1,-1\n")
         self.assertEqual(run("evaluate", "wrong", "mot", "-o", "no", "--no-page").returncode, 2)
         self.assertFalse(os.path.exists(path("no")))
+
+    def test_what_is_a_detectors(self):
+        """Every form of a detector's results is read as the same; a tracker's beside them stays one."""
+        results = self.set_up("forms", None)
+        lines = "".join(f"{i + 1},-1,{b[0] + 1},{b[1] + 1},{b[2]},{b[3]},{s},-1,-1,-1\n" for i in range(20) for b, s in ((HERE, 0.9), (AWAY, 0.7)))
+        write("mot/pass.txt", lines)
+        write("data/data/pass.txt", lines)
+        write("det/pass/det/det.txt", lines)
+        write("tracked/pass.txt", lines.replace(",-1,", ",4,", 1).replace("\n1,-1,", "\n1,5,"))
+        write("alone/some.json", program.read("forms.json"))
+        write("tracker/pass.txt", "100,100,12,6\n" * 20)
+        done = made("evaluate", "forms", "mot", "data", "det", "alone", results, "tracker", "-o", "forms-out", "--no-page", "--score", "0")
+        with open(path("forms-out", "detection.json"), encoding="utf-8") as file:
+            got = {one["name"]: one for one in json.load(file)["detectors"]}
+        self.assertEqual(sorted(got), ["alone", "data", "det", "forms", "mot"])
+        for one in got.values():
+            self.assertAlmostEqual(one["average_precision"]["ap_50"], got["mot"]["average_precision"]["ap_50"], places=9)
+            self.assertEqual(one["false_alarms_by"]["background"], 40 if one["tracks"] else 20)
+        with open(path("forms-out", "evaluation.json"), encoding="utf-8") as file:
+            self.assertEqual([one["name"] for one in json.load(file)["trackers"]], ["tracker"])
+        self.assertIn("tracker", done.stdout)
+        self.assertEqual(evaluated("forms", ["tracked"], "--detections", out="tracked-out")["detectors"][0]["name"], "tracked")
 
     def test_intervals_are_those_of_sequences(self):
         """Two sequences, one found whole and one not at all: by hand."""

@@ -68,11 +68,19 @@ void add_films(std::vector<TruthSequence>& truths, const AssessOptions& options)
       options.stop);
 }
 
+// Comparisons with a limit let NaN pass.
+void expect_number(const char* option, const std::optional<double>& value) {
+  if (value && !std::isfinite(*value))
+    throw Error(std::string(option) + " is not a number; expected a finite one");
+}
+
 void check_options(const AssessOptions& options) {
+  expect_number("--centre-px", options.centre_px);
+  expect_number("--score", options.point.score);
+  expect_number("--false-alarms", options.point.false_alarms_per_image);
+  expect_number("--manoeuvre-s", options.manoeuvre_s);
   if (options.manoeuvre_s && options.volume.empty())
     throw Error("--manoeuvre-s needs --volume: the volume that the manoeuvre is to avoid");
-  if (options.point.score && !std::isfinite(*options.point.score))
-    throw Error("--score is not a number; expected a finite one");
 }
 
 void say_who_has_no_tracks(Assessment& assessment) {

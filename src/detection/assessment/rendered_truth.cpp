@@ -193,6 +193,7 @@ RenderedTruth rendered_truth(const fs::path& folder,
   truth.height = finished.truth.lens.height;
   truth.lens = annotation::lens_of(finished.truth.lens);
   if (const auto weight = record.maybe_number("weight")) {
+    if (*weight < 0) record.fail("weight", "a number from 0 on");
     rendered.has_weight = true;
     truth.weight = *weight;
   }

@@ -36,14 +36,17 @@ bool holds_detections(const fs::path& results, bool is_mot_of_detector) {
   if (!fs::is_directory(results, failed) || fs::exists(results / "tracker.json")) return false;
   if (fs::exists(results / "detector.json")) return true;
   std::size_t json = 0;
-  std::vector<fs::path> texts;
   bool has_det = false;
-  for (const fs::directory_entry& entry : fs::directory_iterator(results, failed)) {
-    json += has_ending(entry.path(), ".json") ? 1 : 0;
-    if (has_ending(entry.path(), ".txt")) texts.push_back(entry.path());
-    has_det = has_det || fs::exists(entry.path() / "det" / "det.txt", failed);
-  }
-  if (has_det || (json == 1 && texts.empty())) return true;
+  bool has_folder = false;
+  std::vector<fs::path> texts;
+  for (const fs::path& folder : {results, results / "data"})
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+      json += has_ending(entry.path(), ".json") ? 1 : 0;
+      if (has_ending(entry.path(), ".txt")) texts.push_back(entry.path());
+      has_det = has_det || fs::exists(entry.path() / "det" / "det.txt", failed);
+      has_folder = has_folder || entry.is_directory(failed);
+    }
+  if (has_det || (json == 1 && texts.empty() && !has_folder)) return true;
   std::sort(texts.begin(), texts.end());
   return std::any_of(texts.begin(), texts.end(), [&](const fs::path& file) {
     return !file.stem().string().ends_with("_time") && is_mot(file, is_mot_of_detector);
