@@ -59,7 +59,10 @@ void add_convert(CLI::App& group, Context& context) {
   auto arguments = std::make_shared<Convert>();
   auto* command = group.add_subcommand(
       "convert", "Write encounters in another format, which the extension of the file names");
-  command->add_option("IN", arguments->in, "Encounters: .csv (airtruth, MIT-LL's track), .daa, .txt or .dat")->required();
+  command
+      ->add_option(
+          "IN", arguments->in, "Encounters: .csv (airtruth, MIT-LL's track), .daa, .txt or .dat")
+      ->required();
   command
       ->add_option("OUT",
                    arguments->out,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of an evaluation of detectors in a real browser: python3 detection_page_test.py AIRTRUTH
+"""The page of an evaluation of detectors in a real browser: python3 detectors_page_test.py AIRTRUTH
 
 A clip whose frames carry their numbers as pixels, and two detectors' results that are written here, so that what the page
 must show is known: one finds the target from frame 10 on, with a track, and raises a false alarm in three frames; the other,
@@ -104,7 +104,7 @@ def main():
     airtruth = os.path.abspath(sys.argv[1])
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if not browser:
-        print("detection_page_test: skipped: no chromium")
+        print("detectors_page_test: skipped: no chromium")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="airtruth_detection_") as root:
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=root)
@@ -166,7 +166,7 @@ def main():
         if missing:
             faults.append(f"figures missing: {missing}")
         if faults:
-            sys.exit("detection_page_test:\n  " + "\n  ".join(faults))
+            sys.exit("detectors_page_test:\n  " + "\n  ".join(faults))
         print("two detectors looked at wide and narrow: drawn, played, galleries, no complaint")
 
 
