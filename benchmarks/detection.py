@@ -134,7 +134,7 @@ def made_set(arguments, clips):
                        "light = { sun_azimuth_deg = 150, sun_elevation_deg = 45 }\n"
                        'realism = { auto = true, fallback = true, profile = "ground-zoom" }\n')
         file.write(f'\n[[random]]\nname = "made-{{index}}"\ncount = {MADE}\nframe_count = {MADE_FRAMES}\n'
-                   'aircraft = ["737/*", "738/*", "A320/*", "A319/*", "744/*", "b1900d/*", "Citation-Bravo/*", "c172/*"]\n'
+                   'aircraft = ["733/*", "738/*", "757/*", "A319/*", "A320/*", "A332/*", "CR7/*", "b1900d/*", "Citation-Bravo/*", "c172/*"]\n'
                    "size_px = [5, 60]\nazimuth_deg = [-4, 4]\nelevation_deg = [-3, 4]\nnegatives = 0.1\n")
     run([arguments.program, "--quiet", "dataset", "build", catalogue, "--out", out])
     ignored = [(os.path.basename(clips.video(clip)), *row) for clip in clips.birds for row in boxes_in(clips.loose(clip), 1)]
