@@ -10,9 +10,9 @@
 namespace airtruth::composite {
 namespace {
 
-// Samples along each side of a pixel. The fade over w pixels bends by 6 / w^2 at most, and the mean of
-// n x n samples is off by that over 24 n^2: by 0.004 at most where w is 4 or more. A sharp rim, which
-// nothing on a lens has, is right within 1/8.
+// Samples along each side of a pixel. The fade over w pixels bends by 6 / w^2 at most, and the mean
+// of n x n samples is off by that over 24 n^2: by 0.004 at most where w is 4 or more. A sharp rim,
+// which nothing on a lens has, is right within 1/8.
 int samples_a_side(const image::Spot& spot) {
   const double fade_px = spot.softness * spot.radius_px;
   return fade_px >= 16 ? 1 : fade_px >= 4 ? 2 : 4;

@@ -232,8 +232,8 @@ void Model::Impl::find_sphere() {
   for (const aircraft::Part& part : mesh.parts) {
     const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
     if (!part.hinges.empty())
-      radius_m = std::max(radius_m,
-                          (hub - centre_in_body).norm() + double(aircraft::reach_m(mesh, part)));
+      radius_m =
+          std::max(radius_m, (hub - centre_in_body).norm() + double(aircraft::reach_m(mesh, part)));
     for (const aircraft::Triangle& triangle : part.triangles) {
       for (std::uint32_t v : triangle.vertex) {
         const Eigen::Vector3d p = mesh.positions[v].cast<double>();

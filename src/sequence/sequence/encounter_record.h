@@ -48,7 +48,8 @@ struct EncounterRecord {
   std::vector<NamedInterval> violations;
 };
 
-// Of the aircraft alone; a distractor has no encounter. `first_seen`: by actor. `last_s`: the time of the last frame.
+// Of the aircraft alone; a distractor has no encounter. `first_seen`: by actor. `last_s`: the time
+// of the last frame.
 std::vector<EncounterRecord> encounter_records(
     const World& world, const std::vector<std::optional<FirstSeen>>& first_seen, double last_s);
 
