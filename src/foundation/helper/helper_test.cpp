@@ -55,23 +55,26 @@ TEST(Confine, LeavesNothingButMemory) {
             64);
 }
 
+// A sanitizer begins and ends threads by calls that confinement refuses. So the thread is at work
+// before it, and ends the process.
 TEST(Confine, HoldsForAThreadThatIsThereAlready) {
   EXPECT_EQ(code_of_child([] {
               std::mutex mutex;
               std::condition_variable changed;
+              bool begun = false;
               bool confined = false;
-              // It ends the process, as the end of a thread takes more of a sanitizer than
-              // confinement allows.
               std::thread worker([&] {
                 std::unique_lock lock(mutex);
+                begun = true;
+                changed.notify_one();
                 changed.wait(lock, [&] { return confined; });
                 ::_exit(what_is_possible());
               });
+              std::unique_lock lock(mutex);
+              changed.wait(lock, [&] { return begun; });
               confine({});
-              {
-                const std::lock_guard lock(mutex);
-                confined = true;
-              }
+              confined = true;
+              lock.unlock();
               changed.notify_one();
               worker.join();
               return -1;
