@@ -18,6 +18,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 # The clips are split once, by name. Whoever works on detectors looks at the others; these are measured once, at the end.
@@ -137,7 +138,12 @@ def made_set(arguments, clips):
                    'aircraft = ["733/*", "738/*", "757/*", "A319/*", "A320/*", "A332/*", "CR7/*", "b1900d/*", "Citation-Bravo/*", "c172/*"]\n'
                    "size_px = [5, 60]\nazimuth_deg = [-4, 4]\nelevation_deg = [-3, 4]\nnegatives = 0.1\n")
     run([arguments.program, "--quiet", "dataset", "build", catalogue, "--out", out])
-    ignored = [(os.path.basename(clips.video(clip)), *row) for clip in clips.birds for row in boxes_in(clips.loose(clip), 1)]
+    used = set()
+    for record in glob.glob(os.path.join(out, "sequences", "*", "sequence.json")):
+        with open(record) as text:
+            used.add(os.path.basename(tomllib.loads(json.load(text)["scene_toml"])["background"]["video"]))
+    ignored = [(os.path.basename(clips.video(clip)), *row) for clip in clips.birds if os.path.basename(clips.video(clip)) in used
+               for row in boxes_in(clips.loose(clip), 1)]
     write_ignored(os.path.join(out, "ignore.csv"), ignored)
     return out
 
