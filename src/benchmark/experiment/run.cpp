@@ -17,6 +17,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
+#include "foundation/json/settings_record.h"
 #include "truth/evaluation/metrics.h"
 #include "truth/exchange/exchange.h"
 
@@ -66,25 +67,7 @@ class Running {
 
   // Results of one folder are of one tracker and one seed: Error where it holds others. Is the
   // folder there?
-  bool check_folder() const {
-    const fs::path file = summary_.folder / "tracker.json";
-    if (!fs::exists(file)) return false;
-    const Json mine = own_record();
-    try {
-      const Json there = Json::parse(read_file(file));
-      for (const auto& [key, value] : mine.items())
-        if (there.at(key) != value)
-          throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out "
-                                  "or remove the folder",
-                                  key,
-                                  there.at(key).dump(),
-                                  value.dump()),
-                      {summary_.folder.string()});
-    } catch (const Json::exception&) {
-      throw Error("is not a record that airtruth wrote", {file.string()});
-    }
-    return true;
-  }
+  bool check_folder() const { return is_record_of(summary_.folder / "tracker.json", own_record()); }
 
   RunSummary over(const dataset::LabelledSet& set) {
     std::vector<std::string> names;

@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/settings_record.h"
 
 namespace airtruth::detection {
 namespace {
@@ -54,23 +55,8 @@ Results::Results(const DetectorName& detector, const fs::path& out, const RunOpt
 }
 
 bool Results::is_open() const {
-  const fs::path file = summary_.folder / kRecord;
-  const Json mine = settings_of(detector_, options_);  // an Error for a lens that is not there
-  if (!fs::exists(file)) return false;
-  try {
-    const Json there = Json::parse(read_file(file));
-    for (const auto& [key, value] : mine.items())
-      if (there.at(key) != value)
-        throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out or "
-                                "remove the folder",
-                                key,
-                                there.at(key).dump(),
-                                value.dump()),
-                    {summary_.folder.string()});
-  } catch (const Json::exception&) {
-    throw Error("is not a record that airtruth wrote", {file.string()});
-  }
-  return true;
+  // settings_of() throws Error for a lens that is not there, also before there is a folder.
+  return is_record_of(summary_.folder / kRecord, settings_of(detector_, options_));
 }
 
 void Results::open() const {

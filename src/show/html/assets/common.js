@@ -79,11 +79,53 @@ const airtruth = (() => {
     });
   };
 
+  // The mark of a style, as the plots draw it.
+  const dotOf = ({ colour, dash }) => {
+    const dot = element('span', '', 'dot');
+    dot.style.background = dash.length
+      ? `repeating-linear-gradient(90deg, ${colour} 0 ${dash[0] / 2}px, transparent 0 ${dash[0] / 2 + 2}px)`
+      : colour;
+    return dot;
+  };
+
+  // A table that a click on a heading sorts. A column has a name, what rows are sorted by (`of`), and `up` where it begins ascending;
+  // fill(cell, row, column, k) writes a cell of column k.
+  const sortable = (table, rows, columns, firstSort, fill) => {
+    let by = firstSort;
+    let up = false;
+    const draw = () => {
+      table.replaceChildren();
+      const head = table.createTHead().insertRow();
+      columns.forEach((column, k) => {
+        const cell = element('th');
+        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
+        button.type = 'button';
+        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
+        cell.append(button);
+        head.append(cell);
+      });
+      const key = columns[by].of;
+      const sorted = [...rows].sort((a, b) => {
+        const [x, y] = [key(a), key(b)];
+        if (x === null || y === null) return (x === null) - (y === null);
+        return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1);
+      });
+      const body = table.createTBody();
+      for (const row of sorted) {
+        const line = body.insertRow();
+        columns.forEach((column, k) => fill(line.insertCell(), row, column, k));
+      }
+    };
+    draw();
+  };
+
   return {
     byId: (id) => document.getElementById(id),
     ink,
+    dotOf,
     drawPlot,
     element,
+    sortable,
     least: (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null),
     most: (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null),
     counted: (count, one, more = `${one}s`) => `${count.toLocaleString('en')} ${count === 1 ? one : more}`,

@@ -2,16 +2,10 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, drawPlot, element, number } = airtruth;
+  const { byId, counted, drawPlot, element, number, sortable } = airtruth;
   const { detectors } = data;
 
-  const dotOf = ({ style }) => {
-    const dot = element('span', '', 'dot');
-    dot.style.background = style.dash.length
-      ? `repeating-linear-gradient(90deg, ${style.colour} 0 ${style.dash[0] / 2}px, transparent 0 ${style.dash[0] / 2 + 2}px)`
-      : style.colour;
-    return dot;
-  };
+  const dotOf = ({ style }) => airtruth.dotOf(style);
 
   // Of a path of keys; null where a step is missing.
   const at = (object, path) => path.split('.').reduce((value, key) => (value === null || value === undefined ? null : value[key] ?? null), object);
@@ -20,38 +14,10 @@
   const shareText = (share) => (share ? withBounds(share.share, share.interval_95, 3) : '–');
   const meanText = (mean, digits) => (mean ? withBounds(mean.mean, mean.interval_95, digits) : '–');
 
-  // Columns: heading, text of a detector, and what it is sorted by.
-  const sortable = (table, rows, columns, firstSort) => {
-    let by = firstSort;
-    let up = false;
-    const draw = () => {
-      table.replaceChildren();
-      const head = table.createTHead().insertRow();
-      columns.forEach((column, k) => {
-        const cell = element('th');
-        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
-        button.type = 'button';
-        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
-        cell.append(button);
-        head.append(cell);
-      });
-      const key = columns[by].of;
-      const sorted = [...rows].sort((a, b) => {
-        const [x, y] = [key(a), key(b)];
-        if (x === null || y === null) return (x === null) - (y === null);
-        return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1);
-      });
-      const body = table.createTBody();
-      for (const row of sorted) {
-        const line = body.insertRow();
-        columns.forEach((column, k) => {
-          const cell = line.insertCell();
-          if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
-          else cell.textContent = column.text ? column.text(row) : number(column.of(row), column.digits);
-        });
-      }
-    };
-    draw();
+  // A cell of a table whose first column names a detector.
+  const fill = (cell, row, column, k) => {
+    if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
+    else cell.textContent = column.text ? column.text(row) : number(column.of(row), column.digits);
   };
   const name = { name: 'detector', of: (d) => d.name, up: true };
   const plain = (title, path, digits, up) => ({ name: title, of: (d) => at(d, path), digits, up });
@@ -72,7 +38,7 @@
       plain('EDR (300 m)', 'aot.edr.rate', 3), plain('AFDR', 'aot.afdr.rate', 3), plain('FPPI', 'aot.fppi', 4, true), plain('HFAR', 'aot.hfar', 1, true),
       plain('fps, median', 'frames_per_second_median', 1),
     ];
-    sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2);
+    sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2, fill);
     byId('how').textContent = 'Brackets: 95 % intervals over sequences. PD: share of aircraft in frames that are found; the operating point is ' +
       'the stated score, or the least with the false alarms asked for. EDR, AFDR, FPPI, HFAR: of Amazon\'s Airborne Object Tracking challenge. Click a heading to sort.';
     for (const sentence of data.left_out) byId('left-out').append(element('li', sentence));
@@ -97,7 +63,7 @@
         { name: `${word}before closest approach, s`, of: of('to_closest_approach_s.mean'), text: (d) => meanText(of('to_closest_approach_s')(d), 1) },
         { name: `${word}in time`, of: of('in_time.share'), text: (d) => shareText(of('in_time')(d)) });
     }
-    sortable(byId('tracks'), with_tracks, columns.filter((c, k) => k === 0 || with_tracks.some((d) => c.of(d) !== null)), 1);
+    sortable(byId('tracks'), with_tracks, columns.filter((c, k) => k === 0 || with_tracks.some((d) => c.of(d) !== null)), 1, fill);
     byId('tracks-how').textContent = 'Declared: from a frame on in which a track is on the aircraft and is kept.' +
       (data.manoeuvre_s === null ? '' : ` In time: ${number(data.manoeuvre_s, 1)} s before ${data.volume} is violated.`);
   };
@@ -112,7 +78,7 @@
       ['azimuth', 'azimuth_mrad', 'mrad', model.sc228_bearing_deviation_mrad], ['elevation', 'elevation_mrad', 'mrad', model.sc228_bearing_deviation_mrad],
       ['azimuth rate', 'azimuth_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps], ['elevation rate', 'elevation_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps]])
       columns.push(plain(`${title}, ${unit} (model ${limit})`, `bearing.${key}.deviation`, 2, true), plain('mean', `bearing.${key}.mean`, 2));
-    sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1);
+    sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1, fill);
   };
 
   // The plots are described by the program (detection/detection_page/detection_plots.h). They have no legends: the

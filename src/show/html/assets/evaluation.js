@@ -2,18 +2,11 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, drawPlot, element, ink, most, number, line, axis, legend } = airtruth;
+  const { byId, counted, dotOf, drawPlot, element, ink, most, number, sortable, line, axis, legend } = airtruth;
   const trackers = data.trackers;
   for (const tracker of trackers) Object.assign(tracker, { colour: tracker.style.colour, dash: tracker.style.dash });
   const scored = trackers.filter((tracker) => tracker.overall);
 
-  const dotOf = (tracker) => {
-    const dot = element('span', '', 'dot');
-    dot.style.background = tracker.dash.length
-      ? `repeating-linear-gradient(90deg, ${tracker.colour} 0 ${tracker.dash[0] / 2}px, transparent 0 ${tracker.dash[0] / 2 + 2}px)`
-      : tracker.colour;
-    return dot;
-  };
   const dotted = (tracker) => {
     const cell = element('td');
     cell.append(dotOf(tracker), document.createTextNode(tracker.name));
@@ -36,39 +29,11 @@
     return bar;
   };
 
-  // Columns: heading, value of a tracker, digits.
-  const sortable = (table, rows, columns, firstSort) => {
-    let by = firstSort;
-    let up = false;
-    const draw = () => {
-      table.replaceChildren();
-      const head = table.createTHead().insertRow();
-      columns.forEach((column, k) => {
-        const cell = element('th');
-        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
-        button.type = 'button';
-        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
-        cell.append(button);
-        head.append(cell);
-      });
-      const key = columns[by].of;
-      const sorted = [...rows].sort((a, b) => {
-        const [x, y] = [key(a), key(b)];
-        if (x === null || y === null) return (x === null) - (y === null);
-        return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1);
-      });
-      const body = table.createTBody();
-      for (const row of sorted) {
-        const line = body.insertRow();
-        columns.forEach((column, k) => {
-          if (k === 0) { line.append(dotted(row)); return; }
-          const cell = line.insertCell();
-          if (column.draw) column.draw(cell, row);
-          else cell.textContent = number(column.of(row), column.digits);
-        });
-      }
-    };
-    draw();
+  // A cell of a table whose first column names a tracker.
+  const fill = (cell, row, column, k) => {
+    if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
+    else if (column.draw) column.draw(cell, row);
+    else cell.textContent = number(column.of(row), column.digits);
   };
 
   const bracket = (name, digits) => (cell, row) => {
@@ -96,7 +61,7 @@
       plain('sequences_lost', 'lost', 0, true),
       plain('frames_per_second_median', 'fps, median', 1),
       plain('frames_per_second', 'fps, mean', 1),
-    ], 2);
+    ], 2, fill);
     const vot = trackers.filter((t) => t.restart || t.multistart);
     if (!vot.length) return;
     byId('vot-place').hidden = false;
@@ -110,7 +75,7 @@
       { name: 'multi-start: accuracy', of: of('multistart', 'accuracy'), digits: 3 },
       { name: 'robustness', of: of('multistart', 'robustness'), digits: 3 },
       { name: `EAO [${data.eao_range}]`, of: of('multistart', 'eao'), digits: 3 },
-    ], vot.some((t) => t.restart) ? 4 : 7);
+    ], vot.some((t) => t.restart) ? 4 : 7, fill);
   };
 
   const none = { display: false };
