@@ -11,6 +11,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "benchmark/trax/process_end.h"
 #include "benchmark/trax/region.h"
 #include "benchmark/trax/session.h"
 #include "foundation/base/error.h"
@@ -314,14 +315,7 @@ TEST(Session, LeavesNoProcessBehind) {
   std::ifstream(file) >> grandchild;
   std::filesystem::remove(file);
   ASSERT_GT(grandchild, 0);
-  bool is_gone = false;
-  for (int i = 0; i < 6000 && !is_gone; ++i) {  // the limit of a minute only stops a hang
-    std::string state;
-    std::ifstream stat("/proc/" + std::to_string(grandchild) + "/stat");
-    is_gone = !std::getline(stat, state) || state.find(") Z ") != std::string::npos;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_TRUE(is_gone);
+  EXPECT_TRUE(ends(grandchild));
 }
 
 TEST(Session, EndsAWaitWhenStopped) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include <airtruth/metrics.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -207,13 +208,6 @@ image::Picture shape(const Box& box, bool is_ellipse, int level) {
   return picture;
 }
 
-double overlap(const Box& a, const Box& b) {
-  const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
-  const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  if (w <= 0 || h <= 0) return 0;
-  return w * h / (a.area() + b.area() - w * h);
-}
-
 TEST(CloseMinusOpen, BoundsObjectsOfAllSizes) {
   const auto detector = make_classical("cmo");
   for (const int level : {90, 210})
@@ -224,7 +218,7 @@ TEST(CloseMinusOpen, BoundsObjectsOfAllSizes) {
         detector->begin(sequence_of(640, 480));
         const auto found = detector->detect({0, 0, &picture, {}});
         ASSERT_EQ(found.size(), 1U) << size << " / " << aspect << " of " << level;
-        EXPECT_GT(overlap(found[0].box_px, box), size < 10 ? 0.3 : 0.5)
+        EXPECT_GT(evaluation::overlap(found[0].box_px, box), size < 10 ? 0.3 : 0.5)
             << size << " / " << aspect << ": " << found[0].box_px.x << "," << found[0].box_px.y
             << " " << found[0].box_px.width << "x" << found[0].box_px.height;
       }
