@@ -21,6 +21,10 @@ target_compile_options(airtruth_options INTERFACE -fvisibility=hidden -fvisibili
 if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
 endif()
+if(AIRTRUTH_UNITY)
+  # What these find between two sources that are compiled as one is no fault. The file-by-file builds keep both.
+  target_compile_options(airtruth_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+endif()
 if(AIRTRUTH_WERROR)
   target_compile_options(airtruth_options INTERFACE -Werror)
 endif()

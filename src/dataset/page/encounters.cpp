@@ -13,8 +13,6 @@ namespace {
 using sequence::EncounterRecord;
 using Records = std::vector<EncounterRecord>;
 
-std::array<double, 3> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
 const annotation::Intruder* intruder_of(const annotation::Frame& frame, const std::string& id) {
   for (const annotation::Intruder& intruder : frame.intruders)
     if (intruder.id == id && intruder.position_ned_m) return &intruder;
@@ -105,6 +103,8 @@ std::string violations_text(const Records& records, const std::vector<std::strin
 }
 
 }  // namespace
+
+std::array<double, 3> numbers(const Vector3& ned_m) { return {ned_m.x(), ned_m.y(), ned_m.z()}; }
 
 std::vector<Encountered> encounters_of(const sequence::Finished& finished) {
   std::vector<Encountered> encounters;

@@ -24,6 +24,9 @@ struct Encountered {
   std::optional<Closest> closest;
 };
 
+// North, east and down as the page's JSON holds them.
+std::array<double, 3> numbers(const Vector3& ned_m);
+
 std::vector<Encountered> encounters_of(const sequence::Finished& finished);
 
 // One sentence for each kind of fact: how many encounters of each class, how close they come, when

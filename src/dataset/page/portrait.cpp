@@ -16,8 +16,6 @@
 namespace airtruth::dataset {
 namespace {
 
-std::array<double, 3> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
 std::optional<double> closest_s(const std::vector<Encountered>& encounters, const std::string& id) {
   for (const Encountered& one : encounters)
     if (one.record.id == id && one.record.closest) return one.record.closest->time_s;

@@ -17,7 +17,7 @@ namespace {
 // surroundings_slow_test.cpp, whose figures are in docs/realism.md.
 
 // Least range of a square, heights.
-constexpr double kMinRange = 2.5;
+constexpr double kMinSeenRange = 2.5;
 // Least share of the pixels of a square that a view shows, and the least number
 // of pixels of a square.
 constexpr double kMinShareSeen = 0.6;
@@ -83,7 +83,7 @@ class Gatherer {
       if (!way) continue;
       const double range = std::sqrt(way->squaredNorm() + 1);
       const auto band = band_of(range);
-      const bool in_square = range >= kMinRange && range <= farthest;
+      const bool in_square = range >= kMinSeenRange && range <= farthest;
       if (!band && !in_square) continue;
       const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone_);
       if (band) {

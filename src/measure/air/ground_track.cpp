@@ -36,8 +36,8 @@ constexpr double kMaxDisplacement = 2 * kFarViewDistance + kAround + 2 * kCoarse
 // correlations differed by at most 0.07 on two virtual and three real flights.
 constexpr double kMinAgreement = 0.25, kMinCoarseAgreement = 0.12;
 // Spacing of the tilts that are tried, degrees, and of the first, coarse search in such steps.
-constexpr double kTiltStepDeg = 0.25;
-constexpr int kCoarse = 4, kMaxTiltSteps = static_cast<int>(kMaxTiltDeg / kTiltStepDeg);
+constexpr double kTrackTiltStepDeg = 0.25;
+constexpr int kCoarse = 4, kMaxTiltSteps = static_cast<int>(kMaxTiltDeg / kTrackTiltStepDeg);
 static_assert(kMaxTiltSteps % kCoarse == 0);
 // Least number of views for a path.
 constexpr std::size_t kMinViews = 4;
@@ -150,7 +150,7 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
   const Scenery scenery{views, lens, own_aircraft};
   const auto at = [&](double steps, double cell) {
     if (stop.stop_requested()) throw Interrupted();
-    return track_at(scenery, radians(kTiltStepDeg) * steps, cell);
+    return track_at(scenery, radians(kTrackTiltStepDeg) * steps, cell);
   };
   const auto start = coarse_tilt(at);
   if (!start) return std::nullopt;

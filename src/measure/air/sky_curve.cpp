@@ -17,7 +17,7 @@ constexpr double kUnitDeg = 10;
 // Number of equal bands into which the elevations are divided.
 constexpr int kBands = 16;
 // Least number of samples of a band, and of bands of a curve, which has three coefficients.
-constexpr std::size_t kMinSamples = 20;
+constexpr std::size_t kMinBandSamples = 20;
 constexpr int kMinBands = 6;
 // Bounds of the light of a sky, linear; an extrapolated parabola may leave them.
 constexpr double kMinLight = 0.01, kMaxLight = 1.5;
@@ -95,7 +95,7 @@ SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach) 
     Parabolas parabolas;
     for (int i = 0; i < kBands; ++i) {
       const Band& band = bands[static_cast<std::size_t>(sector * kBands + i)];
-      if (band[0].size() < kMinSamples) continue;
+      if (band[0].size() < kMinBandSamples) continue;
       Eigen::RowVector3d middle;
       for (int c = 0; c < 3; ++c) middle[c] = median(band[static_cast<std::size_t>(c)]);
       parabolas.add((low + (i + 0.5) / kBands * span) / radians(kUnitDeg), middle);

@@ -15,7 +15,7 @@ namespace {
 // surroundings_slow_test.cpp, whose figures are in docs/realism.md.
 
 // Least number of samples of the sky.
-constexpr std::size_t kMinSamples = 2000;
+constexpr std::size_t kMinSkySamples = 2000;
 // Number of samples that the fits use, at least; they bound the time.
 constexpr std::size_t kFittedSamples = 4000;
 // Weight of a sample brighter than the fit. That of a darker one is 1 - kBrightWeight.
@@ -141,7 +141,7 @@ double spread_deg(const Search& search) {
 }  // namespace
 
 Measured<Sun> sun_of(const std::vector<SkySample>& sky) {
-  if (sky.size() < kMinSamples) return NotMeasured{"too little sky is seen"};
+  if (sky.size() < kMinSkySamples) return NotMeasured{"too little sky is seen"};
   const std::size_t stride = std::max<std::size_t>(1, sky.size() / kFittedSamples);
   std::vector<SkySample> samples;
   for (std::size_t i = 0; i < sky.size(); i += stride) samples.push_back(sky[i]);

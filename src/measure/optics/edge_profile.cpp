@@ -11,7 +11,7 @@ namespace airtruth::calibration {
 namespace {
 
 // Half the width of the profile and the width of its bins, px.
-constexpr double kHalfWidthPx = 6, kBinPx = 0.2;
+constexpr double kProfileHalfWidthPx = 6, kProfileBinPx = 0.2;
 // Least number of samples of a bin that is shown.
 constexpr std::size_t kMinSamplesInBin = 5;
 // Largest spread of an edge that is shown, as a multiple of the camera's.
@@ -37,13 +37,13 @@ std::vector<const StepEdge*> nearest_to_camera(const std::vector<const StepEdge*
 EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
                          const StepResponse& response,
                          const image::ToneCurve& tone) {
-  constexpr int kBins = static_cast<int>(2 * kHalfWidthPx / kBinPx);
+  constexpr int kBins = static_cast<int>(2 * kProfileHalfWidthPx / kProfileBinPx);
   std::array<std::vector<double>, kBins> bins;
   std::vector<double> lows, highs;
   for (const StepEdge* edge : nearest_to_camera(edges, response)) {
     lows.push_back(edge->low), highs.push_back(edge->high);
     for (const auto& [place, height] : edge->samples) {
-      const int bin = static_cast<int>(std::floor((place + kHalfWidthPx) / kBinPx));
+      const int bin = static_cast<int>(std::floor((place + kProfileHalfWidthPx) / kProfileBinPx));
       if (bin >= 0 && bin < kBins) bins[static_cast<std::size_t>(bin)].push_back(height);
     }
   }
@@ -51,7 +51,7 @@ EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
   for (int b = 0; b < kBins; ++b) {
     auto& heights = bins[static_cast<std::size_t>(b)];
     if (heights.size() < kMinSamplesInBin) continue;
-    profile.place_px.push_back((b + 0.5) * kBinPx - kHalfWidthPx);
+    profile.place_px.push_back((b + 0.5) * kProfileBinPx - kProfileHalfWidthPx);
     profile.height.push_back(median(std::move(heights)));
   }
   const double low = median(std::move(lows)), high = median(std::move(highs));

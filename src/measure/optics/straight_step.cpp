@@ -16,9 +16,9 @@ namespace {
 // camera_slow_test.cpp, whose figures are in docs/realism.md.
 
 // Half the width of the profile of an edge, px.
-constexpr double kHalfWidthPx = 6;
+constexpr double kStepHalfWidthPx = 6;
 // Distance from the edge at which its two levels begin, px.
-constexpr double kLevelFromPx = 3.5;
+constexpr double kStepLevelFromPx = 3.5;
 // Least height of a step, code values.
 constexpr double kMinHeightCodes = 24;
 // Least gradient of the 3 x 3 Sobel filter, which is 4 per code value and pixel for a step that
@@ -176,7 +176,7 @@ std::optional<Sampled> samples_across(const cv::Mat& grey, const EdgeLine& line)
   Sampled result;
   const int half_length = static_cast<int>(line.half_length_px);
   for (int t = -half_length; t <= half_length; ++t)
-    for (double p = -kHalfWidthPx; p <= kHalfWidthPx; p += 0.5) {
+    for (double p = -kStepHalfWidthPx; p <= kStepHalfWidthPx; p += 0.5) {
       const double x = line.x - t * line.ny + p * line.nx;
       const double y = line.y + t * line.nx + p * line.ny;
       if (x < 1 || y < 1 || x >= grey.cols - 2 || y >= grey.rows - 2) return std::nullopt;
@@ -185,8 +185,8 @@ std::optional<Sampled> samples_across(const cv::Mat& grey, const EdgeLine& line)
       const double v = grey.at<unsigned char>(iy, ix);
       const double place = (ix - line.x) * line.nx + (iy - line.y) * line.ny;
       result.samples.push_back({place, v});
-      if (place < -kLevelFromPx) result.low.add(v);
-      if (place > kLevelFromPx) result.high.add(v);
+      if (place < -kStepLevelFromPx) result.low.add(v);
+      if (place > kStepLevelFromPx) result.high.add(v);
     }
   return result;
 }

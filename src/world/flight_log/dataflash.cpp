@@ -65,14 +65,14 @@ std::optional<Letter> letter_of(char c) {
   }
 }
 
-struct Column {
+struct MessageColumn {
   char letter = 0;
   std::size_t at = 0;
 };
 struct Kind {
   std::string name;
   std::size_t length = 0;  // of the whole message
-  std::map<std::string, Column, std::less<>> columns;
+  std::map<std::string, MessageColumn, std::less<>> columns;
 };
 
 std::string_view until_zero(std::string_view text) { return text.substr(0, text.find('\0')); }
@@ -97,7 +97,7 @@ std::optional<Kind> kind_of(std::string_view body) {
   return at == kind.length ? std::optional(kind) : std::nullopt;
 }
 
-double number_at(std::string_view message, const Column& column) {
+double number_at(std::string_view message, const MessageColumn& column) {
   const double scale = letter_of(column.letter)->scale;
   switch (column.letter) {
     case 'b':
