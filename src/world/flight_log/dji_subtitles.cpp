@@ -25,7 +25,7 @@
 namespace airtruth::flight_log {
 namespace {
 
-constexpr std::size_t kHeadBytes = 4096;  // in which a file shows what it is
+constexpr std::size_t kTypeHeadBytes = 4096;  // in which a file shows what it is
 
 std::optional<double> number_at_start(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" :\t(,"), text.size()));
@@ -177,7 +177,7 @@ class SubtitleReader {
 }  // namespace
 
 bool is_dji_subtitles(std::string_view content) {
-  const std::string_view head = content.substr(0, kHeadBytes);
+  const std::string_view head = content.substr(0, kTypeHeadBytes);
   return head.find("-->") != std::string_view::npos;
 }
 
