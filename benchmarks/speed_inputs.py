@@ -56,13 +56,13 @@ seed = 1
 [[background]]
 name = "flight"
 video = "{video}"
-frame_count = {frames}
 lens = {{ vertical_fov_deg = {view} }}
 camera = {{ position_ned_m = [0, 0, -150], velocity_ned_mps = [{speed}, 0, 0] }}
 light = {{ sun_azimuth_deg = 130, sun_elevation_deg = 40 }}
 {aircraft}{trajectories}
 [[product]]
 name = "{{trajectory}}-{{aircraft}}"
+frame_count = {frames}
 """
 SET_AIRCRAFT = ["738/738-Ryanair", "733/733-AirBaltic", "c172/g-boix", "c172/news"]
 

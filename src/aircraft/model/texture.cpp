@@ -13,20 +13,20 @@ Texture::Level halved(const Texture::Level& level) {
   Texture::Level half;
   half.width = std::max(1, level.width / 2);
   half.height = std::max(1, level.height / 2);
-  half.texels.resize(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
-  const auto at = [&](int x, int y) -> const Texel& {
-    return level.texels[static_cast<std::size_t>(std::min(y, level.height - 1)) *
-                            static_cast<std::size_t>(level.width) +
-                        static_cast<std::size_t>(std::min(x, level.width - 1))];
+  half.texels.reserve(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
+  const auto row_at = [&](int y) {
+    return level.texels.data() + static_cast<std::size_t>(std::min(y, level.height - 1)) *
+                                     static_cast<std::size_t>(level.width);
   };
   for (int y = 0; y < half.height; ++y) {
+    const Texel* upper = row_at(2 * y);
+    const Texel* lower = row_at(2 * y + 1);
     for (int x = 0; x < half.width; ++x) {
-      Texel& target =
-          half.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(half.width) +
-                      static_cast<std::size_t>(x)];
+      const auto left = static_cast<std::size_t>(2 * x);  // both are in the row, or it has one
+      const auto right = static_cast<std::size_t>(std::min(2 * x + 1, level.width - 1));
+      Texel& target = half.texels.emplace_back();
       for (std::size_t c = 0; c < 4; ++c)
-        target[c] = 0.25f * (at(2 * x, 2 * y)[c] + at(2 * x + 1, 2 * y)[c] +
-                             at(2 * x, 2 * y + 1)[c] + at(2 * x + 1, 2 * y + 1)[c]);
+        target[c] = 0.25f * (upper[left][c] + upper[right][c] + lower[left][c] + lower[right][c]);
     }
   }
   return half;
@@ -74,16 +74,18 @@ Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_
   texture.repeat_u = repeat_u;
   texture.repeat_v = repeat_v;
   std::array<float, 256> linear;
-  for (std::size_t i = 0; i < 256; ++i) linear[i] = linear_channel(static_cast<float>(i) / 255.0f);
-  std::vector<Texel> texels(picture.rgba.size() / 4);
-  const std::uint8_t* p = picture.rgba.data();
-  for (Texel& texel : texels) {
-    const float stated = static_cast<float>(p[3]) / 255.0f;
-    const bool translucent = stated < kOpaque;
-    texture.has_translucency = texture.has_translucency || translucent;
-    const float alpha = translucent ? stated : 1.0f;
-    texel = {alpha * linear[p[0]], alpha * linear[p[1]], alpha * linear[p[2]], alpha};
-    p += 4;
+  std::array<float, 256> alpha;
+  for (std::size_t i = 0; i < 256; ++i) {
+    const float stated = static_cast<float>(i) / 255.0f;
+    linear[i] = linear_channel(stated);
+    alpha[i] = stated < kOpaque ? stated : 1.0f;
+  }
+  std::vector<Texel> texels;
+  texels.reserve(picture.rgba.size() / 4);
+  for (auto p = picture.rgba.begin(); p != picture.rgba.end(); p += 4) {
+    const float a = alpha[p[3]];
+    texture.has_translucency = texture.has_translucency || a < kOpaque;
+    texels.push_back({a * linear[p[0]], a * linear[p[1]], a * linear[p[2]], a});
   }
   texture.levels.push_back({picture.width, picture.height, std::move(texels)});
   add_mip_chain(texture);

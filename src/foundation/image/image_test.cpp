@@ -104,13 +104,12 @@ TEST(Rgb8, ThroughYcc444AndBackWithinOneLevel) {
   for (std::size_t i = 0; i < 16 * 16 * 3; ++i) EXPECT_EQ(exact.samples[i], rgb.samples[i]);
 }
 
-// The two answers are of different code: tables by code value, and the equations for one sample.
 TEST(Rgb8, IsTheRoundedColourOfEachSample) {
   for (const Matrix matrix : {Matrix::kRgb, Matrix::kBt601, Matrix::kBt709, Matrix::kBt2020}) {
     for (const Range range : {Range::kLimited, Range::kFull}) {
       const Colour colour{Chroma::k444, matrix, range};
       const ColourCode code(colour);
-      Picture picture = make_picture(255, 27, colour);  // no multiple of the block of 16
+      Picture picture = make_picture(255, 27, colour);  // no multiple of a block
       for (int cr = 0; cr < 256; cr += 15) {
         for (int x = 0; x < 255; ++x) {
           for (int y = 0; y < 27; ++y) {
@@ -127,6 +126,41 @@ TEST(Rgb8, IsTheRoundedColourOfEachSample) {
               ASSERT_EQ(packed.at(x, y)[c], int(std::clamp(255 * rgb[c], 0.0f, 255.0f) + 0.5f))
                   << x << ' ' << 9 * y << ' ' << cr;
           }
+        }
+      }
+    }
+  }
+}
+
+// Of odd sizes, where a block of chroma is cut by the edge and its last pixels are repeated.
+TEST(Rgb8, APictureHasTheRoundedMeanChromaOfItsBlocks) {
+  constexpr int kWidth = 133, kHeight = 37;
+  Rgb8 rgb = make_rgb8(kWidth, kHeight);
+  unsigned state = 1;
+  for (int i = 0; i < 3 * kWidth * kHeight; ++i)
+    rgb.samples[static_cast<std::size_t>(i)] =
+        static_cast<std::uint8_t>((state = state * 1664525u + 1013904223u) >> 24);
+  for (const Chroma chroma : {Chroma::kNone, Chroma::k420, Chroma::k422, Chroma::k440}) {
+    const Colour colour{chroma, Matrix::kBt709, Range::kLimited};
+    const ColourCode code(colour);
+    const Picture picture = picture_from_rgb8(rgb, colour);
+    const auto ycc = [&](int x, int y) {
+      const std::uint8_t* p = rgb.at(std::min(x, kWidth - 1), std::min(y, kHeight - 1));
+      return code.ycc_from_rgb({p[0] / 255.0f, p[1] / 255.0f, p[2] / 255.0f});
+    };
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        ASSERT_EQ(picture.planes[0].row(y)[x], int(ycc(x, y).y + 0.5f));
+    for (std::size_t i = 1; i < static_cast<std::size_t>(picture.plane_count); ++i) {
+      const int w = 1 << log2_chroma_width(chroma), h = 1 << log2_chroma_height(chroma);
+      for (int y = 0; y < picture.planes[i].height; ++y) {
+        for (int x = 0; x < picture.planes[i].width; ++x) {
+          double sum = 0;
+          for (int n = 0; n < w * h; ++n) {
+            const Ycc one = ycc(w * x + n % w, h * y + n / w);
+            sum += static_cast<double>(i == 1 ? one.cb : one.cr);
+          }
+          ASSERT_NEAR(picture.planes[i].row(y)[x], sum / (w * h), 0.5001);
         }
       }
     }

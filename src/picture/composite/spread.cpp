@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "foundation/base/error.h"
+#include "foundation/base/vectors.h"
 
 namespace airtruth::composite {
 namespace {
@@ -58,6 +59,18 @@ std::vector<float> gaussian(double sigma_px) {
   return kernel;
 }
 
+namespace {
+
+// A loop that the compiler makes of vectors; each sum of a blur has one order, that of the kernel.
+AIRTRUTH_FOR_VECTORS void add_scaled(const float* __restrict from,
+                                     float weight,
+                                     int count,
+                                     float* __restrict to) {
+  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
+}
+
+}  // namespace
+
 void blur(std::vector<float>& values,
           int width,
           int height,
@@ -65,26 +78,29 @@ void blur(std::vector<float>& values,
           const std::vector<float>& down) {
   check(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
         "a plane of the size that it says");
-  std::vector<float> line;
-  const auto along =
-      [&](std::size_t start, std::size_t step, int count, const std::vector<float>& kernel) {
-        const int reach = static_cast<int>(kernel.size()) / 2;
-        if (reach == 0) return;
-        line.assign(static_cast<std::size_t>(count + 2 * reach), 0.0F);
-        for (int i = 0; i < count; ++i)
-          line[static_cast<std::size_t>(i + reach)] =
-              values[start + static_cast<std::size_t>(i) * step];
-        for (int i = 0; i < count; ++i) {
-          float sum = 0;
-          const float* from = line.data() + i;
-          for (std::size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * from[k];
-          values[start + static_cast<std::size_t>(i) * step] = sum;
-        }
-      };
+  const auto row_of = [&](std::vector<float>& plane, int y) {
+    return plane.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+  };
+  const int reach_x = static_cast<int>(across.size()) / 2;
+  if (reach_x > 0) {
+    std::vector<float> line(static_cast<std::size_t>(width + 2 * reach_x), 0.0F);
+    for (int y = 0; y < height; ++y) {
+      float* const row = row_of(values, y);
+      std::copy_n(row, width, line.data() + reach_x);
+      std::fill_n(row, width, 0.0F);
+      for (std::size_t k = 0; k < across.size(); ++k)
+        add_scaled(line.data() + k, across[k], width, row);
+    }
+  }
+  const int reach_y = static_cast<int>(down.size()) / 2;
+  if (reach_y == 0) return;
+  std::vector<float> from(values.size(), 0.0F);
+  std::swap(from, values);
   for (int y = 0; y < height; ++y)
-    along(static_cast<std::size_t>(y) * static_cast<std::size_t>(width), 1, width, across);
-  for (int x = 0; x < width; ++x)
-    along(static_cast<std::size_t>(x), static_cast<std::size_t>(width), height, down);
+    for (int k = 0; k < static_cast<int>(down.size()); ++k)
+      if (const int source = y + k - reach_y; source >= 0 && source < height)
+        add_scaled(
+            row_of(from, source), down[static_cast<std::size_t>(k)], width, row_of(values, y));
 }
 
 void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <span>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -34,6 +35,12 @@ image::Siting siting_of(AVChromaLocation location) {
     default:
       return image::Siting::kLeft;
   }
+}
+
+// libav names its readers of a single picture png_pipe, bmp_pipe and so on. Their stream is there
+// without a look at its packets.
+bool is_picture_file(const AVFormatContext& input) {
+  return std::string_view(input.iformat->name).ends_with("_pipe") && input.nb_streams == 1;
 }
 
 }  // namespace
@@ -125,7 +132,8 @@ void Reader::State::open_input() {
   av_dict_free(&settings);
   if (opened < 0) fail("cannot be read as a video: " + reason(opened));
   input.reset(raw);
-  if (const int found = avformat_find_stream_info(input.get(), nullptr); found < 0)
+  const bool is_known = !options.with_timing && is_picture_file(*input);
+  if (const int found = is_known ? 0 : avformat_find_stream_info(input.get(), nullptr); found < 0)
     fail("cannot be read as a video: " + reason(found));
   stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (stream_index < 0) fail("holds no video stream; expected a video");

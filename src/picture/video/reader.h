@@ -67,6 +67,9 @@ struct ReaderOptions {
   // True: the reader fills Frame::begins_shot. The decision needs the following frames, so the
   // reader holds two decoded frames back.
   bool with_cuts = false;
+  // False: one picture is wanted, and no duration, rate or shape of its pixels. A picture file is
+  // then decoded once and not twice.
+  bool with_timing = true;
 };
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or

@@ -158,6 +158,7 @@ image::Rgb8 read_still(const fs::path& path) {
   ReaderOptions options;
   options.frame_count = 1;
   options.threads = 1;
+  options.with_timing = false;
   auto frame = Reader(path, options).next();
   if (!frame) throw Error("holds no picture", {path.string()});
   return image::rgb8_from_picture(frame->picture);
@@ -184,7 +185,7 @@ std::string png_of(const Grey& grey) {
 }
 
 Grey read_grey(const fs::path& path) {
-  const auto frame = Reader(path, {.frame_count = 1, .threads = 1}).next();
+  const auto frame = Reader(path, {.frame_count = 1, .threads = 1, .with_timing = false}).next();
   if (!frame || frame->picture.plane_count != 1) throw Error("is no grey picture", {path.string()});
   const image::Picture& picture = frame->picture;
   Grey grey{picture.width, picture.height, {}};

@@ -5,6 +5,18 @@
 #include "picture/video/libav.h"
 
 namespace airtruth::video {
+namespace {
+
+// The index of the last stream of telemetry; -1: none.
+int telemetry_stream(const AVFormatContext& input) {
+  int found = -1;
+  for (unsigned i = 0; i < input.nb_streams; ++i)
+    if (input.streams[i]->codecpar->codec_tag == MKTAG('g', 'p', 'm', 'd'))
+      found = static_cast<int>(i);
+  return found;
+}
+
+}  // namespace
 
 std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path) {
   keep_libav_quiet();
@@ -13,16 +25,18 @@ std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path) {
   if (const int result = avformat_open_input(&opened, path.c_str(), nullptr, nullptr); result < 0)
     throw Error("cannot be opened as a video: " + reason(result), {path.string()});
   const InputPtr input(opened);
+  // A file whose header lists all streams need not be decoded to know that it has no telemetry.
+  const bool all_are_listed = (input->ctx_flags & AVFMTCTX_NOHEADER) == 0;
+  if (all_are_listed && telemetry_stream(*input) < 0) return {};
   avformat_find_stream_info(input.get(), nullptr);
-  int telemetry = -1;
+  const int telemetry = telemetry_stream(*input);
+  if (telemetry < 0) return {};
   double start_s = 0;
   for (unsigned i = 0; i < input->nb_streams; ++i) {
     const AVStream& stream = *input->streams[i];
-    if (stream.codecpar->codec_tag == MKTAG('g', 'p', 'm', 'd')) telemetry = static_cast<int>(i);
     if (stream.codecpar->codec_type == AVMEDIA_TYPE_VIDEO && stream.start_time != AV_NOPTS_VALUE)
       start_s = static_cast<double>(stream.start_time) * av_q2d(stream.time_base);
   }
-  if (telemetry < 0) return {};
   for (unsigned i = 0; i < input->nb_streams; ++i)
     if (static_cast<int>(i) != telemetry) input->streams[i]->discard = AVDISCARD_ALL;
   const double base = av_q2d(input->streams[telemetry]->time_base);

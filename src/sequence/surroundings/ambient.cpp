@@ -115,8 +115,28 @@ float overcast_seen(const Block& block, const Skies& skies, float share) {
   return static_cast<float>(skies.overcast_seen(*block.direction));
 }
 
-// The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
-// nor near white.
+// A smaller change of the light comes from motion in the picture.
+constexpr float kJump = 0.04F;
+
+bool is_jump(float change) { return std::abs(std::log(change)) >= kJump; }
+
+// The median of the ratios; 1 where it is certainly no jump, which a count decides faster.
+float jump_of(std::vector<float> ratios) {
+  constexpr float kSurelyNone = 0.99F * kJump;  // allows for the rounding of exp and log
+  static const float low = std::exp(-kSurelyNone);
+  static const float high = std::exp(kSurelyNone);
+  std::size_t below = 0;
+  std::size_t above = 0;
+  for (const float ratio : ratios) {
+    below += ratio < low ? 1 : 0;
+    above += ratio > high ? 1 : 0;
+  }
+  if (2 * below < ratios.size() && 2 * above < ratios.size()) return 1;
+  return median(std::move(ratios));
+}
+
+// The middle of what the blocks become, by channel; 1 where it is no jump, or where there are too
+// few that are neither dark nor near white.
 Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now) {
   constexpr float kDarkest = 0.02F;
   constexpr float kBrightest = 0.8F;
@@ -125,12 +145,13 @@ Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now)
   if (before.size() != now.size()) return change;
   for (std::size_t c = 0; c < 3; ++c) {
     std::vector<float> ratios;
+    ratios.reserve(now.size());
     for (std::size_t i = 0; i < now.size(); ++i)
       if (before[i][c] > kDarkest && before[i][c] < kBrightest && now[i][c] > kDarkest &&
           now[i][c] < kBrightest)
         ratios.push_back(now[i][c] / before[i][c]);
     if (ratios.size() < kFewest) continue;
-    change[c] = median(std::move(ratios));
+    change[c] = jump_of(std::move(ratios));
   }
   return change;
 }
@@ -310,13 +331,11 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
 }
 
 void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
-  // A smaller change comes from motion in the picture.
-  constexpr float kJump = 0.04F;
   const Rgb change = exposure_change(blocks_before_, blocks);
   blocks_before_ = blocks;
   if (!smooth_) return;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (std::abs(std::log(change[c])) < kJump) continue;
+    if (!is_jump(change[c])) continue;
     for (auto* light :
          {&smooth_->sun, &smooth_->blue, &smooth_->cloud, &smooth_->ground, &smooth_->airlight})
       (*light)[c] *= change[c];

@@ -2,6 +2,7 @@
 #include "sequence/surroundings/sky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace airtruth::sequence {
@@ -32,17 +33,21 @@ Environment grey(const std::function<double(const Vector3&)>& radiance) {
 }
 
 // Irradiance over pi on a level surface.
-double level_of(const std::function<double(const Vector3&)>& luminance) {
+template <typename Luminance>
+double level_of(const Luminance& luminance) {
   constexpr int kElevations = 90;
   constexpr int kAzimuths = 180;
+  std::array<Eigen::Vector2d, kAzimuths> headings;
+  for (int k = 0; k < kAzimuths; ++k) {
+    const double azimuth = 2 * kPi * (k + 0.5) / kAzimuths;
+    headings[static_cast<std::size_t>(k)] = {std::cos(azimuth), std::sin(azimuth)};
+  }
   double sum = 0;
   for (int i = 0; i < kElevations; ++i) {
     const double up = (i + 0.5) / kElevations;  // sine: bands of equal solid angle
-    for (int k = 0; k < kAzimuths; ++k) {
-      const double azimuth = 2 * kPi * (k + 0.5) / kAzimuths;
-      const double level = std::sqrt(1 - up * up);
-      sum += 2 * luminance({level * std::cos(azimuth), level * std::sin(azimuth), -up}) * up;
-    }
+    const double level = std::sqrt(1 - up * up);
+    for (const Eigen::Vector2d& heading : headings)
+      sum += 2 * luminance({level * heading.x(), level * heading.y(), -up}) * up;
   }
   return sum / (kElevations * kAzimuths);
 }

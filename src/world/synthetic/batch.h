@@ -4,19 +4,11 @@
 #include <bit>
 #include <cstdint>
 
+#include "foundation/base/vectors.h"
+
 // Rays are traced in batches, one array for each quantity, so that the compiler emits loops over
 // vectors.
 namespace airtruth::synthetic {
-
-// The compiler emits these functions with vectors of 16, 8 or 4 numbers, as the machine supports
-// them. No product is fused with its sum (-ffp-contract=off), so all variants give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define AIRTRUTH_SYNTHETIC_VECTORS \
-  __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
-#else
-#define AIRTRUTH_SYNTHETIC_VECTORS
-#endif
 
 // Number of rays that are traced together. The arrays of a batch fit in the first-level cache.
 constexpr int kBatch = 128;

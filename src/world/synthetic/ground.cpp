@@ -67,7 +67,7 @@ struct Colour {
 };
 
 // Copies the rays that the search names.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void select_rays(const Rays& rays,
                  const Floats& far_m,
                  const Floats& across,
@@ -85,7 +85,7 @@ void select_rays(const Rays& rays,
 }  // namespace
 
 // The distance to the level ground, and the cell of greatest heights around the ray's last part.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Ground::reach(const Eye& eye, const Rays& rays, Points& __restrict points) const {
   const int count = rays.count;
   const std::int32_t* first = first_peak_.data();
@@ -137,7 +137,7 @@ void Ground::meet(const Eye& eye, const Rays& rays, Points& points) const {
 }
 
 // Where the tables are read: the mip level and the sector of the haze.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Ground::look_up(const Eye& eye, const Rays& rays, Points& __restrict points) const {
   const int count = rays.count;
   const int top = map_.levels - 2;
@@ -162,7 +162,7 @@ void Ground::look_up(const Eye& eye, const Rays& rays, Points& __restrict points
 }
 
 // The square roots of the ground's colour.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Ground::colour(const Points& points, int count, Light& __restrict light) const {
   const std::uint32_t* texels = map_.texels.data();
   const std::int32_t* first = map_.first.data();
@@ -187,7 +187,7 @@ void Ground::colour(const Points& points, int count, Light& __restrict light) co
   }
 }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Ground::shine(const Points& points, int count, Light& __restrict light) const {
   const float* shadow = shadow_.data();
   const float* detail = detail_.data();

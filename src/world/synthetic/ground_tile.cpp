@@ -23,7 +23,7 @@ std::uint32_t pack(const LinearRgb& albedo, float height_m) {
 }
 
 // The texels of bare ground.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void pack_ground(const Places& places, Integers& __restrict packed) {
   const auto byte = [](float albedo) {
     return static_cast<std::int32_t>(clamp01(std::sqrt(albedo)) * 255 + 0.5F);

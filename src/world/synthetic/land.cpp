@@ -49,7 +49,7 @@ struct Cell {
 };
 
 // Compares the distances with those to the centre of a neighbouring cell.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void compare(const float* __restrict north,
              const float* __restrict east,
              int blocks,
@@ -79,7 +79,7 @@ void compare(const float* __restrict north,
 }
 
 // Roads and tracks along the borders of the blocks, with their verges.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void add_tracks(const Integers& borders, Places& __restrict places) {
   const int count = places.count;
   for (int i = 0; i < count; ++i) {
@@ -104,7 +104,7 @@ void add_tracks(const Integers& borders, Places& __restrict places) {
 }
 
 // The river and its banks.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void add_river(Places& __restrict places) {
   const int count = places.count;
   for (int i = 0; i < count; ++i) {
@@ -202,7 +202,7 @@ void Land::find_blocks(Places& places, Work& work) const {
   }
 }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Land::find_borders(Places& __restrict places, Work& __restrict work) const {
   const std::uint32_t* id = centres_.id.data();
   const int count = places.count;
@@ -214,7 +214,7 @@ void Land::find_borders(Places& __restrict places, Work& __restrict work) const 
 }
 
 // Strips along the block's own direction, divided into parcels.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Land::find_parcels(const Places& places, Work& __restrict work) const {
   const std::uint32_t* id = centres_.id.data();
   const float* cosine = centres_.cosine.data();
@@ -238,7 +238,7 @@ void Land::find_parcels(const Places& places, Work& __restrict work) const {
 }
 
 // Each parcel has its crop and its lines of sowing.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void Land::sow(const Work& work, Places& __restrict places) const {
   const float* coarse_soil = coarse_soil_.data();
   const float* fine_soil = fine_soil_.data();

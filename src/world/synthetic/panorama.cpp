@@ -67,7 +67,7 @@ struct Texels {
   alignas(64) Floats lower;
 };
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void locate(const Rays& rays, float radius, float centre, int size, Texels& texels) {
   const int count = rays.count;
   for (int i = 0; i < count; ++i) {

@@ -52,7 +52,7 @@ inline float smooth_height_m(const View& view, const March& m, int i, float s) {
   return interpolated_height(view.texels, n) * view.sum_m;
 }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void start(const HeightField& field, const Search& search, March& __restrict m) {
   const MipMap& map = *field.map;
   const float per_texel = 1 / field.texel_m;
@@ -82,7 +82,7 @@ void start(const HeightField& field, const Search& search, March& __restrict m) 
 }
 
 // One step of every ray that has met nothing.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void step(const View& view, March& __restrict m) {
   const std::uint32_t* texels = view.texels;
   const int count = m.count;
@@ -101,7 +101,7 @@ void step(const View& view, March& __restrict m) {
 }
 
 // Copies the chosen rays.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void select_rays(const March& from, const Integers& chosen, int count, March& __restrict to) {
   select(from.first, chosen, count, to.first);
   select(from.wrap, chosen, count, to.wrap);
@@ -117,7 +117,7 @@ void select_rays(const March& from, const Integers& chosen, int count, March& __
 }
 
 // Halves the interval of the rays that reach the ground before `end_m`.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void bisect(const View& view, float end_m, March& __restrict m) {
   const int count = m.count;
   for (int i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ void bisect(const View& view, float end_m, March& __restrict m) {
 }
 
 // Steep slopes are darker.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void shade(const View& view, March& m, float* factor) {
   const int count = m.count;
   for (int i = 0; i < count; ++i) {

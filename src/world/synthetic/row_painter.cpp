@@ -10,7 +10,7 @@ namespace {
 // The height above the horizon in pixels, plus one half: from 0 to 1 a pixel sees both sides.
 inline float above_horizon(float focal_px, float down) { return focal_px * -down + 0.5F; }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void find_ground(const float* down,
                  float focal_px,
                  std::size_t width,

@@ -42,7 +42,7 @@ struct Codes {
   float* blue;
 };
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void develop(const float* __restrict light,
              const float* __restrict fall_off,
              const float* __restrict curve,
@@ -56,7 +56,7 @@ void develop(const float* __restrict light,
   codes[width] = codes[width - 1];
 }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void expose_luma(const Codes& codes,
                  const float* __restrict grain,
                  float noise,
@@ -78,7 +78,7 @@ inline float mean_of_four(const float* upper, const float* lower, int x) {
 }
 
 // The noise of blue is that of the left pixel of each pair, the noise of red that of the right one.
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void expose_chroma(const Codes& upper,
                    const Codes& lower,
                    const float* __restrict grain,
@@ -115,7 +115,7 @@ struct Rows {
   return code(sharp / 64);
 }
 
-AIRTRUTH_SYNTHETIC_VECTORS
+AIRTRUTH_FOR_VECTORS
 void sharpen_middle(const Rows& given, int width, std::uint8_t* __restrict out) {
   const Rows rows = given;
   for (int x = 2; x < width - 2; ++x) out[x] = sharpened(rows, x, x - 1, x + 1, x - 2, x + 2);
