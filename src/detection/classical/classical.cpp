@@ -40,6 +40,23 @@ std::vector<Detection> detections_of(std::vector<Blob> blobs, double least) {
   return detections;
 }
 
+double confident_deviations(double samples_per_frame, double frame_rate_hz) {
+  const double rate = frame_rate_hz > 0 ? frame_rate_hz : kUsualRateHz;
+  const double expected = kNoiseAlarmsPerHour / (3600 * rate);
+  double low = 0, high = 40;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double z = (low + high) / 2;
+    // 2 Q(z) = erfc(z / sqrt(2))
+    (samples_per_frame * std::erfc(z / std::sqrt(2.0)) > expected ? low : high) = z;
+  }
+  return high;
+}
+
+double confident_log_ratio(double cells_per_frame, double frame_rate_hz) {
+  const double rate = frame_rate_hz > 0 ? frame_rate_hz : kUsualRateHz;
+  return std::log(std::max(1.0, cells_per_frame) * 3600 * rate / kNoiseAlarmsPerHour);
+}
+
 std::vector<std::string> classical_names() {
   std::vector<std::string> names;
   for (const Kind& kind : kKinds) names.emplace_back(kind.name);
