@@ -25,6 +25,8 @@ constexpr int kMostAcross = kElement + 2;
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
 constexpr double kBoxNoise = 3;
+// Of a response, which is not bounded on a finer level: half of it is left at a smoothed edge.
+constexpr double kResponseShare = 0.5;
 // Samples this far apart belong together: between a lit and a shaded part lies one that looks like
 // the sky.
 constexpr int kGap = 2;
@@ -237,6 +239,7 @@ std::optional<Blob> against_ring(const std::vector<Level>& levels,
   blob.box_px = box_of(*samples, fine.step);
   blob.contrast_to_noise = std::abs(level.picture.at<short>(sample) - around->middle) /
                            std::hypot(around->noise, level.clutter_at(sample));
+  blob.against_ring = blob.contrast_to_noise;
   blob.is_dark = sign < 0;
   blob.level = number;
   blob.sample = sample;
@@ -252,7 +255,7 @@ std::optional<Blob> against_response(const Level& level,
   const double noise = level.noise_at(sample);
   const double contrast = response - Level::kMeanResponse * noise;
   if (contrast <= 0) return std::nullopt;
-  const double least = std::max(kBoxShare * response, std::min(0.5 * response, kBoxNoise * noise));
+  const double least = std::max(kResponseShare * response, kBoxNoise * noise);
   const auto excess = [&](const cv::Point& p) { return double(level.response.at<short>(p)); };
   const auto samples = Region(level, sample, kReach).grown(excess, least);
   // A line from border to border ends at neither.

@@ -17,6 +17,9 @@ struct Blob {
   // Contrast of the object's strongest sample to its surroundings over the noise and the clutter
   // there (their root sum of squares), all in the level's smoothed picture.
   double contrast_to_noise = 0;
+  // The same against the ring alone: of several boxes of an object, that of the largest is the
+  // best. 0 where the ring does not bound it.
+  double against_ring = 0;
   bool is_dark = false;
   std::size_t level = 0;  // on which it was found
   cv::Point sample;       // of its strongest response, on that level
