@@ -60,6 +60,10 @@ def png_of(number):
         rows.append(row)
     x, y = brightest(number)
     rows[y][x] = 250
+    return png(rows)
+
+
+def png(rows):
     chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     data = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0)) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
@@ -86,7 +90,8 @@ class OverASet(Case):
         for number in range(COUNT):
             left, top, width, height = (float(v) for v in next(line for line in lines if int(line[0]) == number + 1)[2:6])
             for found, wanted in zip((left - 1, top - 1, width, height), target(number)):
-                self.assertLessEqual(abs(found - wanted), 2, f"frame {number}: {left},{top} {width}x{height}")
+                # A sample, of 2 px, of the octave that bounds it, on either side.
+                self.assertLessEqual(abs(found - wanted), 4, f"frame {number}: {left},{top} {width}x{height}")
         coco = json.loads(read("all", "cmo", "detections.json"))
         of_two = [one for one in coco if 2 * COUNT < one["image_id"] <= 3 * COUNT]
         self.assertEqual(len(of_two), len(lines))
@@ -127,6 +132,40 @@ class OverASet(Case):
         self.assertEqual(files_of("stopped"), files_of("unstopped"))
 
 
+def mask_over(x0, y0, x1, y1):
+    """A mask that is black in a rectangle."""
+    return write("mask.png", png([bytes(0 if x0 <= x < x1 and y0 <= y < y1 else 255 for x in range(WIDTH)) for y in range(HEIGHT)]))
+
+
+class OwnAircraft(Case):
+    def near(self, file, place, within):
+        """The frames in which a detection's centre is near a place, a function of the frame."""
+        found = set()
+        for line in read(*file).splitlines():
+            frame, _, x, y, width, height = (float(v) for v in line.split(",")[:6])
+            at_x, at_y = place(int(frame) - 1)
+            if abs(x - 1 + width / 2 - at_x) <= within and abs(y - 1 + height / 2 - at_y) <= within:
+                found.add(frame)
+        return found
+
+    def test_nothing_is_detected_on_it(self):
+        mask = mask_over(0, 60, WIDTH, 130)
+        middle = lambda number: (target(number)[0] + 7, target(number)[1] + 3)
+        made("detect", "set", "--only", "one", "-d", "cmo", "-o", "masked", "--mask", mask)
+        made("detect", "set", "--only", "one", "-d", "cmo", "-o", "unmasked", "--mask", mask, "--no-masks")
+        self.assertEqual(self.near(("masked", "cmo", "one.txt"), middle, 10), set())
+        self.assertEqual(len(self.near(("unmasked", "cmo", "one.txt"), middle, 10)), COUNT)
+        self.assertGreater(len(self.near(("masked", "cmo", "one.txt"), brightest, 4)), COUNT // 2)
+        self.assert_refused(run("detect", "set", "--only", "one", "-d", "cmo", "-o", "masked", "--mask", mask_over(0, 0, 9, 9)), "mask")
+
+    def test_programs_see_it_unless_asked_otherwise(self):
+        mask = mask_over(0, 30, WIDTH, 50)
+        made("detect", "set", "--only", "one", "-d", f"b=exec:{EXAMPLE}", "-o", "seen", "--mask", mask)
+        made("detect", "set", "--only", "one", "-d", f"b=exec:{EXAMPLE}", "-o", "dropped", "--mask", mask, "--mask-results")
+        self.assertEqual(len(read("seen", "b", "one.txt").splitlines()), COUNT)
+        self.assertEqual(read("dropped", "b", "one.txt"), "")
+
+
 class OverAVideo(Case):
     def test_its_name_is_that_of_its_file(self):
         made("detect", "otb/one/img", "-d", "cmo", "-o", "video")
@@ -141,6 +180,7 @@ class Refusals(Case):
         self.assert_refused(run("detect", "set", "-d", "exec: ", "-o", "x"), "names no command")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--min-score", "nan"), "--min-score is nan")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--lens", "no.yml"), "no.yml")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--mask", "no.png"), "no.png")
         self.assert_refused(run("detect", "nowhere", "-d", "cmo", "-o", "x"), "does not exist")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--only", "q*"), "no sequence fits")
         self.assert_refused(run("detect", write("no.mp4", "none"), "-d", "cmo", "-o", "x"), "no.mp4")

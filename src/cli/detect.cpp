@@ -19,6 +19,7 @@ struct Detect {
   std::string source;
   std::string out;
   std::string lens;
+  std::string mask;
   bool associate = false;
   std::string declare;
   std::optional<double> confident;
@@ -73,6 +74,7 @@ void run_detect(Detect arguments, Context& context) {
   options.warn = console.warn();
   options.stop = context.stop;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
+  if (!arguments.mask.empty()) options.mask = arguments.mask;
   options.association = association_of(arguments);
   options.progress = [&](std::int64_t done, std::int64_t total) {
     console.progress("detecting", done, total, "done");
@@ -116,6 +118,15 @@ void add_options(CLI::App& command, Detect& arguments) {
   command.add_option("--lens",
                      arguments.lens,
                      "Calibration file for what states no lens (default: a guess of 60 degrees)");
+  command.add_option(
+      "--mask", arguments.mask, "Own-aircraft mask for what states none: black = own aircraft");
+  command.add_flag("--use-masks,!--no-masks",
+                   options.masks,
+                   "Nothing is detected, and no motion measured, on the own aircraft (default)");
+  command.add_flag(
+      "--mask-results",
+      options.mask_results,
+      "Leave out what networks and programs detect by more than half on the own aircraft");
   command.add_flag(
       "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
   command.add_option("--declare",

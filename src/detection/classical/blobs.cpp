@@ -25,6 +25,8 @@ constexpr int kMostAcross = kElement + 2;
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
 constexpr double kBoxNoise = 3;
+// Of a response, which is not bounded on a finer level: half of it is left at a smoothed edge.
+constexpr double kResponseShare = 0.5;
 // Samples this far apart belong together: between a lit and a shaded part lies one that looks like
 // the sky.
 constexpr int kGap = 2;
@@ -34,6 +36,9 @@ constexpr double kSigmaOfMad = 1.4826;
 // has long tails.
 constexpr double kTailQuantile = 0.9;
 constexpr double kSigmaOfTail = 1 / 1.6449;
+// Closing and opening have noise of their own, which adds to that of the sample: its largest
+// responses are as of this many times the noise (classical_test.cpp).
+constexpr double kResponseNoise = 1.2;
 // The rounding to whole grey levels, which makes patches that smoothing does not remove.
 const double kLeastNoise = kGreyScale / std::sqrt(12.0);
 
@@ -53,7 +58,7 @@ double median_of(std::vector<float>& values) {
 // The plane's slope is by least squares and its height by the median, which other objects in the
 // ring do not lift. Samples within `object` do not count; of the others, every `stride`-th of every
 // `stride`-th row.
-std::optional<Surroundings> surroundings_of(const cv::Mat& picture,
+std::optional<Surroundings> surroundings_of(const Level& level,
                                             const cv::Point& centre,
                                             const cv::Rect& object,
                                             int stride) {
@@ -61,6 +66,7 @@ std::optional<Surroundings> surroundings_of(const cv::Mat& picture,
   static thread_local std::vector<cv::Point> places;
   values.clear();
   places.clear();
+  const cv::Mat& picture = level.picture;
   double sum_x = 0, sum_y = 0, sum_v = 0;
   for (int dy = -kRingTo; dy <= kRingTo; dy += stride) {
     const int y = centre.y + dy;
@@ -70,7 +76,7 @@ std::optional<Surroundings> surroundings_of(const cv::Mat& picture,
     for (int dx = -kRingTo; dx <= kRingTo; dx += stride) {
       if (crosses && std::abs(dx) < kRingFrom) continue;
       const int x = centre.x + dx;
-      if (x < 0 || x >= picture.cols || object.contains({x, y})) continue;
+      if (x < 0 || x >= picture.cols || object.contains({x, y}) || level.hides({x, y})) continue;
       values.push_back(row[x]);
       places.push_back({dx, dy});
       sum_x += dx;
@@ -144,7 +150,8 @@ class Region {
 
  private:
   bool is_inside(const cv::Point& p) const {
-    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows;
+    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
+           !level_.hides(p);
   }
   // False where it was marked.
   bool mark(std::vector<char>& seen, const cv::Point& p) const {
@@ -194,20 +201,6 @@ cv::Point strongest_under(const Level& fine, const cv::Point& coarse, double sig
   return best;
 }
 
-// Whether no neighbouring block has a stronger response; of equal ones, the first counts.
-bool is_peak(const cv::Mat& largest, int bx, int by) {
-  const short here = largest.at<short>(by, bx);
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const int x = bx + dx, y = by + dy;
-      if (x < 0 || y < 0 || x >= largest.cols || y >= largest.rows) continue;
-      const short there = largest.at<short>(y, x);
-      const bool is_before = dy < 0 || (dy == 0 && dx < 0);
-      if (there > here || (is_before && there == here)) return false;
-    }
-  return true;
-}
-
 cv::Point strongest_in_block(const Level& level, int bx, int by) {
   const cv::Mat block = level.response({bx * kBlock, by * kBlock, kBlock, kBlock});
   cv::Point at;
@@ -215,13 +208,13 @@ cv::Point strongest_in_block(const Level& level, int bx, int by) {
   return {bx * kBlock + at.x, by * kBlock + at.y};
 }
 
-}  // namespace
-
-std::optional<Blob> blob_at(const std::vector<Level>& levels,
-                            std::size_t number,
-                            const cv::Point& sample) {
+// The object at a sample of a level against the ring around it: exact where that is a plane with
+// noise. Empty where its samples reach too far.
+std::optional<Blob> against_ring(const std::vector<Level>& levels,
+                                 std::size_t number,
+                                 const cv::Point& sample) {
   const Level& level = levels[number];
-  auto around = surroundings_of(level.picture, sample, {}, 2);
+  auto around = surroundings_of(level, sample, {}, 2);
   if (!around) return std::nullopt;
   const double contrast = level.picture.at<short>(sample) - around->middle;
   const double sign = contrast < 0 ? -1 : 1;
@@ -240,15 +233,56 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
   if (!samples || std::min(samples->width, samples->height) > finer * kMostAcross)
     return std::nullopt;
   // Wings that reach across the ring are neither noise nor surroundings.
-  around = surroundings_of(level.picture, sample, coarser(*samples, finer), 1);
+  around = surroundings_of(level, sample, coarser(*samples, finer), 1);
   if (!around) return std::nullopt;
   Blob blob;
   blob.box_px = box_of(*samples, fine.step);
-  blob.contrast_to_noise =
-      std::abs(level.picture.at<short>(sample) - around->middle) / around->noise;
+  blob.contrast_to_noise = std::abs(level.picture.at<short>(sample) - around->middle) /
+                           std::hypot(around->noise, level.clutter_at(sample));
+  blob.against_ring = blob.contrast_to_noise;
   blob.is_dark = sign < 0;
   blob.level = number;
   blob.sample = sample;
+  return blob;
+}
+
+// The object at a sample of a level against what closing or opening makes of its place, which
+// follows the edges of clouds and fields: it is found where the ring is no plane.
+std::optional<Blob> against_response(const Level& level,
+                                     std::size_t number,
+                                     const cv::Point& sample) {
+  const double response = level.response.at<short>(sample);
+  const double noise = level.noise_at(sample);
+  const double contrast = response - Level::kMeanResponse * noise;
+  if (contrast <= 0) return std::nullopt;
+  const double least = std::max(kResponseShare * response, kBoxNoise * noise);
+  const auto excess = [&](const cv::Point& p) { return double(level.response.at<short>(p)); };
+  const auto samples = Region(level, sample, kReach).grown(excess, least);
+  // A line from border to border ends at neither.
+  const cv::Rect inner(kGap, kGap, level.picture.cols - 2 * kGap, level.picture.rows - 2 * kGap);
+  if (!samples || (*samples & inner) != *samples ||
+      std::min(samples->width, samples->height) > kMostAcross)
+    return std::nullopt;
+  Blob blob;
+  blob.box_px = box_of(*samples, level.step);
+  blob.contrast_to_noise = contrast / std::hypot(kResponseNoise * noise, level.clutter_at(sample));
+  blob.level = number;
+  blob.sample = sample;
+  return blob;
+}
+
+}  // namespace
+
+std::optional<Blob> blob_at(const std::vector<Level>& levels,
+                            std::size_t number,
+                            const cv::Point& sample) {
+  const auto ring = against_ring(levels, number, sample);
+  const auto response = against_response(levels[number], number, sample);
+  if (!ring || !response) return ring ? ring : response;
+  if (ring->contrast_to_noise >= response->contrast_to_noise) return ring;
+  // The ring's box follows the finer level.
+  Blob blob = *ring;
+  blob.contrast_to_noise = response->contrast_to_noise;
   return blob;
 }
 
@@ -266,17 +300,18 @@ std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& 
     std::vector<std::pair<double, cv::Point>> blocks;
     for (int by = 0; by < level.largest.rows; ++by)
       for (int bx = 0; bx < level.largest.cols; ++bx) {
-        const double relative =
-            level.largest.at<short>(by, bx) / static_cast<double>(level.typical.at<float>(by, bx));
-        if (relative >= options.least_response && is_peak(level.largest, bx, by))
-          blocks.push_back({-relative, {bx, by}});
+        const double largest = level.largest.at<short>(by, bx);
+        const double typical = level.typical.at<float>(by, bx),
+                     clutter = level.clutter.at<float>(by, bx);
+        if (largest >= options.least_response * typical && level.is_peak(bx, by))
+          blocks.push_back({-largest / std::hypot(typical, clutter), {bx, by}});
       }
     const auto order = [](const auto& a, const auto& b) {
       return std::tie(a.first, a.second.y, a.second.x) < std::tie(b.first, b.second.y, b.second.x);
     };
     std::sort(blocks.begin(), blocks.end(), order);
     if (blocks.size() > options.most_of_a_level) blocks.resize(options.most_of_a_level);
-    for (const auto& [relative, block] : blocks)
+    for (const auto& [weight, block] : blocks)
       if (auto blob = blob_at(levels, number, strongest_in_block(level, block.x, block.y)))
         blobs.push_back(*blob);
   }

@@ -14,9 +14,12 @@ namespace airtruth::detection {
 
 struct Blob {
   Box box_px;
-  // Contrast of the object's strongest sample to its surroundings over the noise there: both in the
-  // level's smoothed picture.
+  // Contrast of the object's strongest sample to its surroundings over the noise and the clutter
+  // there (their root sum of squares), all in the level's smoothed picture.
   double contrast_to_noise = 0;
+  // The same against the ring alone: of several boxes of an object, that of the largest is the
+  // best. 0 where the ring does not bound it.
+  double against_ring = 0;
   bool is_dark = false;
   std::size_t level = 0;  // on which it was found
   cv::Point sample;       // of its strongest response, on that level
@@ -36,7 +39,7 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
 // The strongest first.
 struct BlobOptions {
   // In units of the typical response.
-  double least_response = 6;
+  double least_response = kIsolated;
   // The blocks with the strongest relative responses are looked at.
   std::size_t most_of_a_level = 150;
 };

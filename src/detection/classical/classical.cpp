@@ -25,19 +25,44 @@ std::vector<Detection> detections_of(std::vector<Blob> blobs, double least) {
     return a.contrast_to_noise > b.contrast_to_noise;
   });
   std::vector<Detection> detections;
+  std::vector<double> against_ring;  // of the blobs whose boxes the detections have
   for (const Blob& blob : blobs) {
     if (blob.contrast_to_noise < least) break;
-    const bool is_taken =
-        std::any_of(detections.begin(), detections.end(), [&](const Detection& stronger) {
+    const auto same =
+        std::find_if(detections.begin(), detections.end(), [&](const Detection& stronger) {
           return is_same_object(stronger.box_px, blob.box_px);
         });
-    if (is_taken) continue;
+    if (same != detections.end()) {
+      double& best = against_ring[static_cast<std::size_t>(same - detections.begin())];
+      if (blob.against_ring <= best) continue;
+      best = blob.against_ring;
+      same->box_px = blob.box_px;
+      continue;
+    }
     Detection detection;
     detection.box_px = blob.box_px;
     detection.score = std::round(blob.contrast_to_noise * 1000) / 1000;
     detections.push_back(detection);
+    against_ring.push_back(blob.against_ring);
   }
   return detections;
+}
+
+double confident_deviations(double samples_per_frame, double frame_rate_hz) {
+  const double rate = frame_rate_hz > 0 ? frame_rate_hz : kUsualRateHz;
+  const double expected = kNoiseAlarmsPerHour / (3600 * rate);
+  double low = 0, high = 40;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double z = (low + high) / 2;
+    // 2 Q(z) = erfc(z / sqrt(2))
+    (samples_per_frame * std::erfc(z / std::sqrt(2.0)) > expected ? low : high) = z;
+  }
+  return high;
+}
+
+double confident_log_ratio(double cells_per_frame, double frame_rate_hz) {
+  const double rate = frame_rate_hz > 0 ? frame_rate_hz : kUsualRateHz;
+  return std::log(std::max(1.0, cells_per_frame) * 3600 * rate / kNoiseAlarmsPerHour);
 }
 
 std::vector<std::string> classical_names() {

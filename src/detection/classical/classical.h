@@ -16,7 +16,9 @@
 //   frame-difference  what differs from the frame before, once the camera's turn is taken out: the
 //                     floor that a detector should clear
 // All find aircraft of two to about a hundred pixels, brighter or darker than what is behind them.
-// They are deterministic and have no memory beyond the sequence.
+// They are deterministic and have no memory beyond the sequence. Nothing is detected on the own
+// aircraft where the sequence states its mask. Each has a confident score that follows from its
+// statistic: noise alone reaches it once in an hour (kinds.h).
 namespace airtruth::detection {
 
 std::vector<std::string> classical_names();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "detection/classical/classical.h"
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -11,6 +12,8 @@
 #include "detection/classical/bearing_grid.h"
 #include "detection/classical/blobs.h"
 #include "detection/classical/filter_bank.h"
+#include "detection/classical/free_view.h"
+#include "detection/classical/kinds.h"
 #include "detection/classical/scale_space.h"
 #include "detection/classical/turned.h"
 
@@ -193,6 +196,143 @@ TEST(ScaleSpace, NoiseAndItsResponseAreAsStated) {
   EXPECT_NEAR(sigma, kNoiseShare * noise, 0.02 * noise);
   const double typical = cv::mean(level.typical)[0] / kGreyScale;
   EXPECT_NEAR(typical / sigma, Level::quietest() / (kGreyScale / std::sqrt(12.0)), 0.08);
+}
+
+// Noise alone exceeds a threshold about as often as as many independent normal samples would; the
+// confident score follows from that number. A lower threshold is reached often enough to be
+// counted.
+TEST(Confident, NoiseExceedsAThresholdAboutAsOftenAsNormalSamples) {
+  constexpr double kThreshold = 4.5;
+  constexpr int kFrames = 40;
+  std::mt19937 random(11);
+  int exceeding = 0;
+  for (int k = 0; k < kFrames; ++k)
+    for (const Blob& blob : blobs_of(scale_space(sky({}, 4, random)), {2, 1000}))
+      exceeding += blob.contrast_to_noise >= kThreshold ? 1 : 0;
+  const double samples = 4.0 / 3 * kWidth * kHeight;
+  const double expected = kFrames * samples * std::erfc(kThreshold / std::sqrt(2.0));
+  // The noise is itself an estimate, of some hundred samples.
+  EXPECT_LE(exceeding, 2 * expected);
+  EXPECT_GE(exceeding, 0.02 * expected);
+}
+
+TEST(Confident, FollowsFromFrameAndRate) {
+  // 2 n Q(z) of a frame times the frames of an hour is one.
+  const double z = confident_deviations(1.6e6, 30);
+  EXPECT_NEAR(1.6e6 * std::erfc(z / std::sqrt(2.0)) * 3600 * 30, 1, 1e-6);
+  EXPECT_NEAR(confident_log_ratio(1e5, 30), std::log(1e5 * 108'000), 1e-9);
+  // A video that states no rate counts as one of 30 frames a second.
+  EXPECT_EQ(confident_deviations(1000, 0), confident_deviations(1000, 30));
+  for (const std::string& name : classical_names()) {
+    const auto detector = make_classical(name);
+    detector->begin(sequence_of(1280, 960));
+    ASSERT_TRUE(detector->confident_score()) << name;
+    EXPECT_GT(*detector->confident_score(), 5) << name;
+    EXPECT_LT(*detector->confident_score(), 30) << name;
+  }
+}
+
+TEST(Classical, NoiseIsNeverConfident) {
+  for (const std::string& name : classical_names()) {
+    const auto detector = make_classical(name);
+    detector->begin(sequence_of());
+    EXPECT_EQ(score_of(name.c_str(), 0, 0.5, *detector->confident_score(), 5).false_alarms, 0)
+        << name;
+  }
+}
+
+// The same thing stands out less where there are others like it.
+TEST(Blob, StandsOutLessAmongOthers) {
+  std::mt19937 random(2);
+  std::vector<Target> targets = {{{160.5, 120.5}, -40}};
+  const auto alone = blob_at(scale_space(sky(targets, 2, random)), 0, {160, 120});
+  for (int y = 30; y < kHeight; y += 40)
+    for (int x = 25; x < kWidth; x += 40)
+      if (std::hypot(x - 160, y - 120) > 30) targets.push_back({{x + 0.5, y + 0.5}, -40});
+  const auto among = blob_at(scale_space(sky(targets, 2, random)), 0, {160, 120});
+  ASSERT_TRUE(alone && among);
+  EXPECT_LT(among->contrast_to_noise, 0.5 * alone->contrast_to_noise);
+  EXPECT_GT(among->contrast_to_noise, kLeastContrastToNoise);
+}
+
+// A ring around the target is half cloud and half sky.
+TEST(CloseMinusOpen, FindsATargetBesideAnEdge) {
+  std::mt19937 random(4);
+  image::Picture picture = sky({{{150.5, 114.5}, 50}}, 1.5, random);
+  for (int y = 120; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      std::uint8_t& sample = picture.planes[0].row(y)[x];
+      sample = static_cast<std::uint8_t>(std::min(255, sample + 60));
+    }
+  const auto detector = make_classical("cmo");
+  detector->begin(sequence_of());
+  const auto found = detector->detect({0, 0, &picture, true, {}});
+  ASSERT_FALSE(found.empty());
+  EXPECT_TRUE(hits(found.front(), {150.5, 114.5}, 5));
+}
+
+// A dark wheel and a wing with a gap in it, and a target beyond them.
+image::Picture with_own_aircraft(const Pixel& target, image::Mask& mask, std::mt19937& random) {
+  image::Picture picture = sky({{target, -40}}, 2, random);
+  mask = {kWidth, kHeight, std::vector<unsigned char>(kWidth * kHeight, 255)};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool is_wheel = std::hypot(x - 80, y - 200) < 9;
+      const bool is_wing = y > 150 && y < 162 && (x < 120 || x > 128);
+      if (!is_wheel && !is_wing) continue;
+      picture.planes[0].row(y)[x] = is_wheel ? 20 : 240;
+      mask.free[static_cast<std::size_t>(y * kWidth + x)] = 0;
+    }
+  return picture;
+}
+
+TEST(Classical, SeesNothingOnTheOwnAircraft) {
+  for (const std::string& name : classical_names()) {
+    std::array<int, 2> on_own{}, on_target{};
+    for (const bool is_masked : {false, true}) {
+      const auto detector = make_classical(name);
+      SequenceInput sequence = sequence_of();
+      std::mt19937 random(6);
+      for (int k = 0; k < 15; ++k) {
+        const Pixel target(200 + 0.5 * k, 60);
+        image::Mask mask;
+        const image::Picture picture = with_own_aircraft(target, mask, random);
+        if (is_masked) sequence.own_aircraft = std::make_shared<image::Mask>(mask);
+        if (k == 0) detector->begin(sequence);
+        // The camera turns: the own aircraft stays where it is, and so differs from the turned
+        // picture before.
+        const Quaternion turn(
+            Eigen::AngleAxisd(radians(k % 2 == 0 ? 1.0 : -1.0), Vector3::UnitY()));
+        const auto camera = k > 0 ? std::optional(CameraTurn{turn, 0.02}) : std::nullopt;
+        for (const Detection& one : detector->detect({k, k / 30.0, &picture, k == 0, camera})) {
+          const Box& box = one.box_px;
+          const int x = std::clamp(static_cast<int>(box.x + box.width / 2), 0, kWidth - 1);
+          const int y = std::clamp(static_cast<int>(box.y + box.height / 2), 0, kHeight - 1);
+          on_own[is_masked] += mask.is_free(x, y) && std::hypot(x - 80, y - 200) > 15 ? 0 : 1;
+          on_target[is_masked] += hits(one, target, 6) ? 1 : 0;
+        }
+      }
+    }
+    EXPECT_GT(on_own[0], 0) << name;
+    EXPECT_EQ(on_own[1], 0) << name;
+    EXPECT_GE(on_target[1], on_target[0]) << name;
+  }
+}
+
+TEST(FreeView, ReplacesTheOwnAircraftByWhatIsAround) {
+  std::mt19937 random(8);
+  image::Mask mask;
+  const image::Picture picture = with_own_aircraft({250, 40}, mask, random);
+  const FreeView view(&mask);
+  const cv::Mat luma = view.luma(picture);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      if (mask.is_free(x, y)) continue;
+      EXPECT_TRUE(view.hides({x + 0.5, y + 0.5}));
+      EXPECT_NEAR(luma.at<std::uint8_t>(y, x), 120 + 0.05 * y, 6) << x << "," << y;
+    }
+  EXPECT_FALSE(view.hides({200.5, 60.5}));
+  EXPECT_EQ(luma.at<std::uint8_t>(60, 200), picture.planes[0].row(60)[200]);
 }
 
 // A filled ellipse or bar without noise.

@@ -24,7 +24,11 @@ class CloseMinusOpen : public Detector {
  public:
   void begin(const SequenceInput& sequence) override {
     lens_.emplace(sequence.lens);
+    view_ = FreeView(sequence.own_aircraft.get());
     before_.clear();
+    // Each level has a quarter of the samples of the one below.
+    const double samples = 4.0 / 3 * sequence.width * sequence.height;
+    confident_ = confident_deviations(samples, sequence.frame_rate_hz);
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
@@ -32,7 +36,7 @@ class CloseMinusOpen : public Detector {
       before_.front().next_from_this = frame.turn->this_from_previous;
     else
       before_.clear();
-    std::vector<Level> levels = scale_space(*frame.picture);
+    std::vector<Level> levels = scale_space(*frame.picture, view_);
     std::vector<Blob> blobs = blobs_of(levels, {});
     for (Blob& blob : blobs) blob.contrast_to_noise *= persistence(blob, levels[blob.level]);
     before_.push_front({std::move(levels), Quaternion::Identity()});
@@ -41,6 +45,8 @@ class CloseMinusOpen : public Detector {
   }
 
   bool needs_motion() const override { return true; }
+  bool leaves_out_own_aircraft() const override { return true; }
+  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The mean, over this frame and those before, of the response at the blob's bearing relative to
@@ -68,6 +74,8 @@ class CloseMinusOpen : public Detector {
   }
 
   std::optional<lens::Lens> lens_;
+  FreeView view_;
+  std::optional<double> confident_;
   std::deque<FrameBefore> before_;  // the latest first
 };
 

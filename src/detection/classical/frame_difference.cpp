@@ -14,8 +14,12 @@ constexpr int kCellPx = 2;
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;
 // A difference of this many times the local noise is a change. Interpolation between pixels takes
-// noise from the picture before, from none to half of it: a threshold of 6 is one of at least 5.
-constexpr double kChange = 6;
+// noise from the picture before, from none to half of it: the local noise is one of many pixels,
+// and one of them may have kInterpolation times as much.
+constexpr double kInterpolation = 1.2;
+constexpr double kChange = 5 * kInterpolation;
+// A mean of a smaller share than this of its cells is replaced by those around.
+constexpr float kLeastSeen = 0.25F;
 // Standard deviation of normal noise over its mean absolute value.
 const double kSigmaOfMean = std::sqrt(kPi / 2);
 // Cells in a row within which changes belong together.
@@ -31,25 +35,35 @@ class FrameDifference : public Detector {
  public:
   void begin(const SequenceInput& sequence) override {
     lens_.emplace(sequence.lens);
+    view_ = FreeView(sequence.own_aircraft.get());
+    hidden_ = view_.hidden(1);
     before_.release();
+    const double cells = double(sequence.width) * sequence.height / (kCellPx * kCellPx);
+    confident_ = kInterpolation * confident_deviations(cells, sequence.frame_rate_hz);
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
     if (std::min(frame.picture->width, frame.picture->height) < kLeastSidePx) return {};
     cv::Mat now;
-    cv::resize(luma_of(*frame.picture),
+    cv::resize(view_.luma(*frame.picture),
                now,
                {frame.picture->width / kCellPx, frame.picture->height / kCellPx},
                0,
                0,
                cv::INTER_AREA);
     std::vector<Detection> detections;
-    if (frame.turn && !before_.empty()) detections = changes(now, registered(before_, *frame.turn));
+    if (frame.turn && !before_.empty()) {
+      cv::Mat before = registered(before_, *frame.turn);
+      if (!hidden_.empty()) before.setTo(kUnseen, hidden_);
+      detections = changes(now, before);
+    }
     before_ = now;
     return detections;
   }
 
   bool needs_motion() const override { return true; }
+  bool leaves_out_own_aircraft() const override { return true; }
+  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The picture before as this frame's camera would have seen it; negative where it did not.
@@ -58,8 +72,22 @@ class FrameDifference : public Detector {
         cells_after_turn(*lens_, before.size(), kCellPx, turn.this_from_previous.conjugate());
     cv::Mat samples, result;
     before.convertTo(samples, CV_16S);
+    if (!hidden_.empty()) samples.setTo(kUnseen, hidden_);
     cv::remap(samples, result, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(kUnseen));
     return result;
+  }
+
+  // The mean difference on a coarse grid, of the cells that were seen.
+  static cv::Mat mean_of_seen(const cv::Mat& difference, const cv::Mat& is_seen) {
+    const cv::Size size(std::max(1, difference.cols / kNoiseStep),
+                        std::max(1, difference.rows / kNoiseStep));
+    cv::Mat seen, share, mean;
+    is_seen.convertTo(seen, CV_32F, 1 / 255.0);
+    cv::resize(seen, share, size, 0, 0, cv::INTER_AREA);
+    cv::resize(difference, mean, size, 0, 0, cv::INTER_AREA);
+    cv::divide(mean, cv::max(share, kLeastSeen), mean);
+    fill(mean, cv::max(share - kLeastSeen, 0));
+    return mean;
   }
 
   static std::vector<Detection> changes(const cv::Mat& now, const cv::Mat& before) {
@@ -67,14 +95,9 @@ class FrameDifference : public Detector {
     cv::subtract(now, before, difference, {}, CV_16S);
     difference = cv::abs(difference);
     difference.setTo(0, before < 0);
-    cv::Mat samples, noise;
+    cv::Mat samples;
     difference.convertTo(samples, CV_32F);
-    cv::resize(samples,
-               noise,
-               {std::max(1, now.cols / kNoiseStep), std::max(1, now.rows / kNoiseStep)},
-               0,
-               0,
-               cv::INTER_AREA);
+    cv::Mat noise = mean_of_seen(samples, before >= 0);
     cv::medianBlur(noise, noise, 3);
     noise = cv::max(noise * kSigmaOfMean, kLeastNoise);
     cv::resize(noise, noise, now.size(), 0, 0, cv::INTER_LINEAR);
@@ -120,6 +143,9 @@ class FrameDifference : public Detector {
   }
 
   std::optional<lens::Lens> lens_;
+  FreeView view_;
+  cv::Mat hidden_;  // cells that show the own aircraft
+  std::optional<double> confident_;
   cv::Mat before_;
 };
 

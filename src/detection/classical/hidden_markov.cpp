@@ -113,11 +113,15 @@ class HiddenMarkov : public Detector {
  public:
   void begin(const SequenceInput& sequence) override {
     lens_.emplace(sequence.lens);
+    view_ = FreeView(sequence.own_aircraft.get());
     picture_ = {0, 0, double(sequence.width), double(sequence.height)};
+    double cells = 0;
+    for (const int cell_px : kCellsPx) cells += picture_.area() / (cell_px * cell_px);
+    confident_ = confident_log_ratio(cells, sequence.frame_rate_hz);
   }
 
   std::vector<Detection> detect(const FrameInput& frame) override {
-    const std::vector<Level> levels = scale_space(*frame.picture);
+    const std::vector<Level> levels = scale_space(*frame.picture, view_);
     if (levels.empty()) return {};  // a picture smaller than the elements
     if (frame.begins_shot || frame.index == 0) {
       banks_.clear();
@@ -139,6 +143,8 @@ class HiddenMarkov : public Detector {
   }
 
   bool needs_motion() const override { return true; }
+  bool leaves_out_own_aircraft() const override { return true; }
+  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The strongest cell of each block, by how much its ln odds exceed those of the strongest cells
@@ -190,7 +196,7 @@ class HiddenMarkov : public Detector {
                       std::vector<Detection>& detections) const {
     for (const Peak& peak : peaks_of(bank.filters.odds())) {
       const auto pixel = bank.grid.pixel_of(peak.cell);
-      if (!pixel || !holds(picture_, *pixel, 0)) continue;
+      if (!pixel || !holds(picture_, *pixel, 0) || view_.hides(*pixel)) continue;
       const auto bounds = box_at(levels, *pixel, bank.cell_px);
       // Large cells are for what moves fast and can be seen in a single frame.
       if (!bounds && bank.cell_px > kCellsPx[0]) continue;
@@ -212,6 +218,8 @@ class HiddenMarkov : public Detector {
   }
 
   std::optional<lens::Lens> lens_;
+  FreeView view_;
+  std::optional<double> confident_;
   std::vector<Bank> banks_;
   Box picture_;
 };

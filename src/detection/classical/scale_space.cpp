@@ -12,24 +12,13 @@ namespace {
 
 // Least side of a level, in samples: some elements long.
 constexpr int kLeastSide = 3 * kElement;
-// Mean response over the standard deviation of white noise in the smoothed picture, from a
-// simulation (classical_test.cpp repeats it).
-constexpr double kMeanResponse = 0.8;
 // The rounding to whole grey levels has a standard deviation of 1/sqrt(12) levels. In a smooth sky
 // it makes patches of one level that no smoothing removes.
-const double kLeastTypical = kMeanResponse * kGreyScale / std::sqrt(12.0);
+const double kLeastTypical = Level::kMeanResponse * kGreyScale / std::sqrt(12.0);
 
 cv::Mat smoothed(const cv::Mat& picture) {
   cv::Mat result;
   cv::GaussianBlur(picture, result, {3, 3}, 0);
-  return result;
-}
-
-// Every second sample of every second row.
-cv::Mat halved(const cv::Mat& picture) {
-  cv::Mat result;
-  const cv::Mat even = picture({0, 0, picture.cols & ~1, picture.rows & ~1});
-  cv::resize(even, result, {even.cols / 2, even.rows / 2}, 0, 0, cv::INTER_NEAREST);
   return result;
 }
 
@@ -136,9 +125,58 @@ cv::Mat typical_of(const cv::Mat& mean) {
   return typical;
 }
 
-Level level_of(cv::Mat picture, int step) {
+// The mean of what is free of each block; where little is, that of the blocks around.
+void without_hidden(const cv::Mat& hidden, cv::Mat& mean) {
+  cv::Mat free_share(mean.size(), CV_32F);
+  for (int by = 0; by < mean.rows; ++by)
+    for (int bx = 0; bx < mean.cols; ++bx) {
+      const cv::Mat block = hidden({bx * kBlock, by * kBlock, kBlock, kBlock});
+      const double share = 1 - cv::countNonZero(block) / double(kBlock * kBlock);
+      free_share.at<float>(by, bx) = share < 0.5 ? 0.0F : static_cast<float>(share);
+    }
+  cv::divide(mean, cv::max(free_share, 0.5F), mean);
+  fill(mean, free_share);
+}
+
+// Blocks on either side whose objects are a block's clutter, and those that its own object may
+// reach into.
+constexpr int kClutterReach = 10;
+constexpr int kOwnReach = 2;
+
+cv::Mat clutter_of(const Level& level) {
+  cv::Mat squares(level.largest.size(), CV_64F, cv::Scalar(0)), sums;
+  for (int by = 0; by < squares.rows; ++by)
+    for (int bx = 0; bx < squares.cols; ++bx) {
+      const double largest = level.largest.at<short>(by, bx);
+      const bool is_object =
+          largest >= kIsolated * static_cast<double>(level.typical.at<float>(by, bx)) &&
+          level.is_peak(bx, by);
+      if (is_object) squares.at<double>(by, bx) = largest * largest;
+    }
+  cv::integral(squares, sums, CV_64F);
+  // The sum of the blocks within a reach, and how many they are.
+  const auto within = [&](int bx, int by, int reach) {
+    const int left = std::max(0, bx - reach), right = std::min(squares.cols, bx + reach + 1);
+    const int top = std::max(0, by - reach), bottom = std::min(squares.rows, by + reach + 1);
+    const double sum = sums.at<double>(bottom, right) - sums.at<double>(top, right) -
+                       sums.at<double>(bottom, left) + sums.at<double>(top, left);
+    return std::pair(sum, (right - left) * (bottom - top));
+  };
+  cv::Mat clutter(squares.size(), CV_32F, cv::Scalar(0));
+  for (int by = 0; by < squares.rows; ++by)
+    for (int bx = 0; bx < squares.cols; ++bx) {
+      const auto [all, all_blocks] = within(bx, by, kClutterReach);
+      const auto [own, own_blocks] = within(bx, by, kOwnReach);
+      const double mean = (all - own) / std::max(1, all_blocks - own_blocks);
+      clutter.at<float>(by, bx) = static_cast<float>(std::sqrt(std::max(0.0, mean)));
+    }
+  return clutter;
+}
+
+Level level_of(cv::Mat picture, int step, const cv::Mat& hidden) {
   Level level;
   level.step = step;
+  level.hidden = hidden;
   level.picture = std::move(picture);
   if (step == 1) {
     // Eight bits take half the time, and the picture has no more.
@@ -148,9 +186,12 @@ Level level_of(cv::Mat picture, int step) {
   } else {
     level.response = close_minus_open(level.picture, true);
   }
+  if (!hidden.empty()) level.response.setTo(0, hidden);
   cv::Mat mean;
   block_statistics(level.response, mean, level.largest);
+  if (!hidden.empty()) without_hidden(hidden, mean);
   level.typical = typical_of(mean);
+  level.clutter = clutter_of(level);
   return level;
 }
 
@@ -161,6 +202,31 @@ double Level::quietest() { return kLeastTypical; }
 cv::Point Level::sample_at(const Pixel& pixel) const {
   return {static_cast<int>(std::lround((pixel.x() - 0.5) / step)),
           static_cast<int>(std::lround((pixel.y() - 0.5) / step))};
+}
+
+bool Level::is_peak(int bx, int by) const {
+  const short here = largest.at<short>(by, bx);
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = bx + dx, y = by + dy;
+      if (x < 0 || y < 0 || x >= largest.cols || y >= largest.rows) continue;
+      const short there = largest.at<short>(y, x);
+      const bool is_before = dy < 0 || (dy == 0 && dx < 0);
+      if (there > here || (is_before && there == here)) return false;
+    }
+  return true;
+}
+
+double Level::noise_at(const cv::Point& sample) const {
+  const int bx = std::min(sample.x / kBlock, typical.cols - 1);
+  const int by = std::min(sample.y / kBlock, typical.rows - 1);
+  return static_cast<double>(typical.at<float>(by, bx)) / kMeanResponse;
+}
+
+double Level::clutter_at(const cv::Point& sample) const {
+  const int bx = std::min(sample.x / kBlock, clutter.cols - 1);
+  const int by = std::min(sample.y / kBlock, clutter.rows - 1);
+  return static_cast<double>(clutter.at<float>(by, bx));
 }
 
 double Level::relative_response(const cv::Point& sample) const {
@@ -189,14 +255,14 @@ cv::Mat luma_of(const image::Picture& picture) {
                  static_cast<std::size_t>(luma.stride));
 }
 
-std::vector<Level> scale_space(const image::Picture& picture) {
+std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view) {
   std::vector<Level> levels;
   cv::Mat samples;
-  luma_of(picture).convertTo(samples, CV_16S, kGreyScale);
+  view.luma(picture).convertTo(samples, CV_16S, kGreyScale);
   for (int step = 1; 4 * step <= kLargestPx; step *= 2) {
     if (std::min(samples.cols, samples.rows) < kLeastSide) break;
     samples = smoothed(samples);
-    levels.push_back(level_of(samples, step));
+    levels.push_back(level_of(samples, step, view.hidden(levels.size())));
     samples = halved(samples);
   }
   return levels;

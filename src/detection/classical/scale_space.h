@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "detection/classical/free_view.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/picture.h"
 
@@ -13,6 +14,8 @@ namespace airtruth::detection {
 
 // Samples hold grey levels times this, so that the mean of many pixels keeps its fractions.
 inline constexpr int kGreyScale = 16;
+// A response of this many times the typical one is that of an isolated object, not of noise.
+inline constexpr double kIsolated = 6;
 // Side of the square blocks over which noise is measured, in samples of a level.
 inline constexpr int kBlock = 8;
 // Length of the structuring elements, in samples. Close-minus-open responds to objects of at most
@@ -42,7 +45,16 @@ struct Level {
   cv::Mat typical;
   // CV_16S, one value for each block: its largest response.
   cv::Mat largest;
+  // CV_32F, one value for each block: the root mean square, over the blocks around, of the largest
+  // response of those that hold an isolated object, as trees in a field, waves or small clouds do;
+  // 0 in noise and in a clear sky. The block's own object does not count.
+  cv::Mat clutter;
+  // CV_8U, 255 where a sample shows the own aircraft, and does not respond; empty: none does.
+  cv::Mat hidden;
 
+  // Mean response over the standard deviation of white noise in the smoothed picture, from a
+  // simulation (classical_test.cpp repeats it).
+  static constexpr double kMeanResponse = 0.8;
   // The least value that `typical` has, that of a sky without noise.
   static double quietest();
   // Where the centre of a sample lies in the picture, and the sample that is nearest to a position.
@@ -50,6 +62,14 @@ struct Level {
   cv::Point sample_at(const Pixel& pixel) const;
   // Response in units of the typical response there; 0 outside of the picture.
   double relative_response(const cv::Point& sample) const;
+  // Whether no neighbouring block has a stronger response; of equal ones, the first counts.
+  bool is_peak(int bx, int by) const;
+  double clutter_at(const cv::Point& sample) const;
+  // The standard deviation of the noise of `picture` that has the typical response there.
+  double noise_at(const cv::Point& sample) const;
+  bool hides(const cv::Point& sample) const {
+    return !hidden.empty() && hidden.at<std::uint8_t>(sample) != 0;
+  }
   // The largest relative response within `radius` samples.
   double relative_response_near(const cv::Point& sample, int radius) const;
 };
@@ -60,6 +80,6 @@ cv::Mat luma_of(const image::Picture& picture);
 // The levels of a picture's luma: as many as needed for objects of kLargestPx, as far as its size
 // allows.
 inline constexpr int kLargestPx = 128;
-std::vector<Level> scale_space(const image::Picture& picture);
+std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view = FreeView());
 
 }  // namespace airtruth::detection

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -9,6 +10,7 @@
 #include "camera/lens/lens.h"
 #include "detection/detections/detections.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
 // The interface that every detector has: built-in ones, a network, an external program.
@@ -41,6 +43,9 @@ struct SequenceInput {
   double frame_rate_hz = 0;
   // The stated lens, or a guess of 60 degrees across where none is stated.
   lens::Lens lens;
+  // The mask of the own aircraft, of the pictures' size; null: nothing of it is in view, or nothing
+  // is known of it.
+  std::shared_ptr<const image::Mask> own_aircraft = nullptr;
 };
 
 // Thrown where a detector can give no more answers: its process crashed, did not answer in time,
@@ -59,10 +64,12 @@ class Detector {
   virtual void begin(const SequenceInput& sequence) = 0;
   // Returns the frame's detections, the highest score first. Throws DetectorFailed.
   virtual std::vector<Detection> detect(const FrameInput& frame) = 0;
+  // True where the detector itself leaves out SequenceInput::own_aircraft.
+  virtual bool leaves_out_own_aircraft() const { return false; }
   // True where detect() uses FrameInput::turn; the caller measures the motion only then.
   virtual bool needs_motion() const = 0;
-  // The least score with which a detection may begin a track; empty where the detector has no
-  // opinion, and every detection may.
+  // The least score with which a detection of the sequence may begin a track; empty where the
+  // detector has no opinion, and every detection may. Valid after begin().
   virtual std::optional<double> confident_score() const { return {}; }
   // Output of the detector's process other than its answers.
   virtual std::string log() const { return {}; }

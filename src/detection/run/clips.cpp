@@ -39,6 +39,7 @@ DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name) 
   const sequence::Finished finished = sequence::open_finished(set.folder(name));
   clip.media = finished.video;
   clip.lens = annotation::lens_of(finished.truth.lens);
+  if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
   return clip;
 }
 
@@ -72,6 +73,7 @@ std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
     DetectionClip clip = clip_of(background.video);
     if (const int count = ++count_of_name[clip.name]; count > 1)
       clip.name += fmt::format("-{}", count);
+    clip.own_aircraft = background.mask;
     clip.first_frame = background.first_frame;
     clip.frame_count = background.frame_count;
     clip.lens = annotation::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);

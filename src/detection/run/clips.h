@@ -25,6 +25,8 @@ struct DetectionClip {
   std::vector<std::int64_t> frames;
   // Empty where nothing states one.
   std::optional<lens::Lens> lens;
+  // A picture that is black where the own aircraft is; empty where nothing states one.
+  std::optional<fs::path> own_aircraft;
 };
 
 // A sequence of a set with all its frames. Throws Error where it has no video.

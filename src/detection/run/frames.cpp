@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "foundation/base/error.h"
+#include "picture/video/still.h"
 
 namespace airtruth::detection {
 namespace {
@@ -31,7 +32,11 @@ ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& 
   const lens::ImageSize size = sequence_.lens.size();
   if (size != lens::ImageSize{sequence_.width, sequence_.height})
     throw Error("has pictures of another size than its lens states", {clip.media.string()});
-  if (with_motion) estimator_.emplace(sequence_.lens, motion::Options{});
+  if (clip.own_aircraft)
+    sequence_.own_aircraft = std::make_shared<image::Mask>(
+        video::read_mask(*clip.own_aircraft, sequence_.width, sequence_.height));
+  if (with_motion)
+    estimator_.emplace(sequence_.lens, motion::Options{}, sequence_.own_aircraft.get());
 }
 
 std::int64_t ClipFrames::count_estimate() const {

@@ -37,6 +37,9 @@ Json settings_of(const DetectorName& detector, const RunOptions& options) {
                    {"max_per_frame", options.max_per_frame}};
   settings["min_score"] = options.min_score ? Json(*options.min_score) : Json();
   settings["lens"] = options.lens ? Json(sha256_of_file(*options.lens)) : Json();
+  settings["mask"] = options.mask && options.masks ? Json(sha256_of_file(*options.mask)) : Json();
+  settings["masks"] = options.masks;
+  settings["mask_results"] = options.mask_results;
   settings["association"] = options.association ? settings_of(*options.association) : Json();
   settings["files"] = Json::object();
   for (const fs::path& file : files_of(detector.command)) {

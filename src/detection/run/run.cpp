@@ -25,33 +25,51 @@
 namespace airtruth::detection {
 namespace {
 
+// The share of a box's pixels, those with their centre in it, that the own aircraft hides.
+double hidden_share(const Box& box, const image::Mask& own_aircraft) {
+  const auto from = [](double edge) {
+    return std::max(0, static_cast<int>(std::ceil(edge - 0.5)));
+  };
+  const int right = std::min(own_aircraft.width, from(box.right()));
+  const int bottom = std::min(own_aircraft.height, from(box.bottom()));
+  int hidden = 0, all = 0;
+  for (int y = from(box.y); y < bottom; ++y)
+    for (int x = from(box.x); x < right; ++x, ++all) hidden += own_aircraft.is_free(x, y) ? 0 : 1;
+  return all > 0 ? double(hidden) / all : 0;
+}
+
 // One detector within one sequence.
 class Following {
  public:
   Following(Results& results,
             std::string part,
             const DetectorOptions& options,
-            std::optional<AssociationOptions> association)
+            const RunOptions& run)
       : results_(&results),
         part_(std::move(part)),
-        detector_(make_detector(results.command(), options)) {
-    if (!association) return;
-    if (!association->confident_score) association->confident_score = detector_->confident_score();
-    associator_.emplace(*association);
-  }
+        run_(&run),
+        detector_(make_detector(results.command(), options)) {}
 
-  bool needs_motion() const { return associator_ || detector_->needs_motion(); }
+  bool needs_motion() const { return run_->association || detector_->needs_motion(); }
   bool is_broken() const { return !detector_; }
 
   void begin(const SequenceInput& sequence) {
     found_.name = sequence.name;
     found_.width = sequence.width;
     found_.height = sequence.height;
-    if (associator_) associator_->begin(sequence);
-    guarded([&] { detector_->begin(sequence); });
+    guarded([&] {
+      detector_->begin(sequence);
+      if (run_->mask_results && !detector_->leaves_out_own_aircraft())
+        own_aircraft_ = sequence.own_aircraft;
+      if (!run_->association) return;
+      AssociationOptions association = *run_->association;
+      if (!association.confident_score) association.confident_score = detector_->confident_score();
+      associator_.emplace(association);
+      associator_->begin(sequence);
+    });
   }
 
-  void detect(const FrameInput& frame, const RunOptions& options) {
+  void detect(const FrameInput& frame) {
     guarded([&] {
       const Stopwatch watch;
       std::vector<Detection> detections = detector_->detect(frame);
@@ -63,10 +81,14 @@ class Following {
       std::stable_sort(detections.begin(),
                        detections.end(),
                        [](const Detection& a, const Detection& b) { return a.score > b.score; });
-      if (options.min_score)
-        std::erase_if(detections, [&](const Detection& d) { return d.score < *options.min_score; });
-      if (std::ssize(detections) > options.max_per_frame)
-        detections.resize(static_cast<std::size_t>(options.max_per_frame));
+      if (own_aircraft_)
+        std::erase_if(detections, [&](const Detection& d) {
+          return hidden_share(d.box_px, *own_aircraft_) > 0.5;
+        });
+      if (run_->min_score)
+        std::erase_if(detections, [&](const Detection& d) { return d.score < *run_->min_score; });
+      if (std::ssize(detections) > run_->max_per_frame)
+        detections.resize(static_cast<std::size_t>(run_->max_per_frame));
       if (associator_) detections = associator_->step(frame, std::move(detections));
       found_.frames.push_back(std::move(detections));
       found_.seconds.push_back(took_s);
@@ -91,7 +113,9 @@ class Following {
 
   Results* results_;
   std::string part_;
+  const RunOptions* run_;
   std::unique_ptr<Detector> detector_;
+  std::shared_ptr<const image::Mask> own_aircraft_;
   std::optional<Associator> associator_;
   SequenceDetections found_;
 };
@@ -145,7 +169,7 @@ class Running {
 
   std::vector<RunSummary> over(const fs::path& video) {
     const DetectionClip clip = clip_of(video);
-    ClipFrames(with_lens(clip), false, options_.warn);  // an Error before anything is made
+    ClipFrames(with_facts(clip), false, options_.warn);  // an Error before anything is made
     open();
     over(
         "", clip.name, [&] { return clip; }, options_.progress);
@@ -160,8 +184,16 @@ class Running {
     for (const auto& results : results_) results->open();
   }
 
-  // The lens that the user states, for a clip that states none.
-  DetectionClip with_lens(DetectionClip clip) const {
+  // The lens and the mask that the user states, for a clip that states none.
+  DetectionClip with_facts(DetectionClip clip) const {
+    if (!options_.masks) clip.own_aircraft.reset();
+    if (clip.own_aircraft && !fs::exists(*clip.own_aircraft)) {
+      airtruth::warn(options_.warn,
+                     clip.own_aircraft->string() + ": the mask of '" + clip.name +
+                         "' is not there; the own aircraft is looked at as well");
+      clip.own_aircraft.reset();
+    }
+    if (!clip.own_aircraft && options_.masks) clip.own_aircraft = options_.mask;
     if (clip.lens || !options_.lens) return clip;
     const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}).info();
     clip.lens = lens::read_calibration(*options_.lens, {info.width, info.height});
@@ -176,9 +208,9 @@ class Running {
     std::vector<Following> detectors;
     for (const auto& results : results_)
       if (!results->keeps(part, name))
-        detectors.emplace_back(*results, part, detector_options_, options_.association);
+        detectors.emplace_back(*results, part, detector_options_, options_);
     if (detectors.empty()) return;
-    const DetectionClip clip = with_lens(make_clip());
+    const DetectionClip clip = with_facts(make_clip());
     const bool with_motion =
         std::any_of(detectors.begin(), detectors.end(), [](const Following& detector) {
           return detector.needs_motion();
@@ -187,7 +219,7 @@ class Running {
     for (Following& detector : detectors) detector.begin(frames.sequence());
     while (const auto frame = frames.next()) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      for (Following& detector : detectors) detector.detect(*frame, options_);
+      for (Following& detector : detectors) detector.detect(*frame);
       if (std::all_of(detectors.begin(), detectors.end(), [](const Following& detector) {
             return detector.is_broken();
           }))

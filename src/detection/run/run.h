@@ -32,6 +32,14 @@ struct RunOptions {
   bool backgrounds = true;
   // Calibration file for clips that state no lens.
   std::optional<fs::path> lens;
+  // Mask of the own aircraft for clips that state none.
+  std::optional<fs::path> mask;
+  // Masks are used: nothing is detected on the own aircraft, and the camera's motion is not
+  // measured on it.
+  bool masks = true;
+  // Detections of detectors that do not look at the mask (networks, programs) are left out where
+  // more than half of their box is on the own aircraft.
+  bool mask_results = false;
   // Tracks made of the detections; empty: the detector's own, if it has any. Without a confident
   // score it is the detector's.
   std::optional<AssociationOptions> association;
