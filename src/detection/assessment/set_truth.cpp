@@ -11,8 +11,8 @@
 
 #include "benchmark/experiment/frames.h"
 #include "detection/assessment/contrast_to_noise.h"
-#include "detection/assessment/ignored_regions.h"
 #include "detection/assessment/rendered_truth.h"
+#include "detection/detections/ignored_regions.h"
 #include "encounter/separation/volumes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"

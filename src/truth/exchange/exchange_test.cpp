@@ -587,7 +587,7 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kCoco, folder.file("a.json", "{\n\"images\": [}")),
        "a.json:2: is not JSON");
   ends(error_of(Format::kCoco, folder.file("b.json", R"({"categories": [{"id": 1}]})")),
-       "b.json: categories[0] has no name");
+       "b.json: categories[0] has no name; expected a string");
   folder.file("m/gt/gt.txt", "1,1,5,5,9,9\n0,1,5,5,9,9\n");
   ends(error_of(Format::kMot, folder.path() / "m"),
        "gt.txt:2: the frame is no whole number from 1 on");
