@@ -90,6 +90,17 @@ void print_declarations(const char* kind,
   console.result(line);
 }
 
+void print_weighted(const detection::DetectorScore& detector, Console& console) {
+  if (!detector.weighted_detection || !(detector.weighted_detection->trials > 0)) return;
+  console.result(
+      fmt::format("{}: weighted, finds {} of the aircraft in frames; its {} sequences "
+                  "are worth {:.1f} of equal weight",
+                  detector.name,
+                  share_of(*detector.weighted_detection),
+                  detector.weighted_detection->clusters,
+                  detector.weighted_detection->effective_clusters));
+}
+
 void print_tracks(const detection::DetectorScore& detector,
                   const detection::Assessment& assessment,
                   Console& console) {
@@ -184,6 +195,7 @@ void print_detections(const detection::Assessment& assessment, Console& console)
     console.result(row_of(detector));
   for (const detection::DetectorScore& detector : assessment.detectors) {
     print_false_alarms(detector, console);
+    print_weighted(detector, console);
     print_tracks(detector, assessment, console);
   }
 }

@@ -1,264 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "detection/assessment/detection_json.h"
 
-#include <cmath>
-
 #include <nlohmann/json.hpp>
+
+#include "detection/assessment/measure_json.h"
+#include "detection/assessment/or_null.h"
+#include "detection/assessment/track_json.h"
 
 namespace airtruth::detection {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json json_of(const std::optional<evaluation::Interval>& interval) {
-  return interval ? Json{interval->low, interval->high} : Json();
-}
-
-Json json_of(const Share& share) {
-  if (!(share.trials > 0)) return {};
-  return {{"share", share.value},
-          {"interval_95", {share.low, share.high}},
-          {"successes", share.successes},
-          {"trials", share.trials},
-          {"sequences", share.clusters}};
-}
-
-Json json_of(const std::optional<MeanOf>& mean) {
-  if (!mean) return {};
-  return {{"mean", mean->mean}, {"interval_95", json_of(mean->interval)}, {"count", mean->count}};
-}
-
-Json json_of(const std::optional<PrecisionCurve>& curve, const std::optional<PrecisionBand>& band) {
-  if (!curve) return {};
-  Json json = {{"precision", curve->precision},
-               {"score", curve->score},
-               {"recall", curve->recall},
-               {"truths", curve->truths}};
-  if (band) {
-    json["low_95"] = band->low;
-    json["high_95"] = band->high;
-  }
-  return json;
-}
-
-Json json_of(const AveragePrecision& ap) {
-  return {{"ap", or_null(ap.ap)},
-          {"ap_50", or_null(ap.ap_50)},
-          {"ap_50_interval_95", json_of(ap.ap_50_interval)},
-          {"ap_75", or_null(ap.ap_75)},
-          {"ap_small", or_null(ap.ap_small)},
-          {"ap_medium", or_null(ap.ap_medium)},
-          {"ap_large", or_null(ap.ap_large)},
-          {"ar_1", or_null(ap.ar_1)},
-          {"ar_10", or_null(ap.ar_10)},
-          {"ar_100", or_null(ap.ar_100)},
-          {"ar_small", or_null(ap.ar_small)},
-          {"ar_medium", or_null(ap.ar_medium)},
-          {"ar_large", or_null(ap.ar_large)},
-          {"ap_centre", or_null(ap.ap_centre)},
-          {"ap_centre_interval_95", json_of(ap.ap_centre_interval)},
-          {"curve_50", json_of(ap.curve_50, ap.band_50)},
-          {"curve_centre", json_of(ap.curve_centre, ap.band_centre)}};
-}
-
-Json json_of(const FrocPoint& point, bool has_hours) {
-  return {{"score", point.score},
-          {"detection", json_of(point.detection)},
-          {"false_alarms_per_image", point.false_alarms_per_image},
-          {"false_alarms_per_hour", has_hours ? Json(point.false_alarms_per_hour) : Json()},
-          {"false_alarms_per_flight", point.false_alarms_per_flight}};
-}
-
-Json json_of(const Froc& froc) {
-  Json json = {{"images", froc.images},
-               {"flights", froc.flights},
-               {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
-               {"aircraft_in_images", froc.aircraft},
-               {"points", Json::array()}};
-  for (const FrocPoint& point : froc.points)
-    json["points"].push_back(json_of(point, froc.hours > 0));
-  return json;
-}
-
-Json json_of(const DetectionBin& bin) {
-  Json json = Json::object();
-  if (bin.name.empty()) {
-    json["from"] = bin.from;
-    json["to"] = std::isfinite(bin.to) ? Json(bin.to) : Json();
-  } else {
-    json["name"] = bin.name;
-  }
-  json.update(json_of(bin.detection));
-  return json;
-}
-
-Json json_of(const Spread& spread) {
-  return {{"mean", spread.mean},
-          {"deviation", spread.deviation},
-          {"rms", spread.rms},
-          {"within_95", spread.within_95},
-          {"count", spread.count}};
-}
-
-Json json_of(const std::optional<BearingError>& error) {
-  if (!error) return {};
-  const auto rate = [](const std::optional<Spread>& spread) {
-    return spread ? json_of(*spread) : Json();
-  };
-  return {{"azimuth_mrad", json_of(error->azimuth)},
-          {"elevation_mrad", json_of(error->elevation)},
-          {"azimuth_rate_mradps", rate(error->azimuth_rate)},
-          {"elevation_rate_mradps", rate(error->elevation_rate)},
-          {"sc228_bearing_deviation_mrad", kSc228Bearing_mrad},
-          {"sc228_rate_deviation_mradps", kSc228Rate_mradps}};
-}
-
-Json json_of(const AotRate& rate) {
-  return {{"rate", rate.total > 0 ? Json(rate.rate()) : Json()},
-          {"detected", rate.detected},
-          {"total", rate.total}};
-}
-
-Json json_of(const AotScore& aot, bool has_hours) {
-  return {{"score", aot.score},
-          {"edr", json_of(aot.edr_all)},
-          {"edr_below_horizon", json_of(aot.edr_below)},
-          {"edr_mixed", json_of(aot.edr_mixed)},
-          {"edr_above_horizon", json_of(aot.edr_above)},
-          {"edr_by_frames", json_of(aot.edr_frames_all)},
-          {"afdr", json_of(aot.afdr)},
-          {"max_range_m", or_null(aot.max_range_m)},
-          {"hfar", has_hours ? Json(aot.hfar) : Json()},
-          {"fppi", aot.fppi}};
-}
-
-Json json_of(const Hota& hota) {
-  const auto curve = [](const Hota::Curve& values) {
-    return Json{{"mean", Hota::mean(values)}, {"at_overlaps", values}};
-  };
-  return {{"hota", curve(hota.hota)},
-          {"det_a", curve(hota.det_a)},
-          {"ass_a", curve(hota.ass_a)},
-          {"det_re", curve(hota.det_re)},
-          {"det_pr", curve(hota.det_pr)},
-          {"ass_re", curve(hota.ass_re)},
-          {"ass_pr", curve(hota.ass_pr)},
-          {"loc_a", curve(hota.loc_a)}};
-}
-
-Json json_of(const ClearMot& clear) {
-  return {{"mota", clear.mota()},
-          {"motp", clear.motp()},
-          {"recall", clear.recall()},
-          {"precision", clear.precision()},
-          {"true_positives", clear.true_positives},
-          {"false_negatives", clear.false_negatives},
-          {"false_positives", clear.false_positives},
-          {"identity_switches", clear.identity_switches},
-          {"fragmentations", clear.fragmentations},
-          {"mostly_tracked", clear.mostly_tracked},
-          {"partly_tracked", clear.partly_tracked},
-          {"mostly_lost", clear.mostly_lost}};
-}
-
-Json json_of(const Identity& identity) {
-  return {{"idf1", identity.idf1()},
-          {"recall", identity.recall()},
-          {"precision", identity.precision()},
-          {"true_positives", identity.true_positives},
-          {"false_negatives", identity.false_negatives},
-          {"false_positives", identity.false_positives}};
-}
-
-Json json_of(const DeclarationSummary& summary) {
-  return {{"declared", json_of(summary.declared)},
-          {"range_m", json_of(summary.range_m)},
-          {"to_closest_approach_s", json_of(summary.to_closest_approach_s)},
-          {"in_time", summary.in_time ? json_of(*summary.in_time) : Json()},
-          {"no_violation", summary.no_violation},
-          {"impossible", summary.impossible},
-          {"unknown", summary.unknown}};
-}
-
-const char* name(InTime in_time) {
-  switch (in_time) {
-    case InTime::kUnknown:
-      return "unknown";
-    case InTime::kNoViolation:
-      return "no violation";
-    case InTime::kImpossible:
-      return "impossible";
-    case InTime::kYes:
-      return "yes";
-    case InTime::kNo:
-      return "no";
-  }
-  return "unknown";
-}
-
-Json json_of(const EncounterScore& one,
-             const DetectorScore& detector,
-             const Assessment& assessment) {
-  const TruthSequence& truth = assessment.truths[detector.sequences[one.sequence].truth];
-  const TruthEncounter* encounter = truth.encounter(one.object);
-  Json json = {{"sequence", truth.name},
-               {"object", one.object},
-               {"name", encounter != nullptr ? Json(encounter->name) : Json()},
-               {"weight", truth.weight},
-               {"first_seen_frame", truth.frames[one.first_seen].frame},
-               {"first_seen_s", truth.frames[one.first_seen].time_s},
-               {"first_seen_range_m", or_null(one.first_seen_range_m)},
-               {"frames_seen", one.frames_seen},
-               {"least_range_m", or_null(one.least_range_m)},
-               {"declaration", Json()},
-               {"in_time", name(one.in_time)}};
-  if (encounter != nullptr) {
-    json["closest_approach_s"] = or_null(encounter->closest_approach_s);
-    json["violation_s"] = or_null(encounter->violation_s);
-  }
-  if (one.declaration)
-    json["declaration"] = {
-        {"frame", truth.frames[one.declaration->frame].frame},
-        {"time_s", one.declaration->time_s},
-        {"track", one.declaration->track},
-        {"range_m", or_null(one.declaration->range_m)},
-        {"to_closest_approach_s", or_null(one.declaration->to_closest_approach_s)}};
-  return json;
-}
-
-Json json_of(const OperatingPoint& point, bool has_hours) {
-  return {{"score", point.score},
-          {"false_tracks_per_hour", has_hours ? Json(point.false_tracks_per_hour) : Json()},
-          {"declared", json_of(point.declared)},
-          {"range_m", json_of(point.range_m)},
-          {"range_all_m", json_of(point.range_all_m)}};
-}
-
-Json tracks_of(const DetectorScore& detector, const Assessment& assessment) {
-  if (!detector.tracks) return {};
-  const TrackScores& tracks = *detector.tracks;
-  const bool has_hours = detector.froc.hours > 0;
-  Json json = {{"hota", json_of(tracks.hota)},
-               {"clear", json_of(tracks.clear)},
-               {"identity", json_of(tracks.identity)},
-               {"false_tracks", tracks.false_tracks},
-               {"false_tracks_per_hour", has_hours ? Json(tracks.false_tracks_per_hour) : Json()},
-               {"declarations", json_of(tracks.declarations)},
-               {"weighted_declarations",
-                tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
-               {"encounters", Json::array()},
-               {"operating_curve", Json::array()}};
-  for (const EncounterScore& one : tracks.encounters)
-    json["encounters"].push_back(json_of(one, detector, assessment));
-  for (const OperatingPoint& point : tracks.operating_curve)
-    json["operating_curve"].push_back(json_of(point, has_hours));
-  return json;
-}
 
 Json json_of(const FalseAlarm& alarm, const DetectorScore& detector, const Assessment& assessment) {
   const ScoredDetections& scored = detector.sequences[alarm.sequence];
@@ -309,9 +61,11 @@ Json json_of(const DetectorScore& detector, const Assessment& assessment) {
                {"aot", json_of(detector.aot, has_hours)},
                {"aot_at_hfar_0.5", has_hours ? aot(detector.aot_ranks.by_hfar) : Json()},
                {"aot_at_fppi_0.0005", aot(detector.aot_ranks.by_fppi)},
-               {"tracks", tracks_of(detector, assessment)},
+               {"tracks", tracks_json_of(detector, assessment)},
                {"strongest_false_alarms", Json::array()},
                {"misses", Json::array()}};
+  if (detector.point && detector.weighted_detection)
+    json["point"]["weighted_detection"] = json_of(*detector.weighted_detection);
   for (const auto& [key, bins] : detector.by) {
     json["by"][key] = Json::array();
     for (const DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));

@@ -42,9 +42,13 @@ std::string cells(const std::optional<MeanOf>& mean) {
 constexpr const char* kDetectorsHead =
     "detector,sequences,detections,ap,ap_50,ap_50_low_95,ap_50_high_95,ap_75,ap_centre,"
     "ap_centre_low_95,ap_centre_high_95,point_score,detection,detection_low_95,detection_high_95,"
-    "false_alarms_per_image,false_alarms_per_hour,false_alarms_per_flight,azimuth_deviation_mrad,"
-    "elevation_deviation_mrad,azimuth_rate_deviation_mradps,elevation_rate_deviation_mradps,aot_"
-    "edr,"
+    "weighted_detection,weighted_detection_low_95,weighted_detection_high_95,"
+    "false_alarms_per_image,false_alarms_per_hour,false_alarms_per_flight,"
+    "azimuth_deviation_mrad,azimuth_deviation_low_95_mrad,azimuth_deviation_high_95_mrad,"
+    "elevation_deviation_mrad,elevation_deviation_low_95_mrad,elevation_deviation_high_95_mrad,"
+    "azimuth_rate_deviation_mradps,azimuth_rate_deviation_low_95_mradps,"
+    "azimuth_rate_deviation_high_95_mradps,elevation_rate_deviation_mradps,"
+    "elevation_rate_deviation_low_95_mradps,elevation_rate_deviation_high_95_mradps,aot_edr,"
     "aot_hfar,aot_afdr,aot_fppi,hota,mota,idf1,declared,declared_low_95,declared_high_95,"
     "declaration_range_m,declaration_range_low_95,declaration_range_high_95,"
     "declaration_to_closest_approach_s,declaration_to_closest_approach_low_95,"
@@ -52,21 +56,24 @@ constexpr const char* kDetectorsHead =
     "false_tracks_per_hour,frames_per_second_median\n";
 
 std::string point_cells(const DetectorScore& detector) {
-  if (!detector.point) return std::string(7, ',');
+  if (!detector.point) return std::string(10, ',');
   const FrocPoint& point = *detector.point;
   return cell(point.score) + cells(std::optional(point.detection)) +
-         cell(point.false_alarms_per_image) +
+         cells(detector.weighted_detection) + cell(point.false_alarms_per_image) +
          (detector.froc.hours > 0 ? cell(point.false_alarms_per_hour) : ",") +
          cell(point.false_alarms_per_flight);
 }
 
 std::string bearing_cells(const std::optional<BearingError>& error) {
-  if (!error) return ",,,,";
-  const auto rate = [](const std::optional<Spread>& spread) {
-    return spread ? cell(spread->deviation) : std::string(",");
+  if (!error) return std::string(12, ',');
+  const auto deviation = [](const std::optional<Spread>& spread) {
+    if (!spread) return std::string(3, ',');
+    const auto& intervals = spread->intervals;
+    return cell(spread->deviation) +
+           cells(intervals ? std::optional(intervals->deviation) : std::nullopt);
   };
-  return cell(error->azimuth.deviation) + cell(error->elevation.deviation) +
-         rate(error->azimuth_rate) + rate(error->elevation_rate);
+  return deviation(error->azimuth) + deviation(error->elevation) + deviation(error->azimuth_rate) +
+         deviation(error->elevation_rate);
 }
 
 std::string aot_cells(const DetectorScore& detector) {
@@ -175,7 +182,9 @@ std::string encounters_csv(const Assessment& assessment) {
 }
 
 std::string breakdown_csv(const Assessment& assessment) {
-  std::string text = "detector,by,name,from,to,aircraft_in_frames,found,detection,low_95,high_95\n";
+  std::string text =
+      "detector,by,name,from,to,aircraft_in_frames,found,detection,low_95,high_95,"
+      "weighted_detection,weighted_low_95,weighted_high_95,effective_sequences\n";
   for (const DetectorScore& detector : assessment.detectors)
     for (const auto& [key, bins] : detector.by)
       for (const DetectionBin& bin : bins) {
@@ -183,7 +192,8 @@ std::string breakdown_csv(const Assessment& assessment) {
         text +=
             bin.name.empty() ? cell(bin.from) + (std::isfinite(bin.to) ? cell(bin.to) : ",") : ",,";
         text += cell(bin.detection.trials) + cell(bin.detection.successes) +
-                cells(std::optional(bin.detection)) + "\n";
+                cells(std::optional(bin.detection)) + cells(bin.weighted) +
+                (bin.weighted ? cell(bin.weighted->effective_clusters) : ",") + "\n";
       }
   return text;
 }

@@ -11,8 +11,8 @@
 
 #include "benchmark/experiment/frames.h"
 #include "detection/assessment/contrast_to_noise.h"
-#include "detection/assessment/ignored_regions.h"
 #include "detection/assessment/rendered_truth.h"
+#include "detection/detections/ignored_regions.h"
 #include "encounter/separation/volumes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
@@ -217,6 +217,7 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
   const dataset::Boxes boxes = set.usual_boxes(options.warn);
   SetTruth result;
   std::vector<std::int64_t> first_frames;
+  std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
     if (set.is_imported(name)) {
       result.sequences.push_back(imported_truth(set, name));
@@ -225,13 +226,20 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
       RenderedTruth rendered = rendered_truth(set.folder(name), boxes, options.volume);
       result.sequences.push_back(std::move(rendered.truth));
       first_frames.push_back(rendered.first_background_frame);
-      result.is_weighted = result.is_weighted || rendered.has_weight;
+      weighted += rendered.has_weight ? 1 : 0;
     }
     TruthSequence& truth = result.sequences.back();
     truth.name = name;
     start_at_0(truth);
     truth.duration_s = duration_s(truth);
   }
+  result.is_weighted = weighted > 0;
+  if (result.is_weighted && weighted < result.sequences.size())
+    result.left_out.push_back(
+        fmt::format("{} of {} sequences have no encounter weight; weighted shares count them with "
+                    "a weight of 1",
+                    result.sequences.size() - weighted,
+                    result.sequences.size()));
   expect_volume(result, options.volume);
   fs::path ignore = options.ignore;
   if (ignore.empty() && fs::exists(folder / kIgnoreFile)) ignore = folder / kIgnoreFile;

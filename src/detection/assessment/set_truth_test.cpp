@@ -7,9 +7,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "detection/assessment/assess.h"
+#include "detection/assessment/detection_json.h"
 #include "detection/detections/results_folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -166,6 +168,19 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   EXPECT_LT(score.bearing->azimuth.rms, 2);
   EXPECT_LT(score.bearing->elevation.rms, 2);
   EXPECT_FALSE(score.by.at("contrast_to_noise").empty());
+  // Both sequences have a weight of 3.
+  ASSERT_TRUE(score.weighted_detection);
+  EXPECT_EQ(score.weighted_detection->value, 1);
+  EXPECT_EQ(score.weighted_detection->trials, 3 * score.point->detection.trials);
+  const nlohmann::ordered_json json = json_of(score, assessment);
+  EXPECT_EQ(json["point"]["weighted_detection"]["share"], 1);
+  for (const auto& bin : json["by"]["range_m"]) {
+    EXPECT_EQ(bin["share"], 1);
+    EXPECT_EQ(bin["weighted"]["share"], 1);
+    EXPECT_EQ(bin["weighted"]["trials"], 3 * bin["trials"].get<double>());
+    EXPECT_NEAR(bin["weighted"]["effective_sequences"].get<double>(), bin["sequences"], 1e-9);
+  }
+  EXPECT_EQ(json["bearing"]["azimuth_mrad"]["deviation_interval_95"].size(), 2u);
 }
 
 // A pixel to the right is 1000 / f mrad near the axis; the focal length of 240 px over 20 degrees

@@ -122,6 +122,17 @@ std::string name_of(const DetectionBin& bin) {
                                : fmt::format("≥ {}", bin.from);
 }
 
+// The colour of weighted bars beside the plain ones: half way to a light grey, which is seen on
+// white and on dark pages.
+plot::Colour pale(const plot::Colour& colour) {
+  constexpr int kLightGrey = 215;
+  plot::Colour result{};
+  std::transform(colour.begin(), colour.end(), result.begin(), [](int value) {
+    return static_cast<std::uint8_t>((value + kLightGrey) / 2);
+  });
+  return result;
+}
+
 Plot by_plot(const Assessment& assessment, const Quantity& quantity) {
   // By the lower bound, then by name.
   std::map<std::pair<double, std::string>, std::string> names;
@@ -136,12 +147,17 @@ Plot by_plot(const Assessment& assessment, const Quantity& quantity) {
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (const auto& [place, name] : names) plot.x.names.push_back(name);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    Series series = series_of(assessment, k, plot::Mark::kBars);
-    for (const DetectionBin& bin : bins_of(assessment.detectors[k]))
-      add_point(series,
-                static_cast<double>(std::distance(names.begin(), names.find(key(bin)))),
-                bin.detection);
-    keep(plot, std::move(series));
+    Series plain = series_of(assessment, k, plot::Mark::kBars);
+    Series weighted = plain;
+    weighted.name += ", weighted";
+    weighted.style.colour = pale(plain.style.colour);
+    for (const DetectionBin& bin : bins_of(assessment.detectors[k])) {
+      const auto place = static_cast<double>(std::distance(names.begin(), names.find(key(bin))));
+      add_point(plain, place, bin.detection);
+      if (bin.weighted) add_point(weighted, place, *bin.weighted);
+    }
+    keep(plot, std::move(plain));
+    keep(plot, std::move(weighted));
   }
   return plot;
 }

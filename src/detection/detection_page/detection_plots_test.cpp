@@ -67,5 +67,20 @@ TEST(DetectionPlots, BinsOfAllDetectorsShareTheirPlaces) {
   EXPECT_EQ(alarms->series[1].x, (std::vector<double>{1}));
 }
 
+// Weighted bars stand beside the plain ones of their detector, where there are any.
+TEST(DetectionPlots, WeightedBarsStandBesideThePlainOnes) {
+  Assessment assessment = two_detectors();
+  assessment.detectors[0].by["range_m"][1].weighted = share(0.3, 0.2, 0.4);
+  const auto plots = detection_plots(assessment);
+  const plot::Plot& plot = *plot_named(plots, "by_range_m");
+  ASSERT_EQ(plot.series.size(), 3u);
+  EXPECT_EQ(plot.series[1].name, "first, weighted");
+  EXPECT_EQ(plot.series[1].x, (std::vector<double>{2}));
+  EXPECT_EQ(plot.series[1].y, (std::vector<double>{0.3}));
+  EXPECT_EQ(plot.series[1].low, (std::vector<double>{0.2}));
+  EXPECT_NE(plot.series[1].style.colour, plot.series[0].style.colour);
+  EXPECT_EQ(plot.series[2].name, "second");
+}
+
 }  // namespace
 }  // namespace airtruth::detection

@@ -1,197 +1,129 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <charconv>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "detection/detections/json_list.h"
 #include "detection/detections/results_files.h"
+#include "detection/detections/set_images.h"
 #include "foundation/base/files.h"
-#include "foundation/base/line_of.h"
-#include "foundation/base/suggest.h"
 #include "foundation/json/json_object.h"
-#include "truth/exchange/text.h"
 
 // COCO's results format (cocodataset.org, "Results format"): a list of {image_id, category_id,
-// bbox, score}; bbox is [x, y, width, height] with the first pixel at 0.
+// bbox, score}; bbox is [x, y, width, height] with the first pixel at 0. Or a whole COCO file whose
+// annotations each have a score.
 namespace airtruth::detection {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 30;
+constexpr const char* kExpected =
+    "expected COCO results, [{\"image_id\": ..., \"category_id\": ..., \"bbox\": [x, y, width, "
+    "height], \"score\": ...}, ...], or a COCO file whose annotations each have a score";
 
-// One element of a JSON list, with the line at which it begins.
-struct Element {
-  std::string_view text;
-  int line = 0;
+// What a whole COCO file says about the numbers in its annotations.
+struct Names {
+  std::map<std::int64_t, std::string> image_files;
+  std::map<std::int64_t, std::string> categories;
 };
 
-// The elements of a list, found by its brackets alone: each is parsed by itself, so that a large
-// file is never a tree of values as a whole, and a fault has its line.
-class Elements {
- public:
-  Elements(std::string_view text, const fs::path& file) : text_(text), file_(file) {
-    skip_blanks();
-    if (at_ == text_.size() || text_[at_] != '[') fail("is no list of detections");
-    ++at_;
-  }
-
-  std::optional<Element> next() {
-    skip_blanks();
-    if (at_ < text_.size() && text_[at_] == ',' && !is_first_) {
-      ++at_;
-      skip_blanks();
-    } else if (at_ < text_.size() && text_[at_] == ']') {
-      ++at_;
-      skip_blanks();
-      if (at_ != text_.size()) fail("goes on after the list of detections");
-      return std::nullopt;
-    } else if (!is_first_) {
-      fail("the list of detections does not end; expected ',' or ']'");
-    }
-    is_first_ = false;
-    const std::size_t begin = at_;
-    const Element element{{}, line_};
-    skip_value();
-    return Element{text_.substr(begin, at_ - begin), element.line};
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(what, {file_.string(), line_});
-  }
-
-  void skip_blanks() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != text_.npos)
-      line_ += text_[at_++] == '\n' ? 1 : 0;
-  }
-
-  // To the comma or bracket after the value.
-  void skip_value() {
-    int depth = 0;
-    bool in_text = false;
-    for (; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      line_ += c == '\n' ? 1 : 0;
-      if (in_text) {
-        if (c == '\\')
-          ++at_;
-        else
-          in_text = c != '"';
-      } else if (c == '"') {
-        in_text = true;
-      } else if (c == '[' || c == '{') {
-        ++depth;
-      } else if ((c == ']' || c == '}') && depth > 0) {
-        --depth;
-      } else if (depth == 0 && (c == ',' || c == ']')) {
-        return;
-      }
-    }
-    fail("ends within a detection: the file is not whole");
-  }
-
-  std::string_view text_;
-  const fs::path& file_;
-  std::size_t at_ = 0;
-  int line_ = 1;
-  bool is_first_ = true;
-};
-
-struct Image {
-  std::size_t sequence = 0;
-  std::int64_t frame = 0;
-};
-
-// Images of a set by their number and by their name.
-class Images {
- public:
-  explicit Images(std::span<const ExpectedSequence> set) : set_(set) {
-    std::int64_t first = 1;
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      first_ids_.push_back(first);
-      first += set[i].frames;
-      names_.emplace(set[i].name, i);
-    }
-    end_ = first;
-  }
-
-  Image by_id(std::int64_t id, const Where& where) const {
-    if (id < 1 || id >= end_)
-      throw Error(fmt::format("image_id is {}; the set has the images 1 to {}", id, end_ - 1),
-                  where);
-    const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
-    const auto i = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
-    return {i, id - first_ids_[i]};
-  }
-
-  // "images/all/NAME/000012.jpg" and "NAME/000012" alike.
-  Image by_name(const std::string& text, const Where& where) const {
-    fs::path path(text);
-    const std::string stem = path.stem().string();
-    std::int64_t frame = -1;
-    const auto [end, failed] = std::from_chars(stem.data(), stem.data() + stem.size(), frame);
-    const std::string name = path.parent_path().filename().string();
-    const auto found = names_.find(name);
-    const bool is_number = failed == std::errc() && end == stem.data() + stem.size() && frame >= 0;
-    if (found != names_.end() && is_number && frame < set_[found->second].frames)
-      return {found->second, frame};
-    std::string hint;
-    if (found != names_.end()) {
-      hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
-    } else {
-      std::vector<std::string> names;
-      for (const ExpectedSequence& sequence : set_) names.push_back(sequence.name);
-      if (const auto near = nearest_spelling(name, names))
-        hint = "; did you mean the sequence '" + *near + "'?";
-    }
-    throw Error("the set has no image '" + text.substr(0, 200) +
-                    "'; expected SEQUENCE/NUMBER.jpg, with frames from 0" + hint,
-                where);
-  }
-
- private:
-  std::span<const ExpectedSequence> set_;
-  std::vector<std::int64_t> first_ids_;
-  std::int64_t end_ = 1;
-  std::map<std::string, std::size_t> names_;
-};
-
-JsonDocument parsed(const Element& element, const fs::path& file) {
+JsonDocument parsed(const JsonPart& part, const fs::path& file) {
   for (const char* word : {"NaN", "Infinity"})
-    if (element.text.find(word) != std::string_view::npos &&
-        !Json::accept(element.text.begin(), element.text.end()))
+    if (part.text.find(word) != std::string_view::npos &&
+        !Json::accept(part.text.begin(), part.text.end()))
       throw Error(std::string("holds ") + word + "; expected finite numbers",
-                  {file.string(), element.line});
-  return JsonDocument(element.text, {file.string(), element.line});
+                  {file.string(), part.line});
+  return JsonDocument(part.text, {file.string(), part.line});
 }
 
-Image image_of(const JsonObject& object, const Images& images, const Where& where) {
+// The texts of a key by the ids of the objects in a list.
+std::map<std::int64_t, std::string> texts_by_id(const std::optional<JsonPart>& list,
+                                                const fs::path& file,
+                                                const std::string& what,
+                                                const std::string& key) {
+  std::map<std::int64_t, std::string> texts;
+  if (!list) return texts;
+  JsonElements elements(*list, file, what);
+  while (const auto element = elements.next()) {
+    const JsonDocument object = parsed(*element, file);
+    const std::int64_t id = object.whole("id");
+    if (!texts.emplace(id, object.text(key)).second)
+      throw Error(fmt::format("the id {} is there twice among the {}", id, what),
+                  {file.string(), element->line});
+  }
+  return texts;
+}
+
+SetImage image_of(const JsonObject& object,
+                  const std::optional<Names>& names,
+                  const SetImages& images,
+                  const Where& where) {
   if (object.has("image_id")) {
     if (object.value("image_id").is_string()) return images.by_name(object.text("image_id"), where);
-    return images.by_id(object.whole("image_id"), where);
+    const std::int64_t id = object.whole("image_id");
+    if (!names || names->image_files.empty()) return images.by_id(id, where);
+    const auto named = names->image_files.find(id);
+    if (named == names->image_files.end())
+      throw Error(fmt::format("image_id is {}, which the file's images do not have", id), where);
+    return images.by_name(named->second, where);
   }
   for (const char* key : {"image_name", "file_name"})
     if (const auto name = object.maybe_text(key)) return images.by_name(*name, where);
-  throw Error("has no image_id", where);
+  throw Error(std::string("has no image_id; ") + kExpected, where);
 }
 
-Detection detection_of(const JsonObject& object) {
+// Category 1 is "aircraft" where nothing names it.
+std::string category_of(const JsonObject& object,
+                        const std::optional<Names>& names,
+                        const Where& where) {
+  if (const auto category = object.maybe_text("category_name")) return *category;
+  if (!object.has("category_id")) return Detection{}.category;
+  const std::int64_t id = object.whole("category_id");
+  if (names && !names->categories.empty()) {
+    const auto named = names->categories.find(id);
+    if (named == names->categories.end())
+      throw Error(fmt::format("category_id is {}, which the file's categories do not have", id),
+                  where);
+    return named->second;
+  }
+  return id == 1 ? Detection{}.category : fmt::format("{}", id);
+}
+
+Detection detection_of(const JsonObject& object,
+                       const std::optional<Names>& names,
+                       const Where& where) {
   Detection detection;
   const std::vector<double> box = object.numbers("bbox", 4);
   detection.box_px = {box[0], box[1], box[2], box[3]};
+  if (names && !object.has("score"))
+    throw Error(std::string("is an annotation without a score; ") + kExpected, where);
   detection.score = object.number("score");
-  if (const auto category = object.maybe_text("category_name"))
-    detection.category = *category;
-  else if (object.has("category_id"))
-    if (const std::int64_t id = object.whole("category_id"); id != 1)
-      detection.category = fmt::format("{}", id);
+  detection.category = category_of(object, names, where);
   if (const auto track = object.maybe_integer("track_id"); track && *track >= 0)
     detection.track = *track;
   return detection;
+}
+
+// The list of detections in a file, and what a whole COCO file says beside it.
+struct Found {
+  JsonPart list;
+  std::optional<Names> names;
+};
+
+Found found_in(std::string_view text, const fs::path& file) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && text[first] == '[') return {{text, 1}, {}};
+  if (first == std::string_view::npos || text[first] != '{')
+    throw Error(std::string("is no list of detections; ") + kExpected, {file.string()});
+  const auto members = json_members(text, file, {"annotations", "images", "categories"});
+  if (!members[0]) throw Error(std::string("has no annotations; ") + kExpected, {file.string()});
+  return {*members[0],
+          Names{texts_by_id(members[1], file, "images", "file_name"),
+                texts_by_id(members[2], file, "categories", "name")}};
 }
 
 }  // namespace
@@ -199,16 +131,17 @@ Detection detection_of(const JsonObject& object) {
 std::vector<SequenceDetections> read_coco_results(const fs::path& file,
                                                   std::span<const ExpectedSequence> set) {
   const std::string text = read_file(file, kMaxBytes);
-  const Images images(set);
+  const SetImages images(set);
   std::vector<FrameList> lists;
   for (const ExpectedSequence& sequence : set)
     lists.emplace_back(sequence.name, sequence.width, sequence.height, sequence.frames);
-  Elements elements(text, file);
+  const Found found = found_in(text, file);
+  JsonElements elements(found.list, file, found.names ? "annotations" : "detections");
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
     const JsonDocument object = parsed(*element, file);
-    const Image image = image_of(object, images, where);
-    lists[image.sequence].add(image.frame, detection_of(object), where);
+    const SetImage image = image_of(object, found.names, images, where);
+    lists[image.sequence].add(image.frame, detection_of(object, found.names, where), where);
   }
   std::vector<SequenceDetections> all;
   for (FrameList& list : lists) all.push_back(list.take());

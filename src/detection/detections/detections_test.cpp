@@ -155,10 +155,53 @@ TEST_F(Results, OfCocoThatAreNoneSayWhere) {
   EXPECT_THAT(one(R"({"image_id": 1, "bbox": [1,1,1], "score": 1})"), HasSubstr("bbox"));
   EXPECT_THAT(one(R"({"image_id": 1, "bbox": [999,1,1,1], "score": 1})"), HasSubstr("outside"));
   EXPECT_THAT(fault("r.json", "[{\"image_id\": 1,"), HasSubstr("not whole"));
-  EXPECT_THAT(fault("r.json", "{\"images\": []}"), HasSubstr("no list of detections"));
+  EXPECT_THAT(fault("r.json", "{\"images\": []}"),
+              HasSubstr("has no annotations; expected COCO results"));
   EXPECT_THAT(fault("r.json", "[] []"), HasSubstr("goes on after the list"));
   EXPECT_THAT(fault("r.json", "[[[[[["), HasSubstr("not whole"));
   EXPECT_THAT(fault("r.json", ""), HasSubstr("no list of detections"));
+}
+
+// The ids of images and categories are the file's own.
+TEST_F(Results, InAWholeCocoFileHaveItsIds) {
+  put("r.json", R"({"info": {"annotations": "no } list, \"really\""},
+   "annotations": [
+     {"id": 1, "image_id": 70, "category_id": 5, "bbox": [1, 2, 3, 4], "score": 0.5},
+     {"id": 2, "image_id": 80, "category_id": 9, "bbox": [5, 6, 7, 8], "score": 0.25}],
+   "categories": [{"id": 5, "name": "aircraft"}, {"id": 9, "name": "bird"}],
+   "images": [{"id": 70, "file_name": "images/all/b/000001.jpg"},
+              {"id": 80, "file_name": "a/000002.jpg"}, {"id": 90, "file_name": "elsewhere.jpg"}]})");
+  const auto all = read_detections(folder_, kSet);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1].frames[1].at(0), (Detection{{1, 2, 3, 4}, 0.5, "aircraft", {}}));
+  EXPECT_EQ(all[0].frames[2].at(0), (Detection{{5, 6, 7, 8}, 0.25, "bird", {}}));
+  // Without images the ids are those of the set.
+  put("r.json", R"({"annotations": [{"image_id": 4, "bbox": [1, 2, 3, 4], "score": 1}]})");
+  EXPECT_EQ(read_detections(folder_, kSet)[1].frames[0].size(), 1U);
+}
+
+TEST_F(Results, OfAWholeCocoFileThatAreNoneSayWhere) {
+  const auto one = [&](const std::string& annotation, const std::string& rest = "") {
+    return fault("r.json", "{\"annotations\": [\n" + annotation + "]" + rest + "}");
+  };
+  EXPECT_THAT(one(R"({"image_id": 1, "bbox": [1,1,1,1]})"),
+              HasSubstr("r.json:2: is an annotation without a score; expected COCO results"));
+  EXPECT_THAT(one(R"({"image_id": 1, "bbox": [1,1,1,1], "score": 1})",
+                  R"(,"images":[])"
+                  R"(,"images":[])"),
+              HasSubstr("has 'images' twice"));
+  const std::string images = R"(,"images":[{"id": 7, "file_name": "c/000000.jpg"}])";
+  EXPECT_THAT(one(R"({"image_id": 1, "bbox": [1,1,1,1], "score": 1})", images),
+              HasSubstr("r.json:2: image_id is 1, which the file's images do not have"));
+  EXPECT_THAT(one(R"({"image_id": 7, "bbox": [1,1,1,1], "score": 1})", images),
+              HasSubstr("r.json:2: the set has no image 'c/000000.jpg'"));
+  EXPECT_THAT(one(R"({"image_id": 1, "category_id": 2, "bbox": [1,1,1,1], "score": 1})",
+                  R"(,"categories":[{"id": 1, "name": "x"}])"),
+              HasSubstr("category_id is 2, which the file's categories do not have"));
+  EXPECT_THAT(fault("r.json", "{\"annotations\": ["), HasSubstr("not whole"));
+  EXPECT_THAT(fault("r.json", "{\"annotations\": {}}"), HasSubstr("no list of annotations"));
+  EXPECT_THAT(fault("r.json", "{\"annotations\": []} x"), HasSubstr("goes on after the object"));
+  EXPECT_THAT(fault("r.json", "{annotations: []}"), HasSubstr("expected a key"));
 }
 
 TEST(Fault, IsWhatNoPictureCanHold) {

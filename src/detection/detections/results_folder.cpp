@@ -202,7 +202,9 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
 
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name) {
   const JsonDocument facts(facts_file(folder, name));
-  if (facts.text("format") != kFormat) facts.fail("format", std::string("\"") + kFormat + "\"");
+  const std::string format = std::string("\"") + kFormat + "\"";
+  if (!facts.has("format")) facts.fail("has no format; expected " + format);
+  if (facts.text("format") != kFormat) facts.fail("format", format);
   FrameList frames(name,
                    static_cast<int>(facts.whole("width", 1, kMaxSide)),
                    static_cast<int>(facts.whole("height", 1, kMaxSide)),

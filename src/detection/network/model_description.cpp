@@ -21,6 +21,12 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of the JSON; one ta
 constexpr std::size_t kMostClasses = 1000;
 constexpr int kMostPx = 8192;  // of an input's side
 
+[[noreturn]] void missing(const JsonObject& object,
+                          const std::string& key,
+                          const std::string& expected) {
+  object.fail(fmt::format("has no {}; expected {}", key, expected));
+}
+
 // The value of one of a few words.
 template <typename Value>
 Value word(const JsonObject& object,
@@ -28,13 +34,15 @@ Value word(const JsonObject& object,
            std::initializer_list<std::pair<const char*, Value>> words,
            std::optional<Value> otherwise = std::nullopt) {
   if (otherwise && !object.has(key)) return *otherwise;
-  const std::string text = object.text(key);
+  const std::string text = object.maybe_text(key).value_or("");
   std::vector<std::string> known;
   for (const auto& [name, value] : words) {
     if (text == name) return value;
     known.emplace_back(name);
   }
-  object.fail(key, fmt::format("one of {}", fmt::join(known, ", ")));
+  const std::string expected = fmt::format("one of {}", fmt::join(known, ", "));
+  if (!object.has(key)) missing(object, key, expected);
+  object.fail(key, expected);
 }
 
 double number_within(
@@ -78,7 +86,7 @@ NetworkInput input_of(const JsonObject& json) {
     known.emplace_back("multiple_px");
   } else {
     known.insert(known.end(), {"width", "height"});
-    if (input.fit == Fit::kTiles) known.emplace_back("overlap_px");
+    known.emplace_back(input.fit == Fit::kTiles ? "overlap_px" : "resize");
   }
   json.expect_keys_among(known);
   input.layout = word<Layout>(
@@ -93,6 +101,11 @@ NetworkInput input_of(const JsonObject& json) {
   }
   input.width = static_cast<int>(json.whole("width", 8, kMostPx));
   input.height = static_cast<int>(json.whole("height", 8, kMostPx));
+  if (input.fit == Fit::kLetterbox) {
+    using Resize = NetworkInput::Resize;
+    input.resize = word<Resize>(
+        json, "resize", {{"area", Resize::kArea}, {"linear", Resize::kLinear}}, Resize::kArea);
+  }
   if (input.fit == Fit::kTiles) {
     const int most = std::min(input.width, input.height) / 2;
     input.overlap_px = static_cast<int>(json.whole("overlap_px", 0, most));
@@ -165,7 +178,11 @@ ModelDescription description_from(std::string_view text, const std::string& file
   const JsonObject json = document.with_lines_of(text);
   json.expect_keys_among(
       {"format", "input", "output", "classes", "score_threshold", "confident_score", "nms_iou"});
-  if (json.text("format") != kFormat) json.fail("format", fmt::format("\"{}\"", kFormat));
+  const std::string format = fmt::format("\"{}\"", kFormat);
+  if (!json.has("format")) missing(json, "format", format);
+  if (json.text("format") != kFormat) json.fail("format", format);
+  if (!json.has("input")) missing(json, "input", "an object with layout and fit");
+  if (!json.has("output")) missing(json, "output", "an object with kind");
   ModelDescription description;
   description.input = input_of(json.object("input"));
   description.output = output_of(json.object("output"));

@@ -26,6 +26,10 @@ struct NetworkInput {
   Fit fit = Fit::kFrame;
   int width = 0;  // px; of kTiles and kLetterbox
   int height = 0;
+  // Of letterbox, where the frame is made smaller: the mean of the samples that an input's pixel
+  // covers, or bilinear interpolation between four of them.
+  enum class Resize { kArea, kLinear };
+  Resize resize = Resize::kArea;
   int overlap_px = 0;   // of kTiles
   int multiple_px = 1;  // of kFrame: both sides are rounded up to a multiple of it
 

@@ -86,6 +86,10 @@ TEST(ModelDescription, FaultsAreNamedAtTheirLine) {
   EXPECT_THAT(fault("[1, 2, 3]", "[1, 2]"), HasSubstr("input.mean"));
   EXPECT_THAT(fault("64}", "400}"), HasSubstr("input.overlap_px is 400"));
   EXPECT_THAT(fault("model 1", "model 2"), HasSubstr("format is"));
+  EXPECT_THAT(fault("\"format\": \"airtruth detector model 1\",", ""),
+              HasSubstr("has no format; expected \"airtruth detector model 1\""));
+  EXPECT_THAT(fault("\"fit\": \"tiles\",", ""),
+              HasSubstr("input: has no fit; expected one of frame, tiles, letterbox"));
   EXPECT_THAT(fault("[\"aircraft\", \"bird\"]", "[]"),
               HasSubstr("classes is a list; expected 1 to 1000 names"));
   EXPECT_THAT(fault("0.6", "0.1"), HasSubstr("confident_score is 0.1; expected a number from 0.2"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "detection/network/network_detector.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,27 @@ bool is_cut(const Box& box, const Samples& piece, const Placement& placement) {
   return (placement.cut_left && box.x <= 0) || (placement.cut_top && box.y <= 0) ||
          (placement.cut_right && box.right() >= piece.width) ||
          (placement.cut_bottom && box.bottom() >= piece.height);
+}
+
+bool is_centred_in(const image::Picture& picture, const Box& box) {
+  const double x = box.x + box.width / 2;
+  const double y = box.y + box.height / 2;
+  return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
+}
+
+// Boxes end at the picture's edges; those that have nothing in it are left out.
+void cut_to(const image::Picture& picture, std::vector<Detection>& detections) {
+  for (Detection& one : detections) {
+    Box& box = one.box_px;
+    const double right = std::min<double>(picture.width, box.right());
+    const double bottom = std::min<double>(picture.height, box.bottom());
+    box.x = std::max(0.0, box.x);
+    box.y = std::max(0.0, box.y);
+    box.width = right - box.x;
+    box.height = bottom - box.y;
+  }
+  std::erase_if(detections,
+                [](const Detection& d) { return d.box_px.width <= 0 || d.box_px.height <= 0; });
 }
 
 class OnnxDetector : public Detector {
@@ -90,6 +112,8 @@ class OnnxDetector : public Detector {
  private:
   void start() { child_ = std::make_unique<NetworkChild>(job_, options_.threads, options_.stop); }
 
+  bool is_letterbox() const { return description_.input.fit == NetworkInput::Fit::kLetterbox; }
+
   std::vector<Detection> found_in(const image::Picture& picture) {
     std::vector<PieceDetection> all;
     const std::vector<Piece> pieces = pieces_of(picture, description_.input);
@@ -99,14 +123,15 @@ class OnnxDetector : public Detector {
            decoded(child_->run(samples), description_, samples.width, samples.height)) {
         const bool cut = is_cut(one.box_px, samples, placement);
         one.box_px = in_frame(one.box_px, placement);
-        const double x = one.box_px.x + one.box_px.width / 2;
-        const double y = one.box_px.y + one.box_px.height / 2;
-        // What has its centre in the padding is no part of the frame.
-        if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
+        // The padding of a whole frame and of tiles repeats the frame's last samples: what has its
+        // centre there is no part of the frame.
+        if (!is_letterbox() && !is_centred_in(picture, one.box_px)) continue;
         all.push_back({std::move(one), static_cast<int>(i), cut});
       }
     }
-    return without_duplicates(std::move(all), description_.nms_iou);
+    std::vector<Detection> found = without_duplicates(std::move(all), description_.nms_iou);
+    if (is_letterbox()) cut_to(picture, found);
+    return found;
   }
 
   std::filesystem::path model_;

@@ -107,8 +107,9 @@ std::vector<Piece> letterbox(Samples frame, const NetworkInput& input) {
   Samples samples = make_samples(input.width, input.height, frame.channels);
   std::ranges::fill(samples.values, kLetterboxGrey);
   cv::Mat inside = mat_of(samples)(cv::Rect(left, top, width, height));
+  const bool is_area = scale < 1 && input.resize == NetworkInput::Resize::kArea;
   cv::resize(
-      mat_of(frame), inside, inside.size(), 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+      mat_of(frame), inside, inside.size(), 0, 0, is_area ? cv::INTER_AREA : cv::INTER_LINEAR);
   Placement placement;
   placement.scale = scale;
   placement.x_px = -left / scale;

@@ -151,6 +151,40 @@ TEST_F(Networks, Yolov5ThroughALetterbox) {
   EXPECT_EQ(found[0].box_px, (Box{24, 12, 16, 8}));
 }
 
+// The row's box about (33, 20) of 8 x 16 px is 58 to 74 and 8 to 40 in the frame of 64 x 32. In the
+// second, all of it lies to the right of the frame.
+TEST_F(Networks, BoxesOfALetterboxEndAtTheFramesEdges) {
+  const char* json = R"({"format": "airtruth detector model 1", "classes": ["aircraft", "bird"],
+          "input": {"layout": "rgb", "fit": "letterbox", "width": 32, "height": 32},
+          "output": {"kind": "yolov5", "boxes": "output"}, "score_threshold": 0.4})";
+  const auto found =
+      detect(*make(onnx::constant_yolo_model(32, {33, 20, 8, 16, 0.9f, 0.5f, 0.25f}), json),
+             black(64, 32));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].box_px, (Box{58, 8, 6, 24}));
+  EXPECT_TRUE(detect(*make(onnx::constant_yolo_model(32, {40, 20, 8, 16, 0.9f, 0.5f, 0.25f}), json),
+                     black(64, 32))
+                  .empty());
+}
+
+// Columns of 0 0 255 255 scaled to a third: the mean of three and the sample in their middle
+// differ.
+TEST_F(Networks, ALetterboxIsResizedAsItsDescriptionSays) {
+  image::Picture picture = black(96, 96);
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 96; ++x) picture.planes[0].row(y)[x] = x % 4 < 2 ? 0 : 255;
+  NetworkInput input;
+  input.fit = NetworkInput::Fit::kLetterbox;
+  input.width = input.height = 32;
+  const auto samples = [&](NetworkInput::Resize resize) {
+    input.resize = resize;
+    return pieces_of(picture, input)[0].samples.values;
+  };
+  // Columns 3 to 5 of the frame hold 255, 0, 0.
+  EXPECT_EQ(samples(NetworkInput::Resize::kArea)[1], 85);
+  EXPECT_EQ(samples(NetworkInput::Resize::kLinear)[1], 0);
+}
+
 TEST_F(Networks, AFileThatIsNoNetworkIsOneLine) {
   const std::string json = description(kWholeFrame, kHeatOutput);
   EXPECT_THAT(fault("", json), HasSubstr("a.onnx: is empty"));

@@ -60,6 +60,9 @@ struct DetectorScore {
   // The threshold of `by`, bearings, false alarms and misses, and what holds there. Empty where
   // there is no detection.
   std::optional<FrocPoint> point;
+  // The probability of detection at the point with the set's encounter weights; empty where no
+  // sequence has a weight.
+  std::optional<Share> weighted_detection;
   // Keys: quantities(). A key without a value anywhere is not there.
   std::map<std::string, std::vector<DetectionBin>> by;
   // False alarms at the point by what they are: "background", "bird", ... with their number.

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "detection/scoring/cluster_draws.h"
 #include "detection/scoring/ranking.h"
-#include "foundation/base/seed.h"
 
 namespace airtruth::detection {
 namespace {
 
 constexpr int kOverlapSteps = 10;
-constexpr std::size_t kDraws = 1000;
-// Draws times detections, about 2 s on one core; results with more detections have fewer draws, but
-// no less than kFewestDraws.
-constexpr std::size_t kMostWork = 400'000'000;
-constexpr std::size_t kFewestDraws = 200;
 
 // As numpy.linspace(0.5, 0.95, 10), which cocoeval.py uses.
 double overlap_step(int i) {
@@ -46,39 +41,19 @@ MeanScores means_of(std::span<const ImageList> sequences, const AreaRange& areas
   return means;
 }
 
-// Interpolates between the two nearest of the sorted values (Hyndman and Fan 1996, type 7).
-evaluation::Interval percentiles(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const double position = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(position);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] +
-           (position - static_cast<double>(below)) * (values[above] - values[below]);
-  };
-  return {at(0.025), at(0.975)};
-}
-
 // Curves of sequences that are drawn with replacement.
 std::vector<PrecisionCurve> drawn_curves(const Ranking& ranking) {
   std::vector<PrecisionCurve> curves;
   const std::size_t sequences = ranking.truths.size();
   if (sequences < 2) return curves;
-  const std::size_t draws = std::clamp(
-      kMostWork / std::max<std::size_t>(1, ranking.detections.size()), kFewestDraws, kDraws);
-  Random random = Seed(1).stream("average precision");
-  std::vector<double> weights(sequences);
+  const std::size_t draws = draws_for(ranking.detections.size());
+  ClusterDraws drawn(sequences, "average precision");
   for (std::size_t draw = 0; draw < draws; ++draw) {
-    std::fill(weights.begin(), weights.end(), 0.0);
-    std::int64_t truths = 0;
-    for (std::size_t i = 0; i < sequences; ++i) {
-      const std::size_t k =
-          std::min(sequences - 1,
-                   static_cast<std::size_t>(random.uniform() * static_cast<double>(sequences)));
-      weights[k] += 1;
-      truths += ranking.truths[k];
-    }
-    if (truths > 0) curves.push_back(curve_of(ranking, weights));
+    const std::span<const double> counts = drawn.next();
+    double truths = 0;
+    for (std::size_t i = 0; i < sequences; ++i)
+      truths += counts[i] * static_cast<double>(ranking.truths[i]);
+    if (truths > 0) curves.push_back(curve_of(ranking, counts));
   }
   return curves;
 }
@@ -100,13 +75,13 @@ Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double
   std::transform(drawn.begin(), drawn.end(), values.begin(), [](const PrecisionCurve& curve) {
     return curve.average_precision;
   });
-  result.interval = percentiles(values);
+  result.interval = percentile_interval(values);
   result.band.emplace();
   for (std::size_t i = 0; i < kRecallSteps; ++i) {
     std::transform(drawn.begin(), drawn.end(), values.begin(), [i](const PrecisionCurve& curve) {
       return curve.precision[i];
     });
-    const evaluation::Interval limits = percentiles(values);
+    const evaluation::Interval limits = percentile_interval(values);
     result.band->low[i] = limits.low;
     result.band->high[i] = limits.high;
   }

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <airtruth/statistics.h>
+
 // Errors of the bearings that detections give, beside those of a model of an electro-optical
 // sensor.
 namespace airtruth::detection {
@@ -32,6 +34,12 @@ struct Spread {
   // The 95th percentile of the absolute value.
   double within_95 = 0;
   std::int64_t count = 0;
+  // 95 % intervals of the four by the percentile bootstrap over sequences (cluster_draws.h); empty
+  // where fewer than two sequences have a value.
+  struct Intervals {
+    evaluation::Interval mean, deviation, rms, within_95;
+  };
+  std::optional<Intervals> intervals;
 };
 
 struct BearingError {

@@ -9,23 +9,45 @@ namespace {
 // Trials and finds of each sequence in one bin.
 class Trials {
  public:
-  explicit Trials(std::size_t sequences) : clusters_(sequences, Cluster{0, 0, 1}) {}
+  explicit Trials(const SightedSequences& sequences)
+      : clusters_(sequences.count), weights_(sequences.weights) {}
   void add(const AircraftInFrame& sighting) {
     clusters_[sighting.sequence].trials += 1;
     clusters_[sighting.sequence].successes += sighting.is_found ? 1 : 0;
   }
-  Share share() const { return share_of(clusters_); }
+  DetectionShares shares() const {
+    DetectionShares shares{share_of(clusters_), {}};
+    if (weights_.empty()) return shares;
+    std::vector<Cluster> weighted = clusters_;
+    for (std::size_t i = 0; i < weighted.size(); ++i) weighted[i].weight = weights_[i];
+    shares.weighted = share_of(weighted);
+    return shares;
+  }
 
  private:
   std::vector<Cluster> clusters_;
+  std::span<const double> weights_;
 };
 
+void set_shares(DetectionBin& bin, const DetectionShares& shares) {
+  bin.detection = shares.plain;
+  // A bin whose encounters the model never has: no share of it is known.
+  if (shares.weighted && shares.weighted->trials > 0) bin.weighted = shares.weighted;
+}
+
 }  // namespace
+
+DetectionShares detection_of(std::span<const AircraftInFrame> sightings,
+                             const SightedSequences& sequences) {
+  Trials trials(sequences);
+  for (const AircraftInFrame& sighting : sightings) trials.add(sighting);
+  return trials.shares();
+}
 
 std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
                                        std::span<const std::optional<double>> values,
                                        std::span<const double> edges,
-                                       std::size_t sequences) {
+                                       const SightedSequences& sequences) {
   std::map<std::size_t, Trials> bins;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (!values[i]) continue;
@@ -39,14 +61,14 @@ std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sighting
     DetectionBin& one = result.emplace_back();
     one.from = edges[bin];
     if (bin + 1 < edges.size()) one.to = edges[bin + 1];
-    one.detection = trials.share();
+    set_shares(one, trials.shares());
   }
   return result;
 }
 
 std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
                                             std::span<const std::optional<std::string>> names,
-                                            std::size_t sequences) {
+                                            const SightedSequences& sequences) {
   std::map<std::string, Trials> bins;
   for (std::size_t i = 0; i < sightings.size(); ++i)
     if (names[i]) bins.try_emplace(*names[i], sequences).first->second.add(sightings[i]);
@@ -54,7 +76,7 @@ std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sig
   for (const auto& [name, trials] : bins) {
     DetectionBin& one = result.emplace_back();
     one.name = name;
-    one.detection = trials.share();
+    set_shares(one, trials.shares());
   }
   return result;
 }

@@ -11,7 +11,9 @@
 #include "detection/scoring/share.h"
 #include "detection/scoring/truth.h"
 
-// Probability of detection by a quantity.
+// Probability of detection by a quantity: of the aircraft in frames, the share that is found. With
+// the weights of sequences that were drawn from an encounter model it is also the share of the
+// aircraft in frames that the model has (share.h).
 namespace airtruth::detection {
 
 // One aircraft in one frame.
@@ -32,17 +34,33 @@ struct DetectionBin {
   // Of bins by name: "above", "below".
   std::string name;
   Share detection;
+  // With the sequences' weights; empty where they have none.
+  std::optional<Share> weighted;
 };
 
+// The sequences that sightings belong to.
+struct SightedSequences {
+  std::size_t count = 0;
+  // One for each; empty: they have none.
+  std::span<const double> weights = {};
+};
+
+struct DetectionShares {
+  Share plain;
+  std::optional<Share> weighted;
+};
+DetectionShares detection_of(std::span<const AircraftInFrame> sightings,
+                             const SightedSequences& sequences);
+
 // values[i] belongs to sightings[i]; one without a value, or below the first edge, is in no bin.
-// Bins without a sighting are left out. `sequences`: their number.
+// Bins without a sighting are left out.
 std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
                                        std::span<const std::optional<double>> values,
                                        std::span<const double> edges,
-                                       std::size_t sequences);
+                                       const SightedSequences& sequences);
 std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
                                             std::span<const std::optional<std::string>> names,
-                                            std::size_t sequences);
+                                            const SightedSequences& sequences);
 
 // The quantities, as keys of DetectorScore::by: "range_m", "size_px" (longer side), "area_px"
 // (pixels on target), "contrast_to_noise", "azimuth_deg", "to_closest_approach_s", "horizon"

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "detection/scoring/froc.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
-
-#include "detection/scoring/bearing_error.h"
-#include "detection/scoring/breakdown.h"
 
 namespace airtruth::detection {
 namespace {
@@ -63,58 +58,6 @@ TEST(Froc, LongCurvesAreThinnedAndKeepTheirEnds) {
   EXPECT_EQ(froc.points.back().score, 0);
   EXPECT_EQ(froc.points.back().false_alarms_per_image, 50);
   EXPECT_EQ(froc.points.back().detection.value, 1);
-}
-
-TEST(Breakdown, BinsHoldTheirLowerEdge) {
-  const std::vector<AircraftInFrame> sightings = {
-      {0, 0, 0, true}, {0, 1, 0, false}, {1, 0, 0, true}, {1, 1, 0, true}, {1, 2, 0, false}};
-  const std::vector<std::optional<double>> values = {100, 199.9, 200, 5000, std::nullopt};
-  const std::vector<double> edges = {100, 200, 300};
-  const auto bins = detection_by(sightings, values, edges, 2);
-  ASSERT_EQ(bins.size(), 3u);
-  EXPECT_EQ(bins[0].from, 100);
-  EXPECT_EQ(bins[0].to, 200);
-  EXPECT_EQ(bins[0].detection.value, 0.5);
-  EXPECT_EQ(bins[0].detection.trials, 2);
-  EXPECT_EQ(bins[1].detection.value, 1);
-  EXPECT_EQ(bins[2].from, 300);
-  EXPECT_EQ(bins[2].to, std::numeric_limits<double>::infinity());
-  const std::vector<std::optional<std::string>> names = {
-      "above", "above", "below", std::nullopt, "below"};
-  const auto by_name = detection_by_name(sightings, names, 2);
-  ASSERT_EQ(by_name.size(), 2u);
-  EXPECT_EQ(by_name[0].name, "above");
-  EXPECT_EQ(by_name[0].detection.value, 0.5);
-  EXPECT_EQ(by_name[1].detection.value, 0.5);
-}
-
-TEST(BearingError, MeansDeviationsAndRates) {
-  // Errors of 1, 3 and 2 mrad at 0, 1 and 2 s: rates of 2 and -1 mrad/s. The sample of the other
-  // sequence has none to compare with.
-  const std::vector<BearingSample> samples = {
-      {0, 1, 0, 1, 0}, {0, 1, 1, 3, 0}, {0, 1, 2, 2, 0}, {1, 1, 1, 2, 4}};
-  const auto error = bearing_error(samples);
-  ASSERT_TRUE(error);
-  EXPECT_NEAR(error->azimuth.mean, 2, 1e-12);
-  EXPECT_NEAR(error->azimuth.deviation, std::sqrt(2.0 / 3), 1e-12);
-  EXPECT_NEAR(error->azimuth.rms, std::sqrt(18.0 / 4), 1e-12);
-  EXPECT_EQ(error->elevation.count, 4);
-  EXPECT_NEAR(error->elevation.mean, 1, 1e-12);
-  // Sorted 0 0 0 4: at 2.85 between the last two.
-  EXPECT_NEAR(error->elevation.within_95, 0.85 * 4, 1e-12);
-  ASSERT_TRUE(error->azimuth_rate);
-  EXPECT_EQ(error->azimuth_rate->count, 2);
-  EXPECT_NEAR(error->azimuth_rate->mean, 0.5, 1e-12);
-  EXPECT_NEAR(error->azimuth_rate->deviation, std::sqrt(4.5), 1e-12);
-  EXPECT_FALSE(bearing_error({}));
-}
-
-TEST(BearingError, ARateNeedsASampleASecondBefore) {
-  const std::vector<BearingSample> samples = {
-      {0, 1, 0, 1, 0}, {0, 1, 0.5, 3, 0}, {0, 1, 1.25, 3, 0}};
-  EXPECT_FALSE(bearing_error(samples)->azimuth_rate);
-  const std::vector<BearingSample> near = {{0, 1, 0, 1, 0}, {0, 1, 1.05, 2.05, 0}};
-  EXPECT_NEAR(bearing_error(near)->azimuth_rate->mean, 1, 1e-12);
 }
 
 }  // namespace

@@ -78,7 +78,6 @@ class Scoring {
     std::vector<ClearMot> clears;
     std::vector<Identity> identities;
     std::vector<TrackedSequence> tracked;
-    std::vector<double> weights;
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
       const TrackFrames frames = track_frames_of(truth(scored), scored, options_.point.score);
@@ -86,7 +85,6 @@ class Scoring {
       clears.push_back(clear_mot_of(frames));
       identities.push_back(identity_of(frames));
       tracked.push_back({&truth(scored), &scored.detections, &scored.verdicts});
-      weights.push_back(truth(scored).weight);
       tracks.false_tracks += false_tracks(scored.detections, scored.verdicts, options_.point.score);
       for (const EncounterScore& one : encounters_of(i,
                                                      truth(scored),
@@ -102,7 +100,8 @@ class Scoring {
     tracks.false_tracks_per_hour =
         hours_ > 0 ? static_cast<double>(tracks.false_tracks) / hours_ : 0;
     tracks.declarations = summarised(tracks.encounters, {});
-    if (options_.is_weighted) tracks.weighted_declarations = summarised(tracks.encounters, weights);
+    if (options_.is_weighted)
+      tracks.weighted_declarations = summarised(tracks.encounters, weights_of_sequences());
     tracks.operating_curve = operating_curve(tracked);
   }
 
@@ -119,10 +118,21 @@ class Scoring {
       append(result_.misses, misses_of(i, of, scored.detections, scored.verdicts, score));
     }
     result_.bearing = bearing_error(samples);
+    const std::vector<double> weights =
+        options_.is_weighted ? weights_of_sequences() : std::vector<double>{};
+    const SightedSequences sighted{result_.sequences.size(), weights};
+    result_.weighted_detection = detection_of(sightings, sighted).weighted;
     result_.false_alarms = strongest(std::move(result_.false_alarms), backgrounds());
     result_.misses = easiest(std::move(result_.misses));
-    break_down(sightings);
+    break_down(sightings, sighted);
     count_false_alarms(score);
+  }
+
+  std::vector<double> weights_of_sequences() const {
+    std::vector<double> weights;
+    for (const ScoredDetections& scored : result_.sequences)
+      weights.push_back(truth(scored).weight);
+    return weights;
   }
 
   std::vector<std::string> backgrounds() const {
@@ -137,7 +147,7 @@ class Scoring {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   }
 
-  void break_down(const std::vector<AircraftInFrame>& sightings) {
+  void break_down(const std::vector<AircraftInFrame>& sightings, const SightedSequences& sighted) {
     for (const Quantity& quantity : quantities()) {
       std::vector<std::optional<double>> values;
       std::vector<std::optional<std::string>> names;
@@ -150,9 +160,8 @@ class Scoring {
           values.push_back(quantity.value_of(object));
       }
       std::vector<DetectionBin> bins =
-          quantity.edges.empty()
-              ? detection_by_name(sightings, names, result_.sequences.size())
-              : detection_by(sightings, values, quantity.edges, result_.sequences.size());
+          quantity.edges.empty() ? detection_by_name(sightings, names, sighted)
+                                 : detection_by(sightings, values, quantity.edges, sighted);
       if (!bins.empty()) result_.by[quantity.key] = std::move(bins);
     }
   }

@@ -13,7 +13,8 @@ struct ScoreOptions {
   double centre_px = 10;
   PointOptions point;
   std::optional<double> manoeuvre_s;
-  // True: encounters also get weighted shares, with TruthSequence::weight.
+  // True: encounters and the probability of detection also get weighted shares, with
+  // TruthSequence::weight.
   bool is_weighted = false;
 };
 

@@ -42,14 +42,14 @@ Share share_of(std::span<const Cluster> clusters) {
   Share share;
   double weights = 0;
   double squares = 0;
-  double most = 0;  // number of trials without weights
+  double trial_squares = 0;
   for (const Cluster& cluster : clusters) {
     if (!(cluster.trials > 0) || !(cluster.weight > 0)) continue;
     share.successes += cluster.weight * cluster.successes;
     share.trials += cluster.weight * cluster.trials;
     weights += cluster.weight;
     squares += cluster.weight * cluster.weight;
-    most += cluster.trials;
+    trial_squares += cluster.weight * cluster.weight * cluster.trials;
     ++share.clusters;
   }
   if (share.clusters == 0) return share;
@@ -60,7 +60,8 @@ Share share_of(std::span<const Cluster> clusters) {
     const double residual = cluster.weight * (cluster.successes - p * cluster.trials);
     variance += residual * residual;
   }
-  double trials = weights * weights / squares;
+  const double most = share.trials * share.trials / trial_squares;
+  double trials = share.effective_clusters = weights * weights / squares;
   if (share.clusters > 1 && p > 0 && p < 1) {
     const double m = static_cast<double>(share.clusters);
     variance *= m / (m - 1) / (share.trials * share.trials);

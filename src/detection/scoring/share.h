@@ -14,12 +14,22 @@
 // for m clusters of weight w_i with k_i successes in n_i trials. As in Korn and Graubard (1998,
 // Survey Methodology 24, 193) it is multiplied by (1.960 / t)^2 with Student's 97.5 % point of
 // m - 1 degrees of freedom, since v is itself an estimate. It is at least 1 and at most the number
-// of trials, and where v is 0 because all clusters have the share 0 or 1, or where there is one
-// cluster, it is the number of clusters in Kish's sense, (sum w)^2 / sum w^2.
+// of trials in Kish's sense (1965, "Survey Sampling", 11.7), (sum w_i n_i)^2 / sum w_i^2 n_i, which
+// is the number itself where all weights are equal. Where v is 0 because all clusters have the
+// share 0 or 1, or where there is one cluster, it is the number of clusters in the same sense,
+// (sum w)^2 / sum w^2.
 //
 // Example: 2 of 2, 0 of 2, 1 of 2 and 2 of 2 in four sequences: p = 5/8, residuals 0.75, -1.25,
 // -0.25 and 0.75, v = 4/3 * 2.75 / 64 = 0.0573; p (1 - p) / v = 4.09, times (1.960 / 3.182)^2 =
 // 1.55; Wilson's interval of 0.625 with 1.55 trials is 0.13 to 0.95.
+//
+// With weights the share is the ratio estimator of Hajek (1971) for samples that were drawn with
+// unequal probabilities, sum w_i k_i / sum w_i n_i: here of encounters that were drawn from another
+// distribution than that of their encounter model (importance sampling).
+//
+// Example: 2 of 2, 0 of 2 and 1 of 2 with the weights 3, 1 and 2: p = (3 * 2 + 2 * 1) / 12 = 2/3,
+// weighted residuals 2, -4/3 and -2/3, v = 3/2 * 56/9 / 144 = 0.0648; p (1 - p) / v = 3.43, times
+// (1.960 / 4.303)^2 = 0.71, so 1; Wilson's interval of 0.667 with 1 trial is 0.09 to 0.97.
 namespace airtruth::detection {
 
 // A share in [0, 1] and its interval.
@@ -31,6 +41,8 @@ struct Share {
   double successes = 0;
   double trials = 0;
   std::int64_t clusters = 0;  // those with a trial
+  // (sum w)^2 / sum w^2 of them: their number where all weights are equal.
+  double effective_clusters = 0;
 };
 
 struct Cluster {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "detection/scoring/share.h"
 
+#include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "detection/scoring/assessment.h"
+#include "detection/scoring/cluster_draws.h"
+#include "foundation/base/seed.h"
 
 namespace airtruth::detection {
 namespace {
@@ -81,6 +85,79 @@ TEST(Share, WeightsCount) {
   EXPECT_EQ(share.value, 0.75);
   EXPECT_EQ(share.successes, 3);
   EXPECT_EQ(share.trials, 4);
+}
+
+TEST(Share, TheWeightedExampleOfTheHeader) {
+  const Share share = share_of(std::vector<Cluster>{{2, 2, 3}, {0, 2, 1}, {1, 2, 2}});
+  EXPECT_NEAR(share.value, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(share.effective_clusters, 36.0 / 14, 1e-12);
+  expect_roots(2.0 / 3, 1, {share.low, share.high});
+}
+
+// A sequence of nearly all the weight is hardly more than its own frames, whatever the others hold.
+TEST(Share, OneHeavySequenceIsNotMany) {
+  std::vector<Cluster> clusters = {{4, 4, 1000}};
+  for (int i = 0; i < 50; ++i) clusters.push_back({i % 2 == 0 ? 4.0 : 0.0, 4, 1});
+  const Share share = share_of(clusters);
+  EXPECT_NEAR(share.effective_clusters, 1050.0 * 1050 / 1000050, 1e-9);
+  // Kish's number of trials: (4 * 1050)^2 / (4 * 1000050) = 4.4.
+  expect_roots(share.value, 4.0 * 1050 * 1050 / 1000050, {share.low, share.high});
+  EXPECT_LT(share.low, 0.6);
+}
+
+// 60 sequences of 5 frames; a sequence is found with a chance of 0.3 or 0.8, and its weight is the
+// ratio of the chance of its kind in the model (1/4, 3/4) to that in the set (1/2, 1/2). The
+// model's share is 0.25 * 0.3 + 0.75 * 0.8.
+TEST(Share, WeightedIntervalsHoldTheModelsShare) {
+  const double truth = 0.25 * 0.3 + 0.75 * 0.8;
+  Random random = Seed(3).stream("coverage");
+  int holds = 0;
+  double width = 0;
+  double squares = 0;
+  constexpr int kSets = 2000;
+  for (int set = 0; set < kSets; ++set) {
+    std::vector<Cluster> clusters;
+    for (int i = 0; i < 60; ++i) {
+      const bool hard = random.uniform() < 0.5;
+      const bool found = random.uniform() < (hard ? 0.3 : 0.8);
+      clusters.push_back({found ? 5.0 : 0.0, 5, hard ? 0.5 : 1.5});
+    }
+    const Share share = share_of(clusters);
+    holds += share.low <= truth && truth <= share.high ? 1 : 0;
+    width += (share.high - share.low) / kSets;
+    squares += (share.value - truth) * (share.value - truth) / kSets;
+  }
+  EXPECT_NEAR(static_cast<double>(holds) / kSets, 0.95, 0.02);
+  // As wide as the estimate scatters.
+  EXPECT_NEAR(width, 2 * 1.96 * std::sqrt(squares), 0.1 * width);
+}
+
+// The percentile bootstrap of the ratio, with sequences of unequal lengths and weights.
+TEST(Share, WeightedIntervalsAgreeWithTheBootstrap) {
+  Random random = Seed(5).stream("bootstrap of a share");
+  std::vector<Cluster> clusters;
+  for (int i = 0; i < 300; ++i) {
+    const double trials = 1 + std::floor(20 * random.uniform());
+    const double chance = random.uniform() < 0.4 ? 0.2 : 0.9;
+    clusters.push_back({std::round(chance * trials), trials, 0.2 + 2 * random.uniform()});
+  }
+  std::vector<double> values;
+  ClusterDraws draws(clusters.size(), "test");
+  for (int draw = 0; draw < 4000; ++draw) {
+    const std::span<const double> counts = draws.next();
+    double successes = 0;
+    double trials = 0;
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+      successes += counts[i] * clusters[i].weight * clusters[i].successes;
+      trials += counts[i] * clusters[i].weight * clusters[i].trials;
+    }
+    values.push_back(successes / trials);
+  }
+  const evaluation::Interval bootstrap = percentile_interval(std::move(values));
+  const Share share = share_of(clusters);
+  const double width = bootstrap.high - bootstrap.low;
+  EXPECT_NEAR(share.low, bootstrap.low, 0.08 * width);
+  EXPECT_NEAR(share.high, bootstrap.high, 0.08 * width);
 }
 
 TEST(Share, NothingIsKnownWithoutATrial) {

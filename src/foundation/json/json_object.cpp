@@ -37,6 +37,23 @@ std::string element(const std::string& key, std::size_t index) {
   return fmt::format("{}[{}]", key, index);
 }
 
+// The value of a key that must be there, with what is expected in the message where it is not.
+const Json& required(const Json& object,
+                     const std::string& key,
+                     const std::string& expected,
+                     const std::string& place,
+                     const Where& where) {
+  const auto found = object.find(key);
+  if (found != object.end()) return *found;
+  throw Error(
+      fmt::format("{}has no {}; expected {}", place.empty() ? "" : place + " ", key, expected),
+      where);
+}
+
+std::string whole_number(std::int64_t least, std::int64_t most) {
+  return fmt::format("a whole number from {} to {}", least, most);
+}
+
 std::shared_ptr<const Json> parsed(std::string_view text, const Where& where) {
   try {
     return std::make_shared<const Json>(Json::parse(text));
@@ -72,7 +89,7 @@ const Json& JsonObject::value(const std::string& key) const {
 }
 
 const Json& JsonObject::list(const std::string& key, const std::string& expected) const {
-  const Json& found = value(key);
+  const Json& found = required(*json_, key, expected, place_, where_);
   if (!found.is_array()) fail(found, key, expected);
   return found;
 }
@@ -105,7 +122,7 @@ void JsonObject::fail(const std::string& key, const std::string& expected) const
 }
 
 std::string JsonObject::text(const std::string& key) const {
-  const Json& found = value(key);
+  const Json& found = required(*json_, key, "a string", place_, where_);
   if (!found.is_string()) fail(found, key, "a string");
   return found.get<std::string>();
 }
@@ -115,7 +132,7 @@ std::optional<std::string> JsonObject::maybe_text(const std::string& key) const 
 }
 
 bool JsonObject::truth(const std::string& key) const {
-  const Json& found = value(key);
+  const Json& found = required(*json_, key, "true or false", place_, where_);
   if (found.is_boolean()) return found.get<bool>();
   if (!found.is_number()) fail(found, key, "true or false");
   return found.get<double>() != 0;
@@ -130,7 +147,9 @@ double JsonObject::number(const Json& value, const std::string& key) const {
   return value.get<double>();
 }
 
-double JsonObject::number(const std::string& key) const { return number(value(key), key); }
+double JsonObject::number(const std::string& key) const {
+  return number(required(*json_, key, "a number", place_, where_), key);
+}
 
 std::optional<double> JsonObject::maybe_number(const std::string& key) const {
   return has(key) ? std::optional(number(key)) : std::nullopt;
@@ -144,14 +163,16 @@ std::int64_t JsonObject::whole(const Json& value,
   const double number = value.is_number() ? value.get<double>() : NAN;
   if (!(number >= static_cast<double>(least) && number <= static_cast<double>(most)) ||
       number != std::floor(number))
-    fail(value, key, fmt::format("a whole number from {} to {}", least, most));
+    fail(value, key, whole_number(least, most));
   return static_cast<std::int64_t>(number);
 }
 
 std::int64_t JsonObject::whole(const std::string& key,
                                std::int64_t least,
                                std::int64_t most) const {
-  return whole(value(key), key, least, most);
+  const bool is_any = least == -kLargestWhole && most == kLargestWhole;
+  const std::string expected = is_any ? "a whole number" : whole_number(least, most);
+  return whole(required(*json_, key, expected, place_, where_), key, least, most);
 }
 
 std::optional<std::int64_t> JsonObject::maybe_integer(const std::string& key) const {
@@ -226,7 +247,9 @@ std::vector<std::string> JsonObject::texts(const std::string& key) const {
 }
 
 JsonObject JsonObject::object(const std::string& key) const {
-  JsonObject result(value(key), text_.empty() ? where_ : where_of(key), path_of(key));
+  JsonObject result(required(*json_, key, "an object", place_, where_),
+                    text_.empty() ? where_ : where_of(key),
+                    path_of(key));
   result.text_ = text_;
   return result;
 }

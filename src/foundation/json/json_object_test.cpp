@@ -46,10 +46,11 @@ TEST(JsonObject, ReadsEachKindOfValue) {
 
 TEST(JsonObject, ErrorsNameFileKeyValueAndWhatWasExpected) {
   EXPECT_EQ(error_of("[]", [](const auto&) {}), "a.json: is a list; expected an object");
-  EXPECT_EQ(error_of("{}", [](const auto& j) { j.text("k"); }), "a.json: has no k");
+  EXPECT_EQ(error_of("{}", [](const auto& j) { j.text("k"); }),
+            "a.json: has no k; expected a string");
   EXPECT_EQ(error_of(R"({"images": [{}, {}]})",
                      [](const auto& j) { j.objects("images")[1].number("width"); }),
-            "a.json: images[1] has no width");
+            "a.json: images[1] has no width; expected a number");
   EXPECT_EQ(error_of(R"({"images": [{"width": "x"}]})",
                      [](const auto& j) { j.objects("images")[0].whole("width", 1, 9); }),
             "a.json: images[0].width is \"x\"; expected a whole number from 1 to 9");

@@ -161,7 +161,7 @@ std::string with(const std::function<void(Json&)>& spoil) {
 TEST(Truth, FaultsHaveTheirFileAndLine) {
   EXPECT_EQ(line_message("{"), "truth.jsonl:7: is not JSON");
   EXPECT_EQ(line_message("[]"), "truth.jsonl:7: is a list; expected an object");
-  EXPECT_EQ(line_message("{}"), "truth.jsonl:7: has no frame");
+  EXPECT_EQ(line_message("{}"), "truth.jsonl:7: has no frame; expected a whole number");
   EXPECT_EQ(with([](Json& j) { j["frame"] = 1.5; }),
             "truth.jsonl:7: frame is 1.5; expected a whole number from -9007199254740992 to "
             "9007199254740992");

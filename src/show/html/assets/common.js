@@ -119,7 +119,41 @@ const airtruth = (() => {
     draw();
   };
 
+  // What both players of sequences begin with: the list of sequences, a box for each of `shown` that hides it, the buttons and the slider.
+  //   sequences, wordsOf(one)   the list and what it says of each; each gets its index
+  //   shown, hidden, redraw()   what can be hidden, the set of hidden indices, and what draws anew after a change of it
+  //   show(index), current()    shows a sequence; the one that is shown
+  //   go(index), play(), stop() the slider and the button
+  const beginPlayer = ({ sequences, wordsOf, shown, hidden, redraw, show, current, go, play, stop }) => {
+    const byId = (id) => document.getElementById(id);
+    sequences.forEach((one, index) => {
+      one.index = index;
+      const option = element('option', wordsOf(one));
+      option.value = index;
+      byId('sequence').append(option);
+    });
+    shown.forEach(({ name, style }, k) => {
+      const label = element('label');
+      const box = element('input');
+      box.type = 'checkbox';
+      box.checked = true;
+      box.addEventListener('change', () => {
+        if (box.checked) hidden.delete(k); else hidden.add(k);
+        redraw();
+      });
+      label.append(box, dotOf(style), document.createTextNode(name));
+      byId('shown').append(label);
+    });
+    byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
+    const step = (by) => () => show((current().index + by + sequences.length) % sequences.length);
+    byId('previous').addEventListener('click', step(-1));
+    byId('next').addEventListener('click', step(1));
+    byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
+    byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
+  };
+
   return {
+    beginPlayer,
     byId: (id) => document.getElementById(id),
     ink,
     dotOf,

@@ -22,15 +22,17 @@
   const name = { name: 'detector', of: (d) => d.name, up: true };
   const plain = (title, path, digits, up) => ({ name: title, of: (d) => at(d, path), digits, up });
 
+  const bounded = (title, path, digits, up) => ({
+    name: title, of: (d) => at(d, path), text: (d) => withBounds(at(d, path), at(d, `${path}_interval_95`), digits), up,
+  });
+
   const drawRanking = () => {
-    const bounded = (title, path, digits) => ({
-      name: title, of: (d) => at(d, path), text: (d) => withBounds(at(d, path), at(d, `${path}_interval_95`), digits),
-    });
     const columns = [
       name, plain('sequences', 'sequences', 0),
       bounded(`AP at ${data.centre_px} px`, 'average_precision.ap_centre', 3),
       bounded('AP50', 'average_precision.ap_50', 3), plain('AP', 'average_precision.ap', 3),
       { name: 'PD at the point', of: (d) => at(d, 'point.detection.share'), text: (d) => shareText(at(d, 'point.detection')) },
+      { name: 'weighted PD', of: (d) => at(d, 'point.weighted_detection.share'), text: (d) => shareText(at(d, 'point.weighted_detection')) },
       plain('false alarms an image', 'point.false_alarms_per_image', 4, true),
       plain('false alarms an hour', 'point.false_alarms_per_hour', 0, true),
       plain('a sequence', 'point.false_alarms_per_flight', 2, true),
@@ -40,7 +42,9 @@
     ];
     sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2, fill);
     byId('how').textContent = 'Brackets: 95 % intervals over sequences. PD: share of aircraft in frames that are found; the operating point is ' +
-      'the stated score, or the least with the false alarms asked for. EDR, AFDR, FPPI, HFAR: of Amazon\'s Airborne Object Tracking challenge. Click a heading to sort.';
+      'the stated score, or the least with the false alarms asked for. EDR, AFDR, FPPI, HFAR: of Amazon\'s Airborne Object Tracking challenge. ' +
+      (data.is_weighted ? 'Weighted: each sequence counts with its encounter\'s weight, so that the share is that of the encounter model. ' : '') +
+      'Click a heading to sort.';
     for (const sentence of data.left_out) byId('left-out').append(element('li', sentence));
   };
 
@@ -77,7 +81,8 @@
     for (const [title, key, unit, limit] of [
       ['azimuth', 'azimuth_mrad', 'mrad', model.sc228_bearing_deviation_mrad], ['elevation', 'elevation_mrad', 'mrad', model.sc228_bearing_deviation_mrad],
       ['azimuth rate', 'azimuth_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps], ['elevation rate', 'elevation_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps]])
-      columns.push(plain(`${title}, ${unit} (model ${limit})`, `bearing.${key}.deviation`, 2, true), plain('mean', `bearing.${key}.mean`, 2));
+      columns.push(
+        bounded(`${title}, ${unit} (model ${limit})`, `bearing.${key}.deviation`, 2, true), bounded('mean', `bearing.${key}.mean`, 2));
     sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1, fill);
   };
 
@@ -89,6 +94,7 @@
       const plot = data.plots[canvas.dataset.plot];
       if (plot) drawPlot(canvas, plot); else canvas.closest('figure').remove();
     }
+    byId('by-weighted').hidden = !data.is_weighted;
     if (!byId('by').children.length) { byId('by-heading').remove(); byId('by').remove(); }
   };
 

@@ -253,34 +253,17 @@ airtruth.detectionPlayer = (data, dotOf) => {
     return shares.length ? Math.max(...shares) : null;
   };
 
+  const wordsOf = (one) => {
+    if (!one.detectors.length) return `${one.name} (no results)`;
+    const share = shareOf(one);
+    return `${one.name}${share === null ? ' (no aircraft)' : ` (found in ${number(100 * share)} %)`}`;
+  };
+
   const begin = () => {
-    data.sequences.forEach((one, index) => {
-      one.index = index;
-      const share = shareOf(one);
-      const option = element('option', one.detectors.length
-        ? `${one.name}${share === null ? ' (no aircraft)' : ` (found in ${number(100 * share)} %)`}` : `${one.name} (no results)`);
-      option.value = index;
-      byId('sequence').append(option);
+    airtruth.beginPlayer({
+      sequences: data.sequences, wordsOf, shown: detectors, hidden, redraw: drawFrame, show, current: () => sequence, go, play, stop,
     });
-    detectors.forEach((detector, k) => {
-      const label = element('label');
-      const box = element('input');
-      box.type = 'checkbox';
-      box.checked = true;
-      box.addEventListener('change', () => {
-        if (box.checked) hidden.delete(k); else hidden.add(k);
-        drawFrame();
-      });
-      label.append(box, dotOf(detector), document.createTextNode(detector.name));
-      byId('shown').append(label);
-    });
-    byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
-    const step = (by) => () => show((sequence.index + by + data.sequences.length) % data.sequences.length);
-    byId('previous').addEventListener('click', step(-1));
-    byId('next').addEventListener('click', step(1));
     byId('weak').addEventListener('change', drawFrame);
-    byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
-    byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
     byId('strip').addEventListener('click', (event) => {
       stop();
       const index = (event.offsetX / byId('strip').clientWidth) * sequence.frame.length;

@@ -294,31 +294,11 @@
     };
 
     const begin = () => {
-      data.sequences.forEach((one, index) => {
-        one.index = index;
-        const option = element('option', one.trackers.length ? one.name : `${one.name} (no results)`);
-        option.value = index;
-        byId('sequence').append(option);
+      const redraw = () => { drawSeries(); drawFrame(); };
+      airtruth.beginPlayer({
+        sequences: data.sequences, wordsOf: (one) => (one.trackers.length ? one.name : `${one.name} (no results)`),
+        shown: trackers, hidden, redraw, show, current: () => sequence, go, play, stop,
       });
-      trackers.forEach((tracker, k) => {
-        const label = element('label');
-        const box = element('input');
-        box.type = 'checkbox';
-        box.checked = true;
-        box.addEventListener('change', () => {
-          if (box.checked) hidden.delete(k); else hidden.add(k);
-          drawSeries();
-          drawFrame();
-        });
-        label.append(box, dotOf(tracker), document.createTextNode(tracker.name));
-        byId('shown').append(label);
-      });
-      byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
-      const step = (by) => () => show((sequence.index + by + data.sequences.length) % data.sequences.length);
-      byId('previous').addEventListener('click', step(-1));
-      byId('next').addEventListener('click', step(1));
-      byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
-      byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
       for (const id of ['x', 'y', 'error']) {
         byId(id).addEventListener('pointermove', seek);
         byId(id).addEventListener('pointerdown', seek);

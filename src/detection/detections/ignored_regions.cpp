@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "detection/assessment/ignored_regions.h"
+#include "detection/detections/ignored_regions.h"
 
 #include <array>
 #include <cmath>

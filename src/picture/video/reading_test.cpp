@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares every decoded sample with the output of the ffmpeg program for the same file.
+#include <cstdlib>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/image/colour.h"
+#include "picture/video/libav.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "picture/video/video_test_folder.h"
+#include "picture/video/writer.h"
+
+namespace airtruth::video {
+namespace {
+
+TEST_F(Video, DecodesEveryCodecAsFfmpegDoes) {
+  struct Case {
+    const char* file;
+    const char* settings;
+    const char* pixel_format;
+  };
+  const std::vector<Case> cases = {
+      {"h264.mp4", "-c:v libx264 -pix_fmt yuv420p", "yuv420p"},
+      {"h264_422.mov", "-c:v libx264 -pix_fmt yuv422p", "yuv422p"},
+      {"h264_444.mkv", "-c:v libx264 -pix_fmt yuv444p", "yuv444p"},
+      {"hevc.mp4", "-c:v libx265 -x265-params log-level=none -pix_fmt yuv420p", "yuv420p"},
+      {"mjpeg.avi", "-c:v mjpeg -pix_fmt yuvj422p", "yuvj422p"},
+      {"mpeg4.avi", "-c:v mpeg4", "yuv420p"},
+      {"vp9.webm", "-c:v libvpx-vp9 -deadline realtime -cpu-used 8", "yuv420p"},
+      {"ffv1.mkv", "-c:v ffv1 -pix_fmt yuv444p", "yuv444p"},
+      {"grey.mkv", "-c:v ffv1 -pix_fmt gray", "gray"}};
+  for (const Case& c : cases) {
+    ffmpeg(std::string("-f lavfi -i testsrc2=s=66x50:r=25:d=0.3 ") + c.settings + " " + c.file);
+    if (HasFatalFailure()) return;
+    Reader reader(folder_ / c.file);
+    EXPECT_EQ(reader.info().pixel_format, c.pixel_format) << c.file;
+    EXPECT_TRUE(all_planes(reader) == raw(c.file, c.pixel_format)) << c.file;
+    EXPECT_EQ(reader.corrupt_packets(), 0) << c.file;
+    EXPECT_FALSE(reader.ends_early()) << c.file;
+  }
+}
+
+TEST_F(Video, ProResIsRoundedToEightBits) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v prores_ks pro.mov");
+  std::string warning;
+  Reader reader(folder_ / "pro.mov", {}, [&](const std::string& message) { warning = message; });
+  EXPECT_THAT(warning, testing::HasSubstr("10 bits"));
+  const std::string ours = all_planes(reader);
+  const std::string deep = raw("pro.mov", "yuv422p10le");
+  ASSERT_EQ(deep.size(), 2 * ours.size());
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const int value =
+        static_cast<unsigned char>(deep[2 * i]) + 256 * static_cast<unsigned char>(deep[2 * i + 1]);
+    ASSERT_EQ(static_cast<unsigned char>(ours[i]), std::min(255, (value + 2) / 4));
+  }
+}
+
+TEST_F(Video, OddSizesAndNumberedImages) {
+  ffmpeg(
+      "-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=yuv420p -c:v ffv1 odd.mkv");
+  Reader odd(folder_ / "odd.mkv");
+  EXPECT_TRUE(all_planes(odd) == raw("odd.mkv", "yuv420p"));
+  fs::create_directories(folder_ / "frames");
+  ffmpeg("-i odd.mkv -start_number 7 frames/img_%04d.png");
+  ffmpeg("-start_number 7 -i frames/img_%04d.png -f rawvideo -pix_fmt gbrp raw.bin");
+  const std::string expected = read_file(folder_ / "raw.bin");
+  for (const fs::path& path : {folder_ / "frames", folder_ / "frames/img_%04d.png"}) {
+    Reader images(path);
+    int frames = 0;
+    EXPECT_TRUE(all_planes(images, &frames) == expected) << path;
+    EXPECT_EQ(frames, 5);
+  }
+}
+
+// COCO's names have 12 digits and gaps between them; Airborne Object Tracking's are a time in
+// nanoseconds and the flight, which may end in a digit.
+TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
+  const std::vector<std::vector<std::string>> names = {
+      {"000000000139.png", "000000000285.png", "000000581929.png"},
+      {"9.png", "10.png", "111.png"},
+      {"9000000000000000000a1b-737.png",
+       "9000000000033333333a1b-737.png",
+       "10000000000000000000a1b-737.png"}};
+  for (std::size_t set = 0; set < names.size(); ++set) {
+    const fs::path folder = folder_ / ("set" + std::to_string(set));
+    fs::create_directories(folder);
+    for (std::size_t i = 0; i < 3; ++i)
+      ffmpeg("-f lavfi -i color=gray:s=16x16 -vf format=gray,geq=" + std::to_string(50 * (i + 1)) +
+             " -frames:v 1 -update 1 " + (folder / names[set][i]).string());
+    std::string warning;
+    Reader reader(folder, {}, [&](const std::string& message) { warning = message; });
+    EXPECT_EQ(reader.info().frame_count_estimate, 3);
+    for (int i = 0; i < 3; ++i) {
+      const auto frame = reader.next();
+      ASSERT_TRUE(frame) << folder;
+      EXPECT_EQ(frame->index, i);
+      EXPECT_NEAR(frame->time_s, i / 25.0, 1e-12);
+      EXPECT_NEAR(frame->picture.planes[0].row(0)[0], 50 * (i + 1), 1) << folder;
+    }
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.ends_early());
+    EXPECT_EQ(warning.find("gaps between the numbers of its 3") != std::string::npos, set < 2);
+  }
+}
+
+TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p plain.mp4");
+  for (int rotation : {90, 180, 270}) {
+    ffmpeg("-i plain.mp4 -c copy -metadata:s:v rotate=" + std::to_string(rotation) + " turned.mp4");
+    Reader reader(folder_ / "turned.mp4");
+    EXPECT_NE(reader.info().rotation_deg, 0);
+    EXPECT_EQ(reader.info().width, rotation == 180 ? 64 : 48);
+    EXPECT_TRUE(all_planes(reader) == raw("turned.mp4", "yuv420p"))
+        << rotation;  // The ffmpeg program rotates the picture itself.
+  }
+}
+
+TEST_F(Video, VariableFrameRateKeepsItsTimes) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.6 -vf \"select='not(eq(n,3)+eq(n,4)+eq(n,9))'\" "
+      "-fps_mode vfr -c:v libx264 vfr.mp4");
+  Reader reader(folder_ / "vfr.mp4");
+  std::vector<double> times;
+  while (const auto frame = reader.next()) times.push_back(frame->time_s);
+  ASSERT_EQ(times.size(), 12u);
+  EXPECT_NEAR(times[2], 0.08, 1e-9);
+  EXPECT_NEAR(times[3], 0.20, 1e-9);
+  StreamInfo info = reader.info();
+  Reader again(folder_ / "vfr.mp4");
+  Writer writer(folder_ / "copy.mp4", info, {});
+  while (const auto frame = again.next()) writer.write(*frame);
+  writer.finish();
+  Reader copy(folder_ / "copy.mp4");
+  for (double time : times) EXPECT_NEAR(copy.next()->time_s, time, 1e-6);
+}
+
+// A clip of two shots and a slow change. Only the frame that begins the second shot is marked, and
+// every frame equals the one that a reader without cuts returns.
+TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
+  ffmpeg(
+      "-f lavfi -i color=0x404040:s=64x48:r=25:d=0.4 -f lavfi -i testsrc=s=64x48:r=25:d=0.4 "
+      "-filter_complex [0][1]concat=n=2,format=yuv420p -c:v ffv1 cut.mkv");
+  Reader plain(folder_ / "cut.mkv");
+  Reader reader(folder_ / "cut.mkv", {.with_cuts = true});
+  std::vector<std::int64_t> cuts;
+  std::int64_t frames = 0;
+  while (const auto frame = reader.next()) {
+    EXPECT_EQ(frame->index, frames++);
+    const auto same = plain.next();
+    ASSERT_TRUE(same);
+    EXPECT_FALSE(same->begins_shot);
+    EXPECT_EQ(planes_of(frame->picture), planes_of(same->picture));
+    if (frame->begins_shot) cuts.push_back(frame->index);
+  }
+  EXPECT_FALSE(plain.next());
+  EXPECT_EQ(frames, 20);
+  EXPECT_EQ(cuts, std::vector<std::int64_t>{10});
+  // Reads from a later frame on, and up to the last one before the cut.
+  Reader later(folder_ / "cut.mkv", {.first_frame = 7, .with_cuts = true});
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(later.next()->begins_shot, k == 3) << k;
+  Reader first(folder_ / "cut.mkv", {.frame_count = 10, .with_cuts = true});
+  int count = 0;
+  while (const auto frame = first.next()) {
+    EXPECT_FALSE(frame->begins_shot);
+    ++count;
+  }
+  EXPECT_EQ(count, 10);
+}
+
+TEST_F(Video, TagsComeThrough) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p -colorspace bt709 "
+      "-color_primaries bt709 "
+      "-color_trc bt709 -color_range pc tagged.mp4");
+  Reader reader(folder_ / "tagged.mp4");
+  EXPECT_FALSE(reader.info().matrix_guessed);
+  EXPECT_EQ(reader.info().colour.matrix, image::Matrix::kBt709);
+  EXPECT_EQ(reader.info().colour.range, image::Range::kFull);
+  Writer writer(folder_ / "out.mp4", reader.info(), {});
+  while (const auto frame = reader.next()) writer.write(*frame);
+  writer.finish();
+  EXPECT_THAT(probe("out.mp4", "stream=color_range,color_space,color_transfer,color_primaries"),
+              testing::HasSubstr("pc,bt709,bt709,bt709"));
+}
+
+TEST_F(Video, DecodesTheRealClipsAsFfmpegDoes) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
+  for (const char* clip :
+       {"fixed-wing/cumulus_a4.mp4", "fixed-wing/overcast_b4.mp4", "gopro-karma/karma.mp4"}) {
+    const fs::path path = fs::path(shared) / "footage" / clip;
+    ffmpeg("-i '" + path.string() + "' -frames:v 20 -f rawvideo -fps_mode passthrough real.bin");
+    Reader reader(path, {.frame_count = 20});
+    EXPECT_TRUE(all_planes(reader) == read_file(folder_ / "real.bin")) << clip;
+  }
+}
+
+// The images of the unit vectors under the matrix determine the positions of the picture's corners.
+TEST(Orientation, ShowsAPictureAsItsDisplayMatrixSays) {
+  for (const double degrees : {0.0, 90.0, 180.0, 270.0}) {
+    for (const bool flip : {false, true}) {
+      std::array<std::int32_t, 9> matrix{};
+      av_display_rotation_set(matrix.data(), degrees);
+      av_display_matrix_flip(matrix.data(), flip ? 1 : 0, 0);
+      image::Picture picture = image::make_picture(3, 2, {image::Chroma::kNone});
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+          picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(10 * y + x);
+      const image::Picture shown = oriented(picture.clone(), orientation_of(matrix.data()));
+      const bool turned = matrix[0] == 0;
+      ASSERT_EQ(shown.width, turned ? 2 : 3);
+      // A step along the image of x (y) in the shown picture is a step along x (y) in the stored
+      // one.
+      const auto sign = [](std::int32_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
+      const int ax = sign(matrix[0]), ay = sign(matrix[1]), cx = sign(matrix[3]),
+                cy = sign(matrix[4]);
+      const int x0 = (ax < 0 || cx < 0) ? shown.width - 1 : 0;
+      const int y0 = (ay < 0 || cy < 0) ? shown.height - 1 : 0;
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+          EXPECT_EQ(shown.planes[0].row(y0 + ay * x + cy * y)[x0 + ax * x + cx * y], 10 * y + x)
+              << degrees << (flip ? " flipped" : "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::video
