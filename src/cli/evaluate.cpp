@@ -30,10 +30,6 @@ struct Evaluate {
   EvaluateDetections detections;
 };
 
-std::string number(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
 std::string one_pass_line(const experiment::ScoredTracker& tracker, const evaluation::Score& s) {
   const auto interval = tracker.intervals.at("auc");
   return fmt::format(

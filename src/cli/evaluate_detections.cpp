@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 namespace airtruth::cli {
-namespace {
 
 std::string number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
+
+namespace {
 
 std::string between(double low, double high) { return fmt::format("{:.3f} to {:.3f}", low, high); }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct EvaluateDetections {
     return detection::holds_detections(results, is_detections);
   }
 };
+
+// A cell of a table of results, "-" where nothing was measured.
+std::string number(const std::optional<double>& value, int digits);
 
 void add_detection_options(CLI::App& command, EvaluateDetections& arguments);
 

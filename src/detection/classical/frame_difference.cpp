@@ -29,7 +29,7 @@ constexpr int kUnseen = -30'000;
 constexpr int kLeastSidePx = kCellPx * kNoiseStep;
 constexpr int kLargestCells = kLargestPx / kCellPx;
 // The rounding of both pictures to whole grey levels.
-const double kLeastNoise = std::sqrt(2.0 / 12);
+const double kLeastDifferenceNoise = std::sqrt(2.0 / 12);
 
 class FrameDifference : public Detector {
  public:
@@ -99,7 +99,7 @@ class FrameDifference : public Detector {
     difference.convertTo(samples, CV_32F);
     cv::Mat noise = mean_of_seen(samples, before >= 0);
     cv::medianBlur(noise, noise, 3);
-    noise = cv::max(noise * kSigmaOfMean, kLeastNoise);
+    noise = cv::max(noise * kSigmaOfMean, kLeastDifferenceNoise);
     cv::resize(noise, noise, now.size(), 0, 0, cv::INTER_LINEAR);
     cv::divide(samples, noise, samples);
     const cv::Mat is_changed = samples >= kChange;

@@ -22,7 +22,7 @@ constexpr const char* kFormat = "airtruth detections 1";
 constexpr const char* kAircraft = "aircraft";
 constexpr int kMaxSide = 65'536;
 // 46 hours at 30 frames/s.
-constexpr std::int64_t kMaxFrames = 5'000'000;
+constexpr std::int64_t kMaxFramesOfRun = 5'000'000;
 
 fs::path text_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".txt");
@@ -208,7 +208,7 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
   FrameList frames(name,
                    static_cast<int>(facts.whole("width", 1, kMaxSide)),
                    static_cast<int>(facts.whole("height", 1, kMaxSide)),
-                   facts.whole("frames", 1, kMaxFrames));
+                   facts.whole("frames", 1, kMaxFramesOfRun));
   read_mot_text(text_file(folder, name), frames);
   SequenceDetections read = frames.take();
   name_categories(read, facts);
