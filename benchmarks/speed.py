@@ -180,7 +180,8 @@ def print_stages(bench, sizes, rounds):
     for size in sizes:
         scene = bench.scene("flight", size)
         outputs = [bench.render(scene, "--no-cache")[3] for _ in range(rounds)]
-        found = [dict(re.findall(r"(\w[\w ]*?) ([0-9.]+) ms", text[text.index("CPU time a frame:"):])) for text in outputs]
+        lines = [re.search(r"CPU time a frame:(.*)", text).group(1) for text in outputs]
+        found = [dict(re.findall(r"(\w[\w ]*?) ([0-9.]+) ms", line)) for line in lines]
         table[size] = {name: statistics.median(float(one[name]) for one in found) for name in found[0]}
     names = list(next(iter(table.values())))
     print("\nCPU ms a frame in each stage:\n\n| intruder px | " + " | ".join(names) + " |")

@@ -19,8 +19,8 @@ namespace {
 // Cost of a frame of 1280x960 (docs/scaling.md); the cost of other sizes is proportional to their
 // pixels.
 constexpr double kCoreSecondsPerFrame = 0.034;
-constexpr double kCoreSecondsPerFlownFrame = 0.16;
-constexpr double kCoreSecondsPerCalibratedFrame = 0.126;
+constexpr double kCoreSecondsPerFlownFrame = 0.069;
+constexpr double kCoreSecondsPerCalibratedFrame = 0.044;
 constexpr double kBytesPerFrame = 15'000;
 constexpr double kBytesPerSequence = 580'000;  // preview.jpg
 constexpr double kUsualPixels = 1280.0 * 960.0;
