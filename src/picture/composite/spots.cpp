@@ -37,11 +37,42 @@ double widest(const image::Spot& spot) {
   return share;
 }
 
+Pixel across(const Pixel& direction) { return {-direction.y(), direction.x()}; }
+
+// From the spot's centre to the bounds of its wings.
+Pixel wings_reach(const image::Spot& spot) {
+  return spot.wing_px * across(spot.direction).cwiseAbs() +
+         Pixel::Constant(spot.wing_px > 0 ? spot.wing_radius_px : 0);
+}
+
+// The alpha of the wings' blur at a place from the spot's centre.
+double wings_alpha(const image::Spot& spot, const Pixel& off) {
+  if (!(spot.wing_px > 0)) return 0;
+  const Pixel along = across(spot.direction);
+  const double place = std::clamp(off.dot(along), -spot.wing_px, spot.wing_px);
+  const double distance = (off - place * along).norm() / spot.wing_radius_px;
+  return distance < 1 ? spot.opacity * spot.wing_share * (1 - smooth_step(distance)) : 0;
+}
+
+// The alpha of the capsule or circle alone.
+double body_alpha(const image::Spot& spot, const Pixel& off) {
+  const double along =
+      std::clamp(off.dot(spot.direction), -spot.half_length_px, spot.half_length_px);
+  const double distance = (off - along * spot.direction).norm();
+  double radius = spot.radius_px;
+  if (spot.half_length_px == 0 && distance > 0)
+    radius *= spot.lobe(off.x() / distance, off.y() / distance);
+  if (!(distance < radius)) return 0;
+  if (!(spot.softness > 0)) return spot.opacity;
+  return spot.opacity *
+         (1 - smooth_step((distance / radius - (1 - spot.softness)) / spot.softness));
+}
+
 // Bounds of all that the spot can touch while it moves for `reach_s` before and after its time.
 Box bounds_of(const image::Spot& spot, double reach_s) {
   const double round = spot.radius_px * widest(spot);
-  const Pixel half = Pixel::Constant(round) + spot.half_length_px * spot.direction.cwiseAbs() +
-                     reach_s * spot.velocity_px_s.cwiseAbs();
+  const Pixel body = Pixel::Constant(round) + spot.half_length_px * spot.direction.cwiseAbs();
+  const Pixel half = body.cwiseMax(wings_reach(spot)) + reach_s * spot.velocity_px_s.cwiseAbs();
   const Pixel low = spot.centre - half;
   return {low.x(), low.y(), 2 * half.x(), 2 * half.y()};
 }
@@ -171,16 +202,8 @@ void put_over(image::Layer& layer, const image::Spot& spot, const SpotCover& cov
 
 double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s) {
   const Pixel off = at - (spot.centre + dt_s * spot.velocity_px_s);
-  const double along =
-      std::clamp(off.dot(spot.direction), -spot.half_length_px, spot.half_length_px);
-  const double distance = (off - along * spot.direction).norm();
-  double radius = spot.radius_px;
-  if (spot.half_length_px == 0 && distance > 0)
-    radius *= spot.lobe(off.x() / distance, off.y() / distance);
-  if (!(distance < radius)) return 0;
-  if (!(spot.softness > 0)) return spot.opacity;
-  return spot.opacity *
-         (1 - smooth_step((distance / radius - (1 - spot.softness)) / spot.softness));
+  const double body = body_alpha(spot, off);
+  return spot.wing_px > 0 ? 1 - (1 - body) * (1 - wings_alpha(spot, off)) : body;
 }
 
 double pixel_alpha(const image::Spot& spot,

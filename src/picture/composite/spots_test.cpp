@@ -35,6 +35,23 @@ image::Layer over(image::Layer layer,
   return with_spots(std::move(layer), intruders, all, covers_of(all), own, margin_px);
 }
 
+// In the middle of a wing the cubic fade is 1, half a radius beside it 1/2; where body and wings
+// meet, light passes both.
+TEST(Spots, WingsLieAcrossTheBody) {
+  image::Spot spot;
+  spot.radius_px = 4;
+  spot.half_length_px = 10;
+  spot.opacity = 0.5;
+  spot.wing_px = 30;
+  spot.wing_radius_px = 8;
+  spot.wing_share = 0.4;
+  EXPECT_NEAR(spot_alpha(spot, {0, 25}, 0), 0.2, 1e-12);
+  EXPECT_NEAR(spot_alpha(spot, {4, -25}, 0), 0.1, 1e-12);
+  EXPECT_EQ(spot_alpha(spot, {0, 38}, 0), 0);
+  EXPECT_NEAR(spot_alpha(spot, {0, 0}, 0), 1 - 0.5 * 0.8, 1e-12);
+  EXPECT_NEAR(spot_alpha(spot, {12, 0}, 0), 0.5, 1e-12);
+}
+
 TEST(Spots, ASharpDiscCoversItsArea) {
   const image::Layer layer = over({}, 0, in_frame(circle(30.3, 20.7, 10)));
   double sum = 0;

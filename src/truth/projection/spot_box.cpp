@@ -12,7 +12,15 @@ Box outline_about_centre(const image::Spot& spot) {
   // The fade is a cubic that is one half in its middle.
   const double radius_px = spot.radius_px * (1 - 0.5 * spot.softness);
   const Pixel half = Pixel::Constant(radius_px) + spot.half_length_px * spot.direction.cwiseAbs();
-  if (spot.half_length_px > 0) return {-half.x(), -half.y(), 2 * half.x(), 2 * half.y()};
+  if (spot.half_length_px > 0 || spot.wing_px > 0) {
+    // The wings' outline is where their own alpha is half of that in their middle.
+    const Pixel across(std::abs(spot.direction.y()), std::abs(spot.direction.x()));
+    const Pixel wings =
+        spot.wing_px > 0 ? Pixel(Pixel::Constant(0.5 * spot.wing_radius_px) + spot.wing_px * across)
+                         : Pixel(Pixel::Zero());
+    const Pixel all = half.cwiseMax(wings);
+    return {-all.x(), -all.y(), 2 * all.x(), 2 * all.y()};
+  }
   constexpr int kPoints = 720;
   BoxBounds bounds;
   for (int i = 0; i < kPoints; ++i) {

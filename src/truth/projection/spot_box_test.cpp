@@ -29,6 +29,19 @@ TEST(SpotBox, ACapsuleReachesAlongItsDirection) {
   EXPECT_NEAR(box.height, 2 * (5 + 8), 1e-9);
 }
 
+// Wings across it reach 20 px and half of their radius to either side.
+TEST(SpotBox, WingsReachAcross) {
+  image::Spot spot;
+  spot.centre = {100, 50};
+  spot.radius_px = 5;
+  spot.half_length_px = 10;
+  spot.wing_px = 20;
+  spot.wing_radius_px = 8;
+  const Box box = spot_box(spot, {}, 640, 480);
+  EXPECT_NEAR(box.width, 2 * (5 + 10), 1e-9);
+  EXPECT_NEAR(box.height, 2 * (20 + 4), 1e-9);
+}
+
 TEST(SpotBox, TheExposureSweepsItAndTheRowShiftsIt) {
   image::Spot spot;
   spot.centre = {100, 240};
