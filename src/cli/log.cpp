@@ -80,11 +80,11 @@ std::string description(const FlightLog& log) {
   return text;
 }
 
-struct ShowArguments {
+struct LogShowArguments {
   std::string file;
 };
 
-void show(const ShowArguments& arguments, Context& context) {
+void show(const LogShowArguments& arguments, Context& context) {
   context.console().result(description(sequence::read_log(arguments.file)));
 }
 
@@ -148,7 +148,7 @@ void align(const AlignArguments& arguments, Context& context) {
 
 void add_show(CLI::App& group, Context& context) {
   auto* command = group.add_subcommand("show", "Say what is in a flight log");
-  auto arguments = std::make_shared<ShowArguments>();
+  auto arguments = std::make_shared<LogShowArguments>();
   command
       ->add_option(
           "FILE", arguments->file, "DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")

@@ -19,7 +19,6 @@
 namespace airtruth::dataset {
 namespace {
 
-constexpr double kStandardGravityMps2 = 9.80665;
 constexpr double kOwnStep_s = 0.25;
 // The spline through a track loses its curvature at its ends, by a factor of 0.27 a sample.
 constexpr double kMargin_s = 8;
@@ -50,8 +49,8 @@ Demands demands_of(const encounter::Track& track) {
                                      before.head<2>().dot(velocity.head<2>()));
     const double rate = std::abs(turned) / (track.times_s[i] - track.times_s[i - 1]);
     // A coordinated turn.
-    demands.bank_deg =
-        std::max(demands.bank_deg, degrees(std::atan(speed * rate / kStandardGravityMps2)));
+    demands.bank_deg = std::max(demands.bank_deg,
+                                degrees(std::atan(speed * rate / aircraft::kStandardGravityMps2)));
   }
   return demands;
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "aircraft/fleet/flight_limits.h"
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
@@ -17,7 +18,6 @@
 namespace airtruth::dataset {
 namespace {
 
-constexpr double kStandardGravityMps2 = 9.80665;
 // A smaller bank counts as straight flight.
 constexpr double kStraightBankDeg = 0.01;
 constexpr double kPastClip_s = 1;
@@ -71,7 +71,7 @@ void lay_turn(scene::Intruder& intruder,
               double clip_s) {
   const double over_ground_mps = encounter.speed_mps * std::cos(radians(encounter.climb_deg));
   const double turn_rate =
-      kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
+      aircraft::kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
   const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
   const double begin_s = -kTurnMargin * step_s;
   const double span_s = clip_s + kPastClip_s - begin_s;

@@ -2,7 +2,6 @@
 #include "detection/scoring/clear_mot.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "detection/scoring/track_table.h"
@@ -11,8 +10,6 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kLeastOverlap = 0.5;
 // Above any sum of overlaps: keeping a pair of the frame before comes first.
 constexpr double kKeptPair = 1000;
 constexpr Eigen::Index kNone = -1;
@@ -26,9 +23,10 @@ struct Memory {
   std::int64_t pieces = 0;  // runs of matched frames
 };
 
-class Walk {
+class TrackWalk {
  public:
-  explicit Walk(const TrackTable& table) : tracks_(static_cast<std::size_t>(table.truth_tracks)) {
+  explicit TrackWalk(const TrackTable& table)
+      : tracks_(static_cast<std::size_t>(table.truth_tracks)) {
     for (const TableFrame& frame : table.frames) count(frame);
     clear_.frames = std::ssize(table.frames);
     for (const Memory& track : tracks_) {
@@ -106,7 +104,7 @@ double ClearMot::precision() const {
   return over(static_cast<double>(true_positives), true_positives + false_positives);
 }
 
-ClearMot clear_mot_of(const TrackFrames& frames) { return Walk(table_of(frames)).result(); }
+ClearMot clear_mot_of(const TrackFrames& frames) { return TrackWalk(table_of(frames)).result(); }
 
 ClearMot combined(std::span<const ClearMot> sequences) {
   ClearMot all;

@@ -8,8 +8,6 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr double kSecondsPerHour = 3600;
-
 // All scores that occur, falling.
 std::vector<double> scores_of(std::span<const FrocSequence> sequences) {
   std::vector<double> scores;

@@ -20,6 +20,8 @@
 // alarms; at 5 it is 0.6 at 0.1 an image, 3600 an hour and 1 a flight.
 namespace airtruth::detection {
 
+inline constexpr double kSecondsPerHour = 3600;
+
 // What one sequence contributes, from its verdicts.
 struct FrocSequence {
   // Of each aircraft in each frame that counts: the highest score that found it; empty: missed at

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "detection/scoring/track_table.h"
@@ -11,8 +10,6 @@
 
 namespace airtruth::detection {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // As numpy.arange(0.05, 0.99, 0.05).
 double threshold(std::size_t step) { return 0.05 + static_cast<double>(step) * 0.05; }

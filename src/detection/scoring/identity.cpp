@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "detection/scoring/track_table.h"
 #include "truth/evaluation/assignment.h"
 
 namespace airtruth::detection {
 namespace {
-
-constexpr double kLeastOverlap = 0.5;
 
 double over(double number, double of) { return number / std::max(1.0, of); }
 

@@ -11,8 +11,6 @@
 namespace airtruth::detection {
 namespace {
 
-constexpr double kSecondsPerHour = 3600;
-
 // The measures at work, one function for each part of DetectorScore.
 class Scoring {
  public:

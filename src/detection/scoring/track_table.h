@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,6 +12,10 @@
 // Tracks numbered from 0, with their overlaps, for the measures of tracks; only this module
 // includes it.
 namespace airtruth::detection {
+
+// Least overlap of a pair in CLEAR MOT and in the Identity measures, as TrackEval has it.
+inline constexpr double kLeastOverlap = 0.5;
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct TableFrame {
   // Numbers of the tracks whose boxes are the rows and columns of `overlap`.

@@ -15,18 +15,18 @@
 namespace airtruth::encounter {
 namespace {
 
-constexpr std::array<std::string_view, 4> kNames = {"time_s", "x_ft", "y_ft", "z_ft"};
+constexpr std::array<std::string_view, 4> kColumnNames = {"time_s", "x_ft", "y_ft", "z_ft"};
 
-// The place of each column of kNames in a row.
-std::array<std::size_t, kNames.size()> places_of(const std::vector<std::string_view>& headings,
-                                                 const Where& where) {
-  std::array<std::size_t, kNames.size()> places{};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    const auto found = std::find(headings.begin(), headings.end(), kNames[i]);
-    if (found == headings.end() || headings.size() != kNames.size())
+// The place of each column of kColumnNames in a row.
+std::array<std::size_t, kColumnNames.size()> places_of(
+    const std::vector<std::string_view>& headings, const Where& where) {
+  std::array<std::size_t, kColumnNames.size()> places{};
+  for (std::size_t i = 0; i < kColumnNames.size(); ++i) {
+    const auto found = std::find(headings.begin(), headings.end(), kColumnNames[i]);
+    if (found == headings.end() || headings.size() != kColumnNames.size())
       throw Error(fmt::format("the header is '{}'; expected {}",
                               fmt::format("{}", fmt::join(headings, ",")).substr(0, 80),
-                              fmt::join(kNames, ",")),
+                              fmt::join(kColumnNames, ",")),
                   where);
     places[i] = static_cast<std::size_t>(found - headings.begin());
   }
@@ -40,7 +40,7 @@ bool is_track_csv(std::string_view text) {
   if (!lines.next()) return false;
   std::vector<std::string_view> cells;
   split_row(lines.line(), cells);
-  return std::find(cells.begin(), cells.end(), kNames[1]) != cells.end();
+  return std::find(cells.begin(), cells.end(), kColumnNames[1]) != cells.end();
 }
 
 Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
@@ -52,12 +52,12 @@ Encounter parse_track_csv(std::string_view text, const std::filesystem::path& fi
   TrackBuilder builder;
   while (lines.next()) {
     split_row(lines.line(), cells);
-    if (cells.size() != kNames.size())
-      throw Error(fmt::format("has {} cells; expected {}", cells.size(), kNames.size()),
+    if (cells.size() != kColumnNames.size())
+      throw Error(fmt::format("has {} cells; expected {}", cells.size(), kColumnNames.size()),
                   lines.where());
-    std::array<double, kNames.size()> values{};
+    std::array<double, kColumnNames.size()> values{};
     for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] = number_in(cells[places[i]], kNames[i], lines.where());
+      values[i] = number_in(cells[places[i]], kColumnNames[i], lines.where());
     const Vector3 position_ned_ft(values[1], values[2], -values[3]);
     builder.add("track", values[0], kMetresOfFoot * position_ned_ft, nullptr, lines.where());
   }

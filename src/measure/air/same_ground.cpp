@@ -41,23 +41,23 @@ constexpr std::array kWavelengthNm{610.0, 550.0, 465.0};
 // Relative error that is added to the extinction: its scatter over virtual flights (same_ground.h).
 constexpr double kFlightScatter = 0.1;
 // Largest relative error of an extinction that is returned.
-constexpr double kMaxRelativeError = 0.3;
+constexpr double kMaxSharedRelativeError = 0.3;
 
 // Number and range of the extinctions that are tried, per km, in equal ratios.
 constexpr int kTried = 240;
-constexpr double kMinExtinctionPerKm = 0.01, kMaxExtinctionPerKm = 2;
+constexpr double kMinSharedExtinctionPerKm = 0.01, kMaxSharedExtinctionPerKm = 2;
 // Spacing of the first search for the least cost among them. The cost has one minimum, which is
 // many times as wide.
 constexpr int kCoarseTried = 16;
 // Excess over the least cost beyond which a hypothesis has no weight: exp(-100 / 2) is 2e-22.
 constexpr double kMaxExcessCost = 100;
 double tried(double i) {
-  return kMinExtinctionPerKm *
-         std::pow(kMaxExtinctionPerKm / kMinExtinctionPerKm, i / (kTried - 1));
+  return kMinSharedExtinctionPerKm *
+         std::pow(kMaxSharedExtinctionPerKm / kMinSharedExtinctionPerKm, i / (kTried - 1));
 }
 double place_of(double per_km) {
-  return std::log(per_km / kMinExtinctionPerKm) /
-         std::log(kMaxExtinctionPerKm / kMinExtinctionPerKm) * (kTried - 1);
+  return std::log(per_km / kMinSharedExtinctionPerKm) /
+         std::log(kMaxSharedExtinctionPerKm / kMinSharedExtinctionPerKm) * (kTried - 1);
 }
 
 struct Channel {
@@ -242,7 +242,7 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
     result.airlight[c] =
         airlight_ahead(channels[c], channels[c].system(extinction.value * altitude_m * 1e-3));
     extinction.sigma = std::hypot(extinction.sigma, kFlightScatter * extinction.value);
-    if (extinction.sigma > kMaxRelativeError * extinction.value) return std::nullopt;
+    if (extinction.sigma > kMaxSharedRelativeError * extinction.value) return std::nullopt;
   }
   return result;
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kUnitDeg = 10;
 // The constants were chosen on the virtual flights of surroundings_slow_test.cpp.
 // Number of equal bands into which the elevations are divided.
-constexpr int kBands = 16;
+constexpr int kBrightnessBands = 16;
 // Least number of samples of a band, and of bands of a curve, which has three coefficients.
 constexpr std::size_t kMinBandSamples = 20;
 constexpr int kMinBands = 6;
@@ -27,11 +27,11 @@ using Band = std::array<std::vector<double>, 3>;
 
 // All bands of a sector follow one another.
 std::vector<Band> bands_of(const std::vector<SeenLight>& seen, double low, double span) {
-  std::vector<Band> bands(static_cast<std::size_t>(kSectors * kBands));
+  std::vector<Band> bands(static_cast<std::size_t>(kSectors * kBrightnessBands));
   for (const SeenLight& s : seen) {
-    const double at = (s.elevation_rad - low) / span * kBands;
-    if (!(at >= 0 && at < kBands)) continue;
-    Band& band = bands[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kBands) +
+    const double at = (s.elevation_rad - low) / span * kBrightnessBands;
+    if (!(at >= 0 && at < kBrightnessBands)) continue;
+    Band& band = bands[static_cast<std::size_t>(sector_of(s.azimuth_rad) * kBrightnessBands) +
                        static_cast<std::size_t>(at)];
     for (std::size_t c = 0; c < 3; ++c) band[c].push_back(double(s.linear[c]));
   }
@@ -93,12 +93,12 @@ SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach) 
   SkyCurves result;
   for (int sector = 0; sector < kSectors; ++sector) {
     Parabolas parabolas;
-    for (int i = 0; i < kBands; ++i) {
-      const Band& band = bands[static_cast<std::size_t>(sector * kBands + i)];
+    for (int i = 0; i < kBrightnessBands; ++i) {
+      const Band& band = bands[static_cast<std::size_t>(sector * kBrightnessBands + i)];
       if (band[0].size() < kMinBandSamples) continue;
       Eigen::RowVector3d middle;
       for (int c = 0; c < 3; ++c) middle[c] = median(band[static_cast<std::size_t>(c)]);
-      parabolas.add((low + (i + 0.5) / kBands * span) / radians(kUnitDeg), middle);
+      parabolas.add((low + (i + 0.5) / kBrightnessBands * span) / radians(kUnitDeg), middle);
     }
     if (parabolas.count >= kMinBands) result[static_cast<std::size_t>(sector)] = parabolas.curve();
   }

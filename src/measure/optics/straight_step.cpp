@@ -20,14 +20,14 @@ constexpr double kStepHalfWidthPx = 6;
 // Distance from the edge at which its two levels begin, px.
 constexpr double kStepLevelFromPx = 3.5;
 // Least height of a step, code values.
-constexpr double kMinHeightCodes = 24;
+constexpr double kMinStepHeightCodes = 24;
 // Least gradient of the 3 x 3 Sobel filter, which is 4 per code value and pixel for a step that
-// rises by half of kMinHeightCodes in a pixel.
-constexpr int kMinGradient = static_cast<int>(4 * kMinHeightCodes / 2);
+// rises by half of kMinStepHeightCodes in a pixel.
+constexpr int kMinGradient = static_cast<int>(4 * kMinStepHeightCodes / 2);
 // Largest rms deviation of the places along an edge from a straight line, px.
 constexpr double kMaxBendPx = 0.2;
 // Largest standard deviation of a level, as a share of the height of the step.
-constexpr double kMaxLevelDeviation = 0.08;
+constexpr double kMaxStepDeviation = 0.08;
 // Least number of samples of a level.
 constexpr int kMinLevelSamples = 10;
 // Levels beyond these code values are clipped.
@@ -196,7 +196,7 @@ bool has_clean_levels(const Side& low, const Side& high) {
   if (low.count < kMinLevelSamples || high.count < kMinLevelSamples) return false;
   const double height = high.mean() - low.mean();
   const double uneven = std::sqrt(std::max(low.variance(), high.variance()));
-  return height >= kMinHeightCodes && uneven <= kMaxLevelDeviation * height &&
+  return height >= kMinStepHeightCodes && uneven <= kMaxStepDeviation * height &&
          high.mean() <= kBrightestCode && low.mean() >= kDarkestCode;
 }
 

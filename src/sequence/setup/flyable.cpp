@@ -16,7 +16,6 @@
 namespace airtruth::sequence {
 namespace {
 
-constexpr double kStandardGravityMps2 = 9.80665;
 constexpr double kSampleStep_s = 0.05;
 constexpr int kMaxSamples = 4000;
 constexpr double kTurnStep_s = 0.01;  // over which the turn rate is taken
@@ -37,7 +36,8 @@ std::optional<double> turn_bank_deg(const trajectory::Path& path, double time_s)
   const double speed_mps = 0.5 * (ground_speed_mps(a) + ground_speed_mps(b));
   if (speed_mps < kHeadingMps) return std::nullopt;
   const double turn_rad = std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
-  return degrees(std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / kStandardGravityMps2));
+  return degrees(
+      std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / aircraft::kStandardGravityMps2));
 }
 
 // The five quantities, each with the largest share by which it leaves its limit.

@@ -20,7 +20,7 @@ constexpr char kHead1 = '\xa3', kHead2 = '\x95';
 constexpr std::uint8_t kFormatType = 128;
 constexpr std::size_t kHeadBytes = 3;
 constexpr std::size_t kFormatBytes = 89;  // head, type, length, name[4], format[16], labels[64]
-constexpr double kFix3d = 3;              // GPS.Status
+constexpr double kStatusFix3d = 3;        // GPS.Status
 
 // The bytes and the factor of one letter of a format.
 struct Letter {
@@ -189,7 +189,7 @@ class DataFlashReader {
     const double time_s = *microseconds * 1e-6;
     if (kind.name == "POS") add_position(position_, number, time_s, where);
     if (kind.name == "GPS") {
-      if (number("Status").value_or(0) < kFix3d) return void(++satellite_.left_out);
+      if (number("Status").value_or(0) < kStatusFix3d) return void(++satellite_.left_out);
       add_position(satellite_, number, time_s, where);
     }
     if (kind.name == "ATT") add_angles(number, time_s, where);

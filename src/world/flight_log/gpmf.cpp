@@ -12,7 +12,7 @@ namespace {
 using motion::big_endian;
 using motion::GpmfElement;
 
-constexpr std::uint32_t kFix3d = 3;
+constexpr std::uint32_t kGpmfFix3d = 3;
 // GPS9 holds seven 32-bit numbers and two 16-bit ones, the last of which is the kind of fix.
 constexpr std::size_t kGps9Bytes = 32, kGps9FixAt = 30;
 constexpr std::size_t kGps5Bytes = 20;
@@ -46,7 +46,7 @@ void read_positions(const GpmfElement& e, Stream& stream) {
     position.latitude_deg = signed_at(e, at) / stream.scale[0];
     position.longitude_deg = signed_at(e, at + 4) / stream.scale[1];
     position.altitude_m = signed_at(e, at + 8) / stream.scale[2];
-    if (fix < kFix3d || std::abs(position.latitude_deg) > 90 ||
+    if (fix < kGpmfFix3d || std::abs(position.latitude_deg) > 90 ||
         std::abs(position.longitude_deg) > 180)
       position.latitude_deg = NAN;  // left out below, where its place in time still counts
     stream.fixes.push_back(position);

@@ -16,7 +16,7 @@ using Point = Eigen::Array3f;
 
 enum class Part { kWing, kBody, kBoom, kNose, kWheel };
 
-struct Nearest {
+struct NearestPart {
   float distance_m = 1e9F;
   Part part = Part::kWing;
 };
@@ -71,8 +71,8 @@ float wing(const Point& p) {
   return 0.8F * ellipsoid(local, Point(0.5F * w.chord_m, 0.06F, 0.058F * w.chord_m));
 }
 
-Nearest nearest(const Point& p) {
-  Nearest best;
+NearestPart nearest(const Point& p) {
+  NearestPart best;
   const auto add = [&](float d, Part part) {
     if (d < best.distance_m) best = {d, part};
   };
@@ -158,7 +158,7 @@ LinearRgb trace(const Point& ray, float pixel_rad, const Scene& scene) {
   float closest_t = t;
   Part part = Part::kWing;
   for (int i = 0; i < 140 && t < kFarthestPart_m; ++i) {
-    const Nearest here = nearest(ray * t);
+    const NearestPart here = nearest(ray * t);
     const float relative = here.distance_m / (t * pixel_rad);
     if (relative < closest) {
       closest = relative;

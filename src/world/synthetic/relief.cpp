@@ -13,7 +13,7 @@ constexpr float kNear_m = 600;
 constexpr int kNearBisections = 4;
 constexpr int kFarBisections = 2;
 // No ray of a search is longer.
-constexpr float kFarthest_m = 1e9F;
+constexpr float kFarthestRelief_m = 1e9F;
 
 // A ray on its way: it is outside of everything at `clear_m`, and it is known to be inside of
 // something at `inside_m` once it has met it.
@@ -165,7 +165,7 @@ void meet(const HeightField& field, const Eye& eye, Search& search) {
     near |= all.far_m[i] < kNear_m;
   }
   select_rays(all, chosen, count, met);
-  for (int i = 0; i < kFarBisections; ++i) bisect(view, kFarthest_m, met);
+  for (int i = 0; i < kFarBisections; ++i) bisect(view, kFarthestRelief_m, met);
   for (int i = kFarBisections; near && i < kNearBisections; ++i) bisect(view, kNear_m, met);
   alignas(64) Floats factor;
   shade(view, met, factor);
