@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 namespace airtruth::render {
@@ -54,6 +55,18 @@ std::optional<Pixel> Eye::pixel(const Vector3& from_eye_in_world) const {
   const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return std::nullopt;
   return Pixel(h.x() / h.z(), h.y() / h.z());
+}
+
+Seen Eye::look_at(const Vector3& from_eye_in_world) const {
+  Seen seen{from_eye_in_world, Pixel::Constant(std::numeric_limits<double>::quiet_NaN()), 0};
+  const Vector3 in_cam = cam_from_world * from_eye_in_world;
+  const auto nominal = view.lens->pixel_from_cam(in_cam);
+  if (!nominal) return seen;
+  const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
+  if (!(h.z() > 0)) return seen;
+  seen.pixel = {h.x() / h.z(), h.y() / h.z()};
+  if (in_cam.z() > 0) seen.nearness = 1 / (in_cam.z() * h.z());
+  return seen;
 }
 
 bool Eye::is_pinhole() const { return std::holds_alternative<lens::Pinhole>(view.lens->model()); }

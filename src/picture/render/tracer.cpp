@@ -88,7 +88,9 @@ TracedIntruder place(const Instance& instance,
   actor.placed.to_sun_in_body =
       (actor.body_from_world * light.to_sun_in_world).normalized().cast<float>();
   actor.placed.up_in_body = (actor.body_from_world * Vector3(0, 0, -1)).cast<float>();
-  actor.placed.world_from_body = actor.body_from_world.transpose().cast<float>();
+  if (light.surroundings)
+    actor.placed.surroundings =
+        light.surroundings->turned(actor.body_from_world.transpose().cast<float>());
   actor.placed.time_s = instance.time_s;
   const double turned_at_s = instance.time_s + (actor.moves ? 0 : span.begin_s);
   for (const aircraft::Part& part : model.mesh.parts) {
@@ -172,30 +174,46 @@ double Tracer::collect(int actor_index,
   return 1 - through;
 }
 
+void Tracer::shade_visible(int x, int y, int actor_index, const Visible& visible, Sum& sum) const {
+  const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
+  const auto corners = grid_.corners(x, y);
+  const double pixel_rad = (corners[1] - corners[0]).norm();
+  const PixelLight light =
+      light_of(actor.placed, PixelEye(actor, grid_, x, y), visible, light_, pixel_rad);
+  sum.opaque_rgb = light.rgb;
+  sum.opaque_shaded = 1;
+  sum.depth = light.distance_m * sum.alpha;
+}
+
 bool Tracer::shade_covered(
     int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
   const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
   const PixelRays rays(actor, grid_, x, y);
-  PixelLight light(actor.placed, rays, light_, actor.start_m, footprint(1, rays.pixel_rad()));
   const PixelSamples order(x, y);
   const auto all = static_cast<int>(is_covered.size());
-  int next = 0;
-  const double share = sum.alpha / sum.count;
-  while (light.count() < counts_.shaded) {
-    std::array<int, PixelLight::kMostAtOnce> samples;
-    std::size_t n = 0;
-    const auto wanted =
-        static_cast<std::size_t>(std::min(counts_.shaded_alike, counts_.shaded - light.count()));
-    for (; next < all && n < wanted; ++next)
-      if (is_covered[static_cast<std::size_t>(order.place(next, all))] != 0) samples[n++] = next;
-    if (n == 0) break;
-    light.add({samples.data(), n});
-    if (light.is_known(share)) break;
+  std::vector<BodyRay> shots;
+  std::vector<double> dt_s;
+  Visible visible;
+  visible.of_samples = counts_.shaded;
+  for (int i = 0; i < all && std::ssize(shots) < counts_.shaded; ++i) {
+    if (is_covered[static_cast<std::size_t>(order.place(i, all))] == 0) continue;
+    shots.push_back(rays.ray(i, dt_s.emplace_back()));
+    visible.spots.emplace_back().time = static_cast<float>(order.time(i));
   }
-  if (light.count() == 0) return false;
-  sum.opaque_rgb = light.rgb_sum();
-  sum.opaque_shaded = light.count();
-  sum.depth = light.distance_sum_m() / light.count() * sum.alpha;
+  std::vector<std::optional<Hit>> hits(shots.size());
+  nearest_hits(actor.placed, shots, dt_s, hits);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i]) continue;
+    visible.spots[kept] = visible.spots[i];
+    visible.spots[kept++].hit = *hits[i];
+  }
+  visible.spots.resize(kept);
+  if (kept == 0) return false;
+  std::stable_sort(visible.spots.begin(), visible.spots.end(), [](const Spot& a, const Spot& b) {
+    return std::pair(a.hit.part, a.hit.triangle) < std::pair(b.hit.part, b.hit.triangle);
+  });
+  shade_visible(x, y, actor_index, visible, sum);
   return true;
 }
 
