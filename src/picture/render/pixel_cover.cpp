@@ -275,14 +275,14 @@ void Silhouette::cover(int x, int y, int samples, Cover& result) const {
   pixel.finish(result);
 }
 
-void Silhouette::cover_and_see(
+int Silhouette::cover_and_see(
     int x, int y, const SampleCounts& counts, Cover& result, Visible& visible) const {
   PixelCover pixel(*this, x, y);
   pixel.cover(counts.outline, result);
   pixel.see(counts);
   pixel.look();
   pixel.finish(result);
-  pixel.finish(visible);
+  return pixel.finish(visible);
 }
 
 }  // namespace airtruth::render

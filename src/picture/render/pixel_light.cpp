@@ -15,6 +15,9 @@ namespace {
 // stands for more: a coarser mip level would mix parts of the texture that belong elsewhere.
 constexpr float kMostReadShare = 1.0f / 28;
 
+// Up to this number of spots a prefetch costs more than it saves.
+constexpr std::size_t kFewReads = 8;
+
 // A spot's point of the surface.
 struct Point {
   Eigen::Vector3f in_body;
@@ -29,14 +32,12 @@ struct Range {
   std::size_t begin;
   std::size_t end;
   Around around;
-  // Over the spots that are known: the number of their samples, and sums over those.
+  // At the mean of the places and times of all spots.
+  float distance_m;
+  // Over the spots that are known: the number of their samples, and the sum over those.
   float samples;
   std::array<float, 3> rgb;
-  float distance_m;
-  // For the variance among the spots: their number, and sums over them.
-  int spots;
-  std::array<float, 3> sum;
-  std::array<float, 3> squares;
+  Spread spread;
 };
 
 Eigen::Vector3f place_of(const Placed& placed, const Hit& hit) {
@@ -60,36 +61,30 @@ bool same_triangle(const Spot& a, const Spot& b) {
   return a.hit.triangle == b.hit.triangle && a.hit.part == b.hit.part;
 }
 
-Hit mean_of(std::span<const Spot> spots) {
-  Hit mean = spots[0].hit;
+Spot mean_of(std::span<const Spot> spots) {
+  Spot mean = spots[0];
   if (spots.size() == 1) return mean;
   float u = 0;
   float v = 0;
+  float time = 0;
   float samples = 0;
   for (const Spot& spot : spots) {
     u += spot.samples * spot.hit.u;
     v += spot.samples * spot.hit.v;
+    time += spot.samples * spot.time;
     samples += spot.samples;
   }
-  mean.u = u / samples;
-  mean.v = v / samples;
+  mean.hit.u = u / samples;
+  mean.hit.v = v / samples;
+  mean.time = time / samples;
+  mean.samples = samples;
   return mean;
 }
 
 bool is_known(const Range& range, float share) {
-  // A share of the colour: below one code value of a video in the middle of its range.
+  // Below one code value of a video in the middle of its range.
   constexpr float kTolerance = 0.01f;
-  // Linear light below which the tolerance stays the same.
-  constexpr float kNearBlack = 0.03f;
-  if (range.spots < 3) return false;
-  const auto n = static_cast<float>(range.spots);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float mean = range.sum[c] / n;
-    const float variance = (range.squares[c] - n * mean * mean) / (n - 1);
-    const float allowed = kTolerance * (mean + kNearBlack);
-    if (share * share * variance > n * allowed * allowed) return false;
-  }
-  return true;
+  return range.spread.count >= 3 && range.spread.is_known(share, kTolerance);
 }
 
 // Computes the light of a pixel's spots.
@@ -109,7 +104,7 @@ class Shading {
         sample_rad_(sample_rad) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
       if (i == 0 || !same_triangle(spots[i - 1], spots[i]))
-        ranges_[count_++] = {i, i, {}, 0, {}, 0, 0, {}, {}};
+        ranges_[count_++] = {i, i, {}, 0, 0, {}, {}};
       ++ranges_[count_ - 1].end;
       samples_ += spots[i].samples;
     }
@@ -124,9 +119,11 @@ class Shading {
     PixelLight sum;
     for (std::size_t r = 0; r < count_; ++r) {
       const Range& range = ranges_[r];
-      const double weight = static_cast<double>(samples_of(range) / (range.samples * samples_));
+      const auto share = static_cast<double>(samples_of(range) / samples_);
+      const double weight = share / static_cast<double>(range.samples);
       for (std::size_t c = 0; c < 3; ++c) sum.rgb[c] += weight * static_cast<double>(range.rgb[c]);
-      sum.distance_m += weight * static_cast<double>(range.distance_m);
+      sum.distance_m += share * static_cast<double>(range.distance_m);
+      sum.spread.add(range.spread);
     }
     return sum;
   }
@@ -141,28 +138,50 @@ class Shading {
   // Asks for the spots of a triangle that lead, or for the others. All of a few lead.
   void ask(std::size_t r, bool leading) {
     constexpr std::size_t kFew = 4;
-    const Range& range = ranges_[r];
+    Range& range = ranges_[r];
     const bool all_lead = range.end - range.begin <= kFew ||
                           std::none_of(spots_.begin() + static_cast<std::ptrdiff_t>(range.begin),
                                        spots_.begin() + static_cast<std::ptrdiff_t>(range.end),
                                        [](const Spot& spot) { return spot.leads; });
+    if (!leading && all_lead) return;
+    const bool is_one = range.end - range.begin == 1;
+    if (leading && !is_one) look_at_middle(range);
+    const Point* last = nullptr;
+    float last_samples = 0;
     for (std::size_t i = range.begin; i < range.end; ++i) {
       if ((all_lead || spots_[i].leads) != leading) continue;
       asked_[n_] = {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(r)};
       Point& point = points_[n_] = point_of(placed_, eye_, spots_[i]);
-      point.skin.emplace(
-          placed_.model->mesh,
-          placed_.facet(spots_[i].hit),
-          point.distance_m * sample_rad_ *
-              std::sqrt(std::clamp(
-                  spots_[i].samples, 1.0f, std::max(1.0f, kMostReadShare * of_samples_))));
-      point.skin->prefetch(spots_[i].hit.u, spots_[i].hit.v);
+      if (is_one) {
+        range.distance_m = point.distance_m;
+        range.around = around_at(placed_, point.surface, spots_[i].hit, light_);
+      }
+      if (last != nullptr && spots_[i].samples == last_samples)
+        point.skin = last->skin;
+      else
+        point.skin = skin_of(spots_[i], range.distance_m);
+      last = &point;
+      last_samples = spots_[i].samples;
+      if (spots_.size() > kFewReads) point.skin->prefetch(spots_[i].hit.u, spots_[i].hit.v);
       ++n_;
     }
-    if (!leading) return;
-    const Hit mean = mean_of(spots_.subspan(range.begin, range.end - range.begin));
-    const Surface surface = surface_at(placed_, points_[n_ - 1].surface.view, mean);
-    ranges_[r].around = around_at(placed_, surface, mean, light_);
+  }
+
+  void look_at_middle(Range& range) const {
+    const Spot mean = mean_of(spots_.subspan(range.begin, range.end - range.begin));
+    const Eigen::Vector3f from_eye =
+        (place_of(placed_, mean.hit).cast<double>() - eye_.at(mean.time)).cast<float>();
+    // Over a triangle in a pixel the distance is linear in place and time.
+    range.distance_m = from_eye.norm();
+    const Surface surface = surface_at(placed_, from_eye / range.distance_m, mean.hit);
+    range.around = around_at(placed_, surface, mean.hit, light_);
+  }
+
+  Skin skin_of(const Spot& spot, float distance_m) const {
+    const float most = std::max(1.0f, kMostReadShare * of_samples_);
+    return {placed_.model->mesh,
+            placed_.facet(spot.hit),
+            distance_m * sample_rad_ * std::sqrt(std::clamp(spot.samples, 1.0f, most))};
   }
 
   void shade_asked() {
@@ -179,14 +198,9 @@ class Shading {
                                 point.surface.cosine,
                                 in_shadow_[k] != 0,
                                 light_);
-      ++range.spots;
+      range.spread.add(rgb);
       range.samples += spot.samples;
-      range.distance_m += spot.samples * point.distance_m;
-      for (std::size_t c = 0; c < 3; ++c) {
-        range.rgb[c] += spot.samples * rgb[c];
-        range.sum[c] += rgb[c];
-        range.squares[c] += rgb[c] * rgb[c];
-      }
+      for (std::size_t c = 0; c < 3; ++c) range.rgb[c] += spot.samples * rgb[c];
     }
     n_ = 0;
   }
@@ -204,9 +218,13 @@ class Shading {
     for (std::size_t i = 0; i < rays; ++i) in_shadow_[of_ray_[i]] = blocked_[i];
   }
 
-  static std::array<Point, kMostSpots>& scratch() {
-    thread_local std::array<Point, kMostSpots> points;
-    return points;
+  struct Scratch {
+    std::array<Point, kMostSpots> points;
+    std::array<Range, kMostSpots> ranges;
+  };
+  static Scratch& scratch() {
+    thread_local Scratch scratch;
+    return scratch;
   }
 
   const Placed& placed_;
@@ -218,7 +236,8 @@ class Shading {
   float sample_rad_;
   float samples_ = 0;
   std::size_t count_ = 0;
-  std::array<Range, kMostSpots> ranges_;
+  // Not cleared for each pixel, nor are the points.
+  std::array<Range, kMostSpots>& ranges_ = scratch().ranges;
 
   // What was asked for and is not shaded yet.
   struct Asked {
@@ -227,8 +246,7 @@ class Shading {
   };
   std::size_t n_ = 0;
   std::array<Asked, kMostSpots> asked_;
-  // Not cleared for each pixel.
-  std::array<Point, kMostSpots>& points_ = scratch();
+  std::array<Point, kMostSpots>& points_ = scratch().points;
   std::array<BodyRay, kMostSpots> to_sun_;
   std::array<std::uint16_t, kMostSpots> of_ray_;
   std::array<std::uint8_t, kMostSpots> blocked_;
@@ -236,6 +254,38 @@ class Shading {
 };
 
 }  // namespace
+
+void Spread::add(const Rgb& rgb) {
+  ++count;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum[c] += rgb[c];
+    squares[c] += rgb[c] * rgb[c];
+  }
+}
+
+void Spread::add(const Spread& other) {
+  count += other.count;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum[c] += other.sum[c];
+    squares[c] += other.squares[c];
+  }
+}
+
+bool Spread::is_known(float share, float tolerance) const {
+  // Linear light below which the tolerance stays the same.
+  constexpr float kNearBlack = 0.03f;
+  if (count < 2) return false;
+  const auto n = static_cast<float>(count);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float mean = sum[c] / n;
+    const float variance = (squares[c] - n * mean * mean) / (n - 1);
+    const float allowed = tolerance * (mean + kNearBlack);
+    if (share * share * variance > n * allowed * allowed) return false;
+  }
+  return true;
+}
+
+PixelEye::PixelEye(const PixelRays& rays, bool moves) : eye_(rays.eye()), moves_(moves) {}
 
 PixelEye::PixelEye(const TracedIntruder& actor, const RayGrid& grid, int x, int y)
     : eye_{actor.eye_in_body, Vector3::Zero(), Vector3::Zero()} {

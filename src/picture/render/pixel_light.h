@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "picture/render/pixel_rays.h"
 #include "picture/render/tracer.h"
 
 // The light of a pixel that one opaque aircraft covers, from its visible surfaces.
@@ -35,6 +36,7 @@ struct Visible {
 class PixelEye {
  public:
   PixelEye(const TracedIntruder& actor, const RayGrid& grid, int x, int y);
+  PixelEye(const PixelRays& rays, bool moves);
   Vector3 at(float time) const;
 
  private:
@@ -43,10 +45,24 @@ class PixelEye {
   bool moves_ = false;
 };
 
+// Colours of equal weight, with their variance.
+struct Spread {
+  int count = 0;
+  std::array<float, 3> sum{};
+  std::array<float, 3> squares{};
+
+  void add(const Rgb& rgb);
+  void add(const Spread& other);
+  // True where the standard error of the mean, times `share`, is below `tolerance` of the colour.
+  bool is_known(float share, float tolerance) const;
+};
+
 // Mean colour (linear) and distance over the spots.
 struct PixelLight {
   std::array<double, 3> rgb{};
   double distance_m = 0;
+  // Of the spots that are looked at, each with weight 1.
+  Spread spread;
 };
 
 // The sun's light and shadow and the texture are found at every spot that is looked at: first at

@@ -2,8 +2,11 @@
 #include "picture/render/reach.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <variant>
 
 namespace airtruth::render {
@@ -161,6 +164,20 @@ Reach reach_of_disc(const PixelBox& patch,
       }
   const Box box = *bounds.box();
   return reach_within(patch, {box.x, box.y}, {box.right(), box.bottom()}, 1);
+}
+
+std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches) {
+  constexpr std::size_t kSizes = 65;
+  const auto size = [](const Reach& reach) {
+    return kSizes - 1 - static_cast<std::size_t>(std::bit_width(reach.pixels()));
+  };
+  std::array<std::uint32_t, kSizes + 1> first{};
+  for (const Reach& reach : reaches) ++first[size(reach) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> order(reaches.size());
+  for (std::size_t i = 0; i < reaches.size(); ++i)
+    order[first[size(reaches[i])]++] = static_cast<std::uint32_t>(i);
+  return order;
 }
 
 }  // namespace airtruth::render

@@ -67,4 +67,8 @@ Reach reach_of_disc(const PixelBox& patch,
                     const aircraft::Part& part,
                     const std::vector<Eye>& eyes);
 
+// The indices of reaches by their number of pixels, to a power of two: large triangles cover a
+// pixel early.
+std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches);
+
 }  // namespace airtruth::render

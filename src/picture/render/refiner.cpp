@@ -66,9 +66,10 @@ class Refiner {
     // work.
     if (counts.edge == counts.base) return;
     for (const TracedIntruder& actor : actors)
-      silhouettes_.push_back(
-          actor.pixels ? std::optional<Silhouette>(std::in_place, actor, view, canvas.patch, grid)
-                       : std::nullopt);
+      silhouettes_.push_back(actor.pixels
+                                 ? std::optional<Silhouette>(
+                                       std::in_place, actor, view, canvas.patch, grid, counts.sees)
+                                 : std::nullopt);
   }
 
   void fill(const std::stop_token& stop) {
@@ -79,6 +80,10 @@ class Refiner {
   }
 
  private:
+  // Where fewer than one in this many samples of the depth buffer meet the aircraft, they do not
+  // say which of its parts are how large in the pixel: rays through the many samples of the outline
+  // do.
+  static constexpr int kFewest = 8;
   static constexpr int kRays = -1;
   static constexpr int kNobody = -2;
 
@@ -115,16 +120,17 @@ class Refiner {
     const bool sees = counts_.sees && silhouette.touch(x, y) == Silhouette::Touch::kOpaque;
     thread_local Visible visible;
     thread_local Cover found;
+    int seen = 0;
     if (sees && counts_.at_once) {
-      silhouette.cover_and_see(x, y, counts_, found, visible);
+      seen = silhouette.cover_and_see(x, y, counts_, found, visible);
       count(x, y, only, counts_.outline, found.covered);
     } else if (sees) {
-      const int covered = silhouette.see(x, y, counts_, visible);
-      count(x, y, only, visible.of_samples, covered);
+      seen = silhouette.see(x, y, counts_, visible);
+      count(x, y, only, visible.of_samples, seen);
     } else {
       found = cover(x, y, only, counts_.at_once ? counts_.outline : kRoughCover);
     }
-    if (sees && !visible.spots.empty())
+    if (sees && seen * kFewest >= visible.of_samples)
       tracer_.shade_visible(x, y, only, visible, canvas_.sums[canvas_.index(x, y)]);
     if (counts_.at_once) outline(x, y, only, &found);
   }

@@ -140,20 +140,20 @@ void PixelSamples::fill_strips(int n,
 SampleCounts counts_for(int quality, double size_px) {
   switch (quality) {
     case 1:
-      return {4, 32, 64, 4, 8, 2};
+      return {4, 32, 64, 4, 4, 8, 2};
     case 2:
-      return {16, 128, 256, 8, 8, 2};
+      return {16, 128, 256, 8, 4, 8, 2};
     case 3:
       // In a smaller aircraft each pixel contains more of the livery, and fewer pixels need
       // samples.
-      if (size_px <= 24) return {64, 1024, 1024, 64, 16, 8, true};
-      if (size_px <= 64) return {16, 512, 512, 32, 8, 4, true};
+      if (size_px <= 24) return {64, 1024, 1024, 64, 64, 16, 8, true};
+      if (size_px <= 64) return {16, 512, 512, 32, 16, 8, 4, true};
       // A larger aircraft has more pixels on its outline, and with them a larger worst error.
-      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8, 3};
+      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8, 8, 3};
     case 4:
-      return {64, 1024, 4096, 16, 8, 4};
+      return {64, 1024, 4096, 16, 16, 8, 4};
     case 5:
-      return {4096, 4096, 0, 16, 8, 4};
+      return {4096, 4096, 0, 16, 16, 8, 4};
     default:
       break;
   }

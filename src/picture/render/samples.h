@@ -64,6 +64,10 @@ struct SampleCounts {
   int outline = 1024;
   // Hits of rays whose light is computed; the other hits only count as coverage.
   int shaded = 16;
+  // Largest value of `shaded`.
+  static constexpr std::size_t kMostShaded = 64;
+  // How many of them are traced at once, before a look at the variance of their colours.
+  int shaded_alike = 8;
   // Samples along a side of a pixel whose visible surface is found by Silhouette: 8 or 16.
   int visible_side = 8;
   // Blocks along a side of a pixel, of which each has its own light.

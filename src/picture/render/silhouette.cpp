@@ -11,7 +11,7 @@ namespace airtruth::render {
 namespace {
 
 // Covers the rounding of a triangle's place.
-constexpr double kMarginPx = 0.02;
+constexpr double kRowMarginPx = 0.02;
 // Largest number of triangles over one pixel; with more, rays are faster.
 constexpr std::size_t kMaxTriangles = 1024;
 // Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
@@ -23,8 +23,9 @@ constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 25;
 Silhouette::Silhouette(const TracedIntruder& actor,
                        const View& view,
                        const PixelBox& patch,
-                       const RayGrid& grid)
-    : patch_(patch), grid_(grid), actor_(actor) {
+                       const RayGrid& grid,
+                       bool sees)
+    : patch_(patch), grid_(grid), actor_(actor), sees_(sees) {
   std::vector<Eye> eyes;
   for (int k = actor.moves ? 0 : 1; k < (actor.moves ? 3 : 2); ++k) {
     const View then = view.at(grid.span().at(k));
@@ -139,7 +140,7 @@ void Silhouette::add_part(const TracedIntruder& actor,
       if (!planes) continue;
       triangle.planes = static_cast<std::uint32_t>(planes_.size());
       planes_.push_back(*planes);
-      place(corners, eyes, exposure_share, kNearlyStraight, triangle);
+      if (sees_) place(corners, eyes, exposure_share, kNearlyStraight, triangle);
     }
     triangles_.push_back(triangle);
     reaches.push_back(reach);
@@ -227,9 +228,9 @@ std::vector<Silhouette::RowSpan> Silhouette::rows_of(
       }
       const Box box =
           moving_[triangles_[i].picture].box_at(u[static_cast<std::size_t>(y - patch_.y)]);
-      if (box.y > y + 1 + kMarginPx || box.bottom() < y - kMarginPx) continue;
-      const int x0 = std::max(r.x0, static_cast<int>(std::floor(box.x - kMarginPx)));
-      const int x1 = std::min(r.x1, static_cast<int>(std::ceil(box.right() + kMarginPx)));
+      if (box.y > y + 1 + kRowMarginPx || box.bottom() < y - kRowMarginPx) continue;
+      const int x0 = std::max(r.x0, static_cast<int>(std::floor(box.x - kRowMarginPx)));
+      const int x1 = std::min(r.x1, static_cast<int>(std::ceil(box.right() + kRowMarginPx)));
       if (x0 < x1) rows.push_back({i, y, x0, x1});
     }
   }
@@ -247,7 +248,8 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
     return;
   }
   touch_.assign(pixels, Touch::kNone);
-  const std::vector<RowSpan> rows = rows_of(reaches, nearest_first());
+  const std::vector<RowSpan> rows =
+      rows_of(reaches, sees_ ? nearest_first() : largest_first(reaches));
   const auto each = [&](const auto& body) {
     for (const RowSpan& row : rows) {
       const std::size_t start = index(0, row.y);

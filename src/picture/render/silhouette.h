@@ -46,11 +46,12 @@ class Silhouette {
   enum class Touch { kNone, kOpaque, kOpaqueByRays, kRays };
 
   // Sorts the actor's triangles by the pixels of the patch that they can touch. The object keeps
-  // references to `actor` and `grid`.
+  // references to `actor` and `grid`. sees: whether see() will be called.
   Silhouette(const TracedIntruder& actor,
              const View& view,
              const PixelBox& patch,
-             const RayGrid& grid);
+             const RayGrid& grid,
+             bool sees);
 
   // The content of a pixel: kNone, no part of the aircraft; kOpaque, only opaque triangles, few
   // enough for cover() to be faster than rays; kOpaqueByRays, the same, but see() does not know the
@@ -66,8 +67,8 @@ class Silhouette {
   // samples (PixelSamples::fill_cells()). Returns the number of the samples that are covered.
   int see(int x, int y, const SampleCounts& counts, Visible& visible) const;
 
-  // Both at once, which is cheaper.
-  void cover_and_see(
+  // Both at once, which is cheaper. Returns what see() returns.
+  int cover_and_see(
       int x, int y, const SampleCounts& counts, Cover& result, Visible& visible) const;
 
  private:
@@ -118,7 +119,7 @@ class Silhouette {
   };
   std::vector<RowSpan> rows_of(const std::vector<Reach>& reaches,
                                const std::vector<std::uint32_t>& order) const;
-  // The order in which triangles are tested; sets Triangle::nearest.
+  // The order in which a depth buffer tests triangles; sets Triangle::nearest.
   std::vector<std::uint32_t> nearest_first();
   // Empty where the triangle is seen edge-on.
   std::optional<Planes> planes_of(const Vertices& vertices, const aircraft::Triangle& source) const;
@@ -134,6 +135,7 @@ class Silhouette {
   PixelBox patch_;
   const RayGrid& grid_;
   const TracedIntruder& actor_;
+  bool sees_;
   std::vector<Triangle> triangles_;
   std::vector<StillTriangle> still_;
   std::vector<MovingTriangle> moving_;

@@ -16,8 +16,8 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kSide = 120;
-const Box kWhole{0, 0, kSide, kSide};
+constexpr int kFrameSide = 120;
+const Box kWhole{0, 0, kFrameSide, kFrameSide};
 
 struct Scene {
   lens::Lens lens;
@@ -29,18 +29,18 @@ Scene scene_of(
     const Model& model, double size_m, double size_px, bool moves, std::mt19937& random) {
   std::uniform_real_distribution<double> angle(-180, 180);
   const double focal_px = 1500;
-  Scene scene{
-      lens::Lens(lens::Pinhole{{focal_px, focal_px}, {kSide / 2.0, kSide / 2.0}}, {kSide, kSide}),
-      {},
-      {}};
+  Scene scene{lens::Lens(lens::Pinhole{{focal_px, focal_px}, {kFrameSide / 2.0, kFrameSide / 2.0}},
+                         {kFrameSide, kFrameSide}),
+              {},
+              {}};
   const Vector3 place(focal_px * size_m / size_px, 0.3, -0.2);
   scene.instance = {
       &model, {world_from_body({angle(random), angle(random) / 4, angle(random) / 2}), place}};
   scene.view = {nullptr,
                 Rigid{cam_from_body().conjugate(), Vector3::Zero()},
                 Homography::Identity(),
-                kSide,
-                kSide};
+                kFrameSide,
+                kFrameSide};
   if (!moves) return scene;
   scene.view.shutter = {0.008, 0.016, Readout::kDown};
   scene.view.camera = {{20, 0, 0}, {0.05, 0.1, 0.1}};
@@ -110,12 +110,12 @@ void compare_all(const char* name, double size_px, bool moves) {
     Scene scene =
         scene_of(model, std::max(extents.length_m(), extents.span_m()), size_px, moves, random);
     scene.view.lens = &scene.lens;
-    const PixelBox patch{0, 0, kSide, kSide};
+    const PixelBox patch{0, 0, kFrameSide, kFrameSide};
     const RayGrid grid(scene.view, patch);
     const TracedIntruder actor = place(scene.instance, scene.view, {}, kWhole, grid.span());
-    const Silhouette silhouette(actor, scene.view, patch, grid);
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) {
+    const Silhouette silhouette(actor, scene.view, patch, grid, true);
+    for (int y = 0; y < kFrameSide; ++y)
+      for (int x = 0; x < kFrameSide; ++x) {
         if (silhouette.touch(x, y) != Silhouette::Touch::kOpaque) continue;
         const Compared here = compare(actor, grid, silhouette, x, y);
         if (here.seen == 0 && here.hit == 0) continue;
