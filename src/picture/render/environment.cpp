@@ -10,6 +10,11 @@ namespace {
 // Bands of elevation, of equal solid angle. There are twice as many sectors of azimuth.
 constexpr int kBands = 96;
 
+// Factors of the harmonics of order 2.
+constexpr float kProduct = 1.092548f;
+constexpr float kZenith = 0.315392f;
+constexpr float kDifference = 0.546274f;
+
 // The real spherical harmonics up to order 2 (Ramamoorthi and Hanrahan 2001, eq. 3).
 std::array<float, 9> harmonics(const Eigen::Vector3f& d) {
   const float x = d.x(), y = d.y(), z = d.z();
@@ -17,11 +22,11 @@ std::array<float, 9> harmonics(const Eigen::Vector3f& d) {
           0.488603f * y,
           0.488603f * z,
           0.488603f * x,
-          1.092548f * x * y,
-          1.092548f * y * z,
-          0.315392f * (3 * z * z - 1),
-          1.092548f * x * z,
-          0.546274f * (x * x - y * y)};
+          kProduct * x * y,
+          kProduct * y * z,
+          kZenith * (3 * z * z - 1),
+          kProduct * x * z,
+          kDifference * (x * x - y * y)};
 }
 
 constexpr std::array<std::size_t, 9> kOrder = {0, 1, 1, 1, 2, 2, 2, 2, 2};
@@ -59,19 +64,44 @@ Environment& Environment::operator+=(const Environment& other) {
 
 Environment Environment::scaled(const Rgb& by) const {
   Environment result = *this;
-  for (Rgb& coefficient : result.coefficients_)
+  for (auto& coefficient : result.coefficients_)
     for (std::size_t c = 0; c < 3; ++c) coefficient[c] *= by[c];
+  return result;
+}
+
+// The harmonics of order 1 are a vector, and those of order 2 a symmetric matrix without a trace.
+// Both turn as such.
+Environment Environment::turned(const Eigen::Matrix3f& world_from_other) const {
+  Environment result = *this;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto of = [&](std::size_t k) { return coefficients_[k][c]; };
+    const Eigen::Vector3f v = world_from_other.transpose() * Eigen::Vector3f(of(3), of(1), of(2));
+    Eigen::Matrix3f m;
+    const float zz = 2 * kZenith * of(6);
+    const float difference = kDifference * of(8);
+    m << difference - zz / 2, kProduct * of(4) / 2, kProduct * of(7) / 2,  //
+        kProduct * of(4) / 2, -difference - zz / 2, kProduct * of(5) / 2,  //
+        kProduct * of(7) / 2, kProduct * of(5) / 2, zz;
+    m = (world_from_other.transpose() * m * world_from_other).eval();
+    const std::array<float, 8> turned = {v.y(),
+                                         v.z(),
+                                         v.x(),
+                                         2 * m(0, 1) / kProduct,
+                                         2 * m(1, 2) / kProduct,
+                                         m(2, 2) / (2 * kZenith),
+                                         2 * m(0, 2) / kProduct,
+                                         (m(0, 0) - m(1, 1)) / (2 * kDifference)};
+    for (std::size_t k = 0; k < turned.size(); ++k) result.coefficients_[k + 1][c] = turned[k];
+  }
   return result;
 }
 
 Rgb Environment::sum(const Eigen::Vector3f& direction, const std::array<float, 3>& by_order) const {
   const std::array<float, 9> y = harmonics(direction);
-  Rgb result{};
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (std::size_t k = 0; k < 9; ++k)
-    for (std::size_t c = 0; c < 3; ++c)
-      result[c] += by_order[kOrder[k]] * y[k] * coefficients_[k][c];
-  for (float& channel : result) channel = std::max(0.0f, channel);
-  return result;
+    sum += by_order[kOrder[k]] * y[k] * Eigen::Map<const Eigen::Array4f>(coefficients_[k].data());
+  return {std::max(0.0f, sum[0]), std::max(0.0f, sum[1]), std::max(0.0f, sum[2])};
 }
 
 // Multiplies by the coefficients of the cosine lobe over pi (Ramamoorthi and Hanrahan 2001, eq. 8).

@@ -28,6 +28,8 @@ class Environment {
   // channel.
   Environment& operator+=(const Environment& other);
   Environment scaled(const Rgb& by) const;
+  // The same light for directions in another frame.
+  Environment turned(const Eigen::Matrix3f& world_from_other) const;
 
   // Irradiance over pi on a surface with that unit normal: the radiance that a white Lambert
   // surface reflects. Never below 0.
@@ -38,8 +40,8 @@ class Environment {
  private:
   Rgb sum(const Eigen::Vector3f& direction, const std::array<float, 3>& by_order) const;
 
-  // Of the radiance.
-  std::array<Rgb, 9> coefficients_{};
+  // Of the radiance; the fourth channel is 0.
+  std::array<std::array<float, 4>, 9> coefficients_{};
 };
 
 }  // namespace airtruth::render

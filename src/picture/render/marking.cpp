@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "picture/render/vectors.h"
+
 namespace airtruth::render {
 namespace {
 
@@ -19,15 +21,6 @@ Bilinear scaled(const std::array<double, 4>& corner, double scale) {
           static_cast<float>((corner[2] - corner[0]) * scale),
           static_cast<float>((corner[0] - corner[1] - corner[2] + corner[3]) * scale)};
 }
-
-// The compiler emits these functions with vectors of 16, 8 or 4 numbers, as the machine supports
-// them. No product is fused with its sum (-ffp-contract=off), so all variants give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define AIRTRUTH_VECTORS __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
-#else
-#define AIRTRUTH_VECTORS
-#endif
 
 // Marks the samples that are inside. Returns true where every sample is marked.
 template <typename Inside>

@@ -78,6 +78,21 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
 }
 
+Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, bool is_opaque) {
+  Facet facet;
+  for (std::size_t k = 0; k < 3; ++k) {
+    facet.corner[k] = mesh.positions[triangle.vertex[k]];
+    facet.normal[k] = mesh.normals[triangle.vertex[k]];
+    facet.uv[k] = mesh.uvs[triangle.vertex[k]];
+  }
+  facet.face = (facet.corner[1] - facet.corner[0]).cross(facet.corner[2] - facet.corner[0]);
+  facet.face.normalize();
+  facet.texels_per_m = density(mesh, triangle);
+  facet.material = triangle.material;
+  facet.is_opaque = is_opaque;
+  return facet;
+}
+
 // Counts a texture's translucent texels in any rectangle (a summed-area table: Crow 1984).
 class TranslucentTexels {
  public:
@@ -207,10 +222,10 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
   impl_->opaque = opaque_triangles(mesh);
   for (const aircraft::Part& part : mesh.parts) {
     impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
-    std::vector<float> densities;
-    for (const aircraft::Triangle& triangle : part.triangles)
-      densities.push_back(density(mesh, triangle));
-    impl_->texels_per_m.push_back(std::move(densities));
+    std::vector<Facet>& facets = impl_->facets.emplace_back();
+    const std::vector<std::uint8_t>& opaque = impl_->opaque[impl_->facets.size() - 1];
+    for (std::size_t i = 0; i < part.triangles.size(); ++i)
+      facets.push_back(facet_of(mesh, part.triangles[i], opaque[i] != 0));
   }
   impl_->find_sphere();
   const OpennessCache kept = openness_cache(cache, mesh, device.name);

@@ -51,6 +51,18 @@ struct TriangleOpenness {
   SideOpenness back;
 };
 
+// A triangle as the shading reads it, in its part's coordinates.
+struct Facet {
+  std::array<Eigen::Vector3f, 3> corner;
+  std::array<Eigen::Vector3f, 3> normal;  // of the smooth surface
+  std::array<Eigen::Vector2f, 3> uv;
+  // Unit normal of the triangle.
+  Eigen::Vector3f face;
+  float texels_per_m = 0;  // 0 without a texture
+  std::uint32_t material = 0;
+  bool is_opaque = true;
+};
+
 struct Model::Impl {
   explicit Impl(std::shared_ptr<const aircraft::Mesh> shared)
       : owned(std::move(shared)), mesh(*owned) {}
@@ -60,8 +72,7 @@ struct Model::Impl {
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
   // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
-  // By [part][triangle]; 0 without a texture.
-  std::vector<std::vector<float>> texels_per_m;
+  std::vector<std::vector<Facet>> facets;  // [part][triangle]
   // By [part][triangle]; 1 where the whole triangle is opaque.
   std::vector<std::vector<std::uint8_t>> opaque;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]

@@ -2,76 +2,78 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "picture/render/pixel_rays.h"
+#include "picture/render/tracer.h"
 
-// The light of a pixel that one opaque aircraft covers, from some of its samples.
-//
-// Visibility, the sun's light and shadow and the texture are found at every sample. The light of
-// the surroundings is computed once for all samples of a triangle, at the mean of their places:
-// within a pixel it is smooth over a triangle.
+// The light of a pixel that one opaque aircraft covers, from its visible surfaces.
 namespace airtruth::render {
 
-class PixelLight {
+constexpr std::size_t kMostSpots = 256;
+
+// A part of a pixel in which one triangle is visible.
+struct Spot {
+  // A point in its middle. Hit::t is not used.
+  Hit hit;
+  // The time of that point in the pixel's exposure, from 0 to 1.
+  float time = 0.5f;
+  // How many of the pixel's samples it stands for.
+  float samples = 1;
+  // One of a few that are spread evenly over the triangle's visible part; they are looked at first.
+  bool leads = true;
+};
+
+// The surfaces that an aircraft shows in a pixel.
+struct Visible {
+  // At most kMostSpots, with those of one triangle one after another.
+  std::vector<Spot> spots;
+  // The number of samples over the whole pixel.
+  int of_samples = 1;
+};
+
+// Where the eye is in body during the exposure of one pixel.
+class PixelEye {
  public:
-  // Largest number of samples of one call of add().
-  static constexpr std::size_t kMostAtOnce = 64;
-
-  // rays: of the pixel; start_m: their start before the aircraft. footprint_per_m: the width on the
-  // surface that a sample represents, as a share of its distance. The object keeps references.
-  PixelLight(const Placed& placed,
-             const PixelRays& rays,
-             const Light& light,
-             double start_m,
-             float footprint_per_m);
-
-  // Adds samples that the aircraft covers. One that meets no surface is left out: so close to an
-  // edge the float and the double computation disagree.
-  void add(std::span<const int> samples);
-
-  // Number of the samples that met a surface.
-  int count() const { return count_; }
-  const std::array<double, 3>& rgb_sum() const { return rgb_sum_; }
-  double distance_sum_m() const { return distance_sum_m_; }
-  // True where the standard error of the mean colour, times `share`, is small beside the colour.
-  bool is_known(double share) const;
+  PixelEye(const TracedIntruder& actor, const RayGrid& grid, int x, int y);
+  PixelEye(const PixelRays& rays, bool moves);
+  Vector3 at(float time) const;
 
  private:
-  // The samples of one triangle.
-  struct Facet {
-    Hit mean;
-    Eigen::Vector3f view;
-    int samples = 0;
-  };
-  void add(const Rgb& rgb);
-  void trace(std::span<const int> samples);
-  void sort_by_triangle();
-  void find_shadows();
-
-  const Placed& placed_;
-  const PixelRays& rays_of_;
-  const Light& light_;
-  double start_m_;
-  float footprint_per_m_;
-  int count_ = 0;
-  std::array<double, 3> rgb_sum_{};
-  double distance_sum_m_ = 0;
-  std::array<double, 3> square_sum_{};
-
-  // Of the samples of one call of add() that meet a surface.
-  std::size_t n_ = 0;
-  std::array<BodyRay, kMostAtOnce> rays_;
-  std::array<double, kMostAtOnce> dt_s_;
-  std::array<std::optional<Hit>, kMostAtOnce> hits_;
-  std::array<std::size_t, kMostAtOnce> facet_of_;
-  std::array<Sunlit, kMostAtOnce> sunlit_;
-  std::array<std::uint8_t, kMostAtOnce> in_shadow_;
-  std::size_t facet_count_ = 0;
-  std::array<Facet, kMostAtOnce> facets_;
+  // Coefficients of 1, u and u^2, with u from -1 (beginning of the exposure) to 1.
+  Thrice<Vector3> eye_;
+  bool moves_ = false;
 };
+
+// Colours of equal weight, with their variance.
+struct Spread {
+  int count = 0;
+  std::array<float, 3> sum{};
+  std::array<float, 3> squares{};
+
+  void add(const Rgb& rgb);
+  void add(const Spread& other);
+  // True where the standard error of the mean, times `share`, is below `tolerance` of the colour.
+  bool is_known(float share, float tolerance) const;
+};
+
+// Mean colour (linear) and distance over the spots.
+struct PixelLight {
+  std::array<double, 3> rgb{};
+  double distance_m = 0;
+  // Of the spots that are looked at, each with weight 1.
+  Spread spread;
+};
+
+// The sun's light and shadow and the texture are found at every spot that is looked at: first at
+// those that lead, and at the others of a triangle if the standard error of the mean of the first
+// is not small beside the colour. The light of the surroundings is computed once for all spots of a
+// triangle, at the mean of their places: within a pixel it is smooth over a triangle. pixel_rad:
+// the angle across a pixel.
+PixelLight light_of(const Placed& placed,
+                    const PixelEye& eye,
+                    const Visible& visible,
+                    const Light& light,
+                    double pixel_rad);
 
 }  // namespace airtruth::render

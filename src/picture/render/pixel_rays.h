@@ -30,6 +30,9 @@ class PixelRays {
   bool known() const { return known_; }
   // The angle between two neighbouring corners.
   double pixel_rad() const { return pixel_rad_; }
+  // Coefficients of 1, u and u^2 of the eye, with u from -1 (beginning of the exposure) to 1; only
+  // the first counts at an instant.
+  const Thrice<Vector3>& eye() const { return eye_; }
   // `dt_s` receives the sample's time from the frame's time; 0 at an instant.
   BodyRay ray(int sample, double& dt_s) const;
 

@@ -49,6 +49,12 @@ class RayGrid {
   std::array<Vector3, 4> corners(int x, int y, int moment = 1) const;
   const Span& span() const { return span_; }
   double exposure_s() const { return view_.shutter.exposure_s; }
+  // True where all pixels of a row have one time.
+  bool reads_rows() const {
+    const Shutter& shutter = view_.shutter;
+    return shutter.readout_s <= 0 || shutter.readout == Readout::kDown ||
+           shutter.readout == Readout::kUp;
+  }
   // The middle of the exposure of a pixel's row.
   double middle_s(int x, int y) const {
     return view_.shutter.middle_s({double(x), double(y)}, view_.width, view_.height);

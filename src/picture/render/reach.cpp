@@ -2,7 +2,11 @@
 #include "picture/render/reach.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <variant>
 
 namespace airtruth::render {
@@ -54,6 +58,18 @@ std::optional<Pixel> Eye::pixel(const Vector3& from_eye_in_world) const {
   const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return std::nullopt;
   return Pixel(h.x() / h.z(), h.y() / h.z());
+}
+
+Seen Eye::look_at(const Vector3& from_eye_in_world) const {
+  Seen seen{from_eye_in_world, Pixel::Constant(std::numeric_limits<double>::quiet_NaN()), 0};
+  const Vector3 in_cam = cam_from_world * from_eye_in_world;
+  const auto nominal = view.lens->pixel_from_cam(in_cam);
+  if (!nominal) return seen;
+  const Vector3 h = frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
+  if (!(h.z() > 0)) return seen;
+  seen.pixel = {h.x() / h.z(), h.y() / h.z()};
+  if (in_cam.z() > 0) seen.nearness = 1 / (in_cam.z() * h.z());
+  return seen;
 }
 
 bool Eye::is_pinhole() const { return std::holds_alternative<lens::Pinhole>(view.lens->model()); }
@@ -148,6 +164,20 @@ Reach reach_of_disc(const PixelBox& patch,
       }
   const Box box = *bounds.box();
   return reach_within(patch, {box.x, box.y}, {box.right(), box.bottom()}, 1);
+}
+
+std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches) {
+  constexpr std::size_t kSizes = 65;
+  const auto size = [](const Reach& reach) {
+    return kSizes - 1 - static_cast<std::size_t>(std::bit_width(reach.pixels()));
+  };
+  std::array<std::uint32_t, kSizes + 1> first{};
+  for (const Reach& reach : reaches) ++first[size(reach) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> order(reaches.size());
+  for (std::size_t i = 0; i < reaches.size(); ++i)
+    order[first[size(reaches[i])]++] = static_cast<std::uint32_t>(i);
+  return order;
 }
 
 }  // namespace airtruth::render

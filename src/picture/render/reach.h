@@ -28,6 +28,9 @@ struct Seen {
   Vector3 in_world;
   // The point in the frame; not finite where the lens has none.
   Pixel pixel;
+  // The reciprocal of the depth, in units in which it is linear over the picture of a plane under a
+  // pinhole; 0 where the point is not in front of the camera.
+  double nearness = 0;
 };
 
 // The corners of a triangle at one moment.
@@ -43,6 +46,7 @@ struct Eye {
 
   // The point in the frame. Empty where the lens has none.
   std::optional<Pixel> pixel(const Vector3& from_eye_in_world) const;
+  Seen look_at(const Vector3& from_eye_in_world) const;
   bool is_pinhole() const;
   double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
@@ -62,5 +66,9 @@ Reach reach_of_disc(const PixelBox& patch,
                     const aircraft::Mesh& mesh,
                     const aircraft::Part& part,
                     const std::vector<Eye>& eyes);
+
+// The indices of reaches by their number of pixels, to a power of two: large triangles cover a
+// pixel early.
+std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches);
 
 }  // namespace airtruth::render

@@ -62,6 +62,19 @@ constexpr SobolPoints strip_points() {
 
 constexpr SobolPoints kStripPoints = strip_points();
 
+// The index of the point in each cell of a grid over the pixel, before the scrambling.
+template <std::uint32_t kSide>
+constexpr std::array<std::uint16_t, kSide * kSide> points_of_cells() {
+  std::array<std::uint16_t, kSide * kSide> result{};
+  constexpr std::uint32_t kCell = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / kSide);
+  for (std::uint16_t n = 0; n < kSide * kSide; ++n)
+    result[kPoints.x[n] / kCell * kSide + kPoints.y[n] / kCell] = n;
+  return result;
+}
+
+template <std::uint32_t kSide>
+constexpr auto kPointsOfCells = points_of_cells<kSide>();
+
 float unit(std::uint32_t bits) {
   return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
 }
@@ -87,6 +100,26 @@ void PixelSamples::fill_times(int n, float* t) const {
   fill_strips(n, kStripPoints.t, scramble_t_, t);
 }
 
+template <std::uint32_t kSide>
+void PixelSamples::fill_grid(float* x, float* y, float* t) const {
+  constexpr std::uint32_t kCell = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / kSide);
+  const std::uint32_t column = scramble_x_ / kCell;
+  const std::uint32_t row = scramble_y_ / kCell;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const std::uint16_t n = kPointsOfCells<kSide>[(i / kSide ^ column) * kSide + (i % kSide ^ row)];
+    x[i] = unit(kPoints.x[n] ^ scramble_x_);
+    y[i] = unit(kPoints.y[n] ^ scramble_y_);
+    t[i] = unit(kPoints.t[n] ^ scramble_t_);
+  }
+}
+
+void PixelSamples::fill_cells(int side, float* x, float* y, float* t) const {
+  if (side == 8)
+    fill_grid<8>(x, y, t);
+  else
+    fill_grid<16>(x, y, t);
+}
+
 void PixelSamples::fill(int n, float* x, float* y) const {
   fill_strips(n, kStripPoints.x, scramble_x_, x);
   fill_strips(n, kStripPoints.y, scramble_y_, y);
@@ -107,20 +140,20 @@ void PixelSamples::fill_strips(int n,
 SampleCounts counts_for(int quality, double size_px) {
   switch (quality) {
     case 1:
-      return {4, 32, 64, 4, 4};
+      return {4, 32, 64, 4, 4, 8, 2};
     case 2:
-      return {16, 128, 256, 8, 4};
+      return {16, 128, 256, 8, 4, 8, 2};
     case 3:
       // In a smaller aircraft each pixel contains more of the livery, and fewer pixels need
       // samples.
-      if (size_px <= 24) return {64, 1024, 1024, 64, 64, true};
-      if (size_px <= 64) return {16, 512, 512, 32, 16, true};
+      if (size_px <= 24) return {64, 1024, 1024, 64, 64, 16, 8, true};
+      if (size_px <= 64) return {16, 512, 512, 32, 16, 8, 4, true};
       // A larger aircraft has more pixels on its outline, and with them a larger worst error.
-      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8};
+      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8, 8, 3};
     case 4:
-      return {64, 1024, 4096, 16, 16};
+      return {64, 1024, 4096, 16, 16, 8, 4};
     case 5:
-      return {4096, 4096, 0, 16, 16};
+      return {4096, 4096, 0, 16, 16, 8, 4};
     default:
       break;
   }

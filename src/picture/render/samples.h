@@ -27,6 +27,10 @@ class PixelSamples {
   // The first n points strip by strip, accurate to 2^-23.
   void fill(int n, float* x, float* y) const;
   void fill_times(int n, float* t) const;
+  // The first side^2 points (side: 8 or 16) cell by cell: the points are a net, so that each cell
+  // of a grid of side x side over the pixel contains one. Place column * side + row holds the point
+  // of that cell, so that columns are strips, or halves of them.
+  void fill_cells(int side, float* x, float* y, float* t) const;
   // The place of point i among the first n in that order.
   int place(int i, int n) const { return strip_of(i % kStrips) * (n / kStrips) + i / kStrips; }
 
@@ -38,6 +42,8 @@ class PixelSamples {
     return kReversed[static_cast<std::size_t>(remainder)] ^ static_cast<int>(scramble_x_ >> 29);
   }
 
+  template <std::uint32_t kSide>
+  void fill_grid(float* x, float* y, float* t) const;
   void fill_strips(int n,
                    const std::array<std::uint32_t, kMost>& points,
                    std::uint32_t scramble,
@@ -56,13 +62,21 @@ struct SampleCounts {
   int edge = 512;
   // For a pixel that an outline crosses, by Silhouette.
   int outline = 1024;
-  // Hits whose light is computed; the other hits only count as coverage. `shaded_alike` are
-  // computed before the first look at whether their mean is known well enough.
+  // Hits of rays whose light is computed; the other hits only count as coverage.
   int shaded = 16;
+  // Largest value of `shaded`.
+  static constexpr std::size_t kMostShaded = 64;
+  // How many of them are traced at once, before a look at the variance of their colours.
   int shaded_alike = 8;
+  // Samples along a side of a pixel whose visible surface is found by Silhouette: 8 or 16.
+  int visible_side = 8;
+  // Blocks along a side of a pixel, of which each has its own light.
+  int blocks = 3;
   // True where most pixels are on an outline: each then takes `outline` samples at once, rather
   // than after a look at few samples of its neighbours.
   bool at_once = false;
+  // True where Silhouette finds the visible surfaces, and false where rays do.
+  bool sees = true;
 };
 
 // quality: Options::quality (Error outside 1..5). size_px: the longest side of the largest

@@ -2,9 +2,15 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "aircraft/model/mesh.h"
 #include "picture/render/coat.h"
 #include "picture/render/model.h"
+#include "picture/render/skin.h"
 
 namespace airtruth::render {
 
@@ -19,83 +25,74 @@ struct Placed {
   const Model::Impl* model = nullptr;
   Eigen::Vector3f to_sun_in_body{0, 0, -1};
   Eigen::Vector3f up_in_body{0, 0, -1};
-  Eigen::Matrix3f world_from_body = Eigen::Matrix3f::Identity();
+  // Light::surroundings by directions in body.
+  std::optional<Environment> surroundings;
   double time_s = 0;
   std::vector<Eigen::Affine3f> part_from_body;  // at that time
   std::vector<Eigen::Affine3f> body_from_part;
-};
 
-// A texture's value: linear RGBA, premultiplied.
-using Texel = std::array<float, 4>;
-
-// The texture of a triangle at the mip levels of one footprint (Williams 1983).
-class Skin {
- public:
-  // Of the triangle that is hit. `footprint_m`: the width on the surface that a sample represents.
-  Skin(const Placed& placed, const Hit& hit, float footprint_m);
-  // By barycentric coordinates, as in Hit; white without a texture.
-  Texel texel(float u, float v) const;
-  // The same, without the holes that a coarse mip level mixes into an opaque triangle's own texels.
-  Texel albedo(float u, float v) const;
-  const aircraft::Material& material() const { return *material_; }
-
- private:
-  const aircraft::Material* material_ = nullptr;
-  // Null for a material without a texture.
-  const aircraft::Texture* texture_ = nullptr;
-  std::array<Eigen::Vector2f, 3> uvs_;
-  bool is_opaque_ = true;
-  std::size_t level_ = 0;
-  // Share of the next coarser level.
-  float coarser_ = 0;
+  const Facet& facet(const Hit& hit) const {
+    return model->facets[static_cast<std::size_t>(hit.part)][hit.triangle];
+  }
+  const aircraft::Material& material(const Facet& of) const {
+    return model->mesh.materials[of.material];
+  }
 };
 
 // Opacity of the surface at a hit, texture included.
 float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
 
+// A point of the surface in body coordinates, as the shading uses it. Both sides of a surface are
+// lit.
+struct Surface {
+  // Unit vector of the triangle towards the viewer's side.
+  Eigen::Vector3f face;
+  // Unit vector of the smooth surface, on the same side as `face`.
+  Eigen::Vector3f normal;
+  bool is_back = false;
+  // From the camera to the surface.
+  Eigen::Vector3f view;
+  // The cosine between the view and the normal.
+  float cosine = 1;
+};
+Surface surface_at(const Placed& placed, const Eigen::Vector3f& view, const Hit& hit);
+
 // The light of the surroundings at a point of a surface.
 struct Around {
   // What reaches the paint (over pi).
   Rgb diffuse{};
-  // What the coat mirrors to the eye; 0 without light.surroundings.
+  // What the coat mirrors to the eye; 0 without surroundings.
   Rgb mirrored{};
 };
 
-// The surroundings are light.surroundings, less the part that the aircraft hides from itself
+// The surroundings are Placed::surroundings, less the part that the aircraft hides from itself
 // (openness.h), with a clear coat that mirrors them (Fresnel, by Schlick 1994). Without
-// light.surroundings they are a hemisphere whose colour changes linearly from ground to sky.
-// `view` points from the camera to the surface, in body.
-Around around_at(const Placed& placed,
-                 const Eigen::Vector3f& view,
-                 const Hit& hit,
-                 const Light& light);
+// surroundings they are a hemisphere whose colour changes linearly from ground to sky.
+Around around_at(const Placed& placed, const Surface& surface, const Hit& hit, const Light& light);
 
 // The light of the sun at a point of a surface, if nothing hides the sun. Lambert's law gives the
-// diffuse light; both sides of a surface are lit.
+// diffuse light.
 struct Sunlit {
-  // Unit vector of the triangle towards the viewer's side.
-  Eigen::Vector3f face{0, 0, -1};
   // Irradiance over pi on the paint for a sun of 1.
   float sun = 0;
-  // The cosine between the view and the normal.
-  float cosine = 1;
-  // Under light.surroundings, of a coat; otherwise its strength is that of Blinn-Phong (Blinn
+  // Under Placed::surroundings, of a coat; otherwise its strength is that of Blinn-Phong (Blinn
   // 1977).
   Glint glint;
 };
-Sunlit sunlit_at(const Placed& placed,
-                 const Eigen::Vector3f& view,
-                 const Hit& hit,
-                 const Light& light);
+Sunlit sunlit_at(const Placed& placed, const Surface& surface, const aircraft::Material& material);
 
-// The ray from the surface to the sun: where the aircraft blocks it, the surface is in shadow.
-BodyRay to_sun_from(const Placed& placed, const BodyRay& ray, const Hit& hit, const Sunlit& sunlit);
+// The ray from a point of the surface to the sun: where the aircraft blocks it, the surface is in
+// shadow.
+BodyRay to_sun_from(const Placed& placed,
+                    const Eigen::Vector3f& point_in_body,
+                    const Surface& surface);
 
-// The light of a surface: linear, premultiplied by opacity.
+// The light of a surface: linear, premultiplied by opacity. `cosine`: of Surface.
 Rgb colour_of(const aircraft::Material& material,
               const Texel& texel,
               const Around& around,
               const Sunlit& sunlit,
+              float cosine,
               bool in_shadow,
               const Light& light);
 

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "picture/render/pixel_light.h"
 #include "picture/render/reach.h"
 #include "picture/render/straight.h"
 #include "picture/render/tracer.h"
@@ -41,23 +43,33 @@ struct Cover {
 
 class Silhouette {
  public:
-  enum class Touch { kNone, kOpaque, kRays };
+  enum class Touch { kNone, kOpaque, kOpaqueByRays, kRays };
 
   // Sorts the actor's triangles by the pixels of the patch that they can touch. The object keeps
-  // references to `actor` and `grid`.
+  // references to `actor` and `grid`. sees: whether see() will be called.
   Silhouette(const TracedIntruder& actor,
              const View& view,
              const PixelBox& patch,
-             const RayGrid& grid);
+             const RayGrid& grid,
+             bool sees);
 
   // The content of a pixel: kNone, no part of the aircraft; kOpaque, only opaque triangles, few
-  // enough for cover() to be faster than rays; kRays, anything else.
+  // enough for cover() to be faster than rays; kOpaqueByRays, the same, but see() does not know the
+  // depth of each; kRays, anything else.
   Touch touch(int x, int y) const;
 
   // Covers the samples of a pixel of the kind kOpaque. No sample is covered where the lens lacks a
   // direction for some part of the pixel. samples: a multiple of PixelSamples::kStrips, up to
   // PixelSamples::kMost.
   void cover(int x, int y, int samples, Cover& result) const;
+
+  // Finds the visible surfaces of a pixel of the kind kOpaque by a depth buffer over some of its
+  // samples (PixelSamples::fill_cells()). Returns the number of the samples that are covered.
+  int see(int x, int y, const SampleCounts& counts, Visible& visible) const;
+
+  // Both at once, which is cheaper. Returns what see() returns.
+  int cover_and_see(
+      int x, int y, const SampleCounts& counts, Cover& result, Visible& visible) const;
 
  private:
   // The planes of a triangle through the eye. At an instant `side` holds their inward normals, in
@@ -66,11 +78,18 @@ class Silhouette {
     std::array<Vector3, 3> side;
     std::array<Vector3, 3> edge;
   };
+  static constexpr std::uint32_t kNone = 0xffffffff;
   struct Triangle {
+    std::uint32_t part = 0;
+    std::uint32_t in_part = 0;
+    // Where the triangle's outline is in planes_; kNone: in still_ or moving_.
+    std::uint32_t planes = kNone;
+    // Where its picture is in still_ or moving_, by whether the actor moves; kNone: nowhere.
+    std::uint32_t picture = kNone;
+    // No later triangle is nearer.
+    float nearest = std::numeric_limits<float>::infinity();
     bool opaque = true;
-    // Where the triangle is in straight_, or else in planes_.
-    bool is_straight = false;
-    std::uint32_t index = 0;
+    bool has_depth = false;
   };
 
   // The vertices of one part at the moments of the eyes.
@@ -83,6 +102,25 @@ class Silhouette {
                 std::size_t part,
                 const std::vector<Eye>& eyes,
                 std::vector<Reach>& reaches);
+  // Finds the lines of a triangle's picture. Returns false where there are none.
+  bool place(const std::vector<Corners>& corners,
+             const std::vector<Eye>& eyes,
+             double exposure_share,
+             const Tolerance& tolerance,
+             Triangle& triangle);
+  // Adds a part of the aircraft that only rays can find.
+  void add_disc(const Reach& reach, std::vector<Reach>& reaches);
+  // The rows of pixels that a triangle can touch.
+  struct RowSpan {
+    std::uint32_t triangle = 0;
+    int y = 0;
+    int x0 = 0;
+    int x1 = 0;
+  };
+  std::vector<RowSpan> rows_of(const std::vector<Reach>& reaches,
+                               const std::vector<std::uint32_t>& order) const;
+  // The order in which a depth buffer tests triangles; sets Triangle::nearest.
+  std::vector<std::uint32_t> nearest_first();
   // Empty where the triangle is seen edge-on.
   std::optional<Planes> planes_of(const Vertices& vertices, const aircraft::Triangle& source) const;
   Pencil pencil_of(int x, int y) const;
@@ -97,8 +135,10 @@ class Silhouette {
   PixelBox patch_;
   const RayGrid& grid_;
   const TracedIntruder& actor_;
+  bool sees_;
   std::vector<Triangle> triangles_;
-  std::vector<StraightTriangle> straight_;
+  std::vector<StillTriangle> still_;
+  std::vector<MovingTriangle> moving_;
   std::vector<Planes> planes_;
   // The index in by_pixel_ of each pixel's first triangle; one more entry at the end.
   std::vector<std::uint32_t> first_;

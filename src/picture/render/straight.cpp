@@ -3,17 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace airtruth::render {
 namespace {
 
 // Beyond this distance from the frame's corner single precision no longer suffices.
 constexpr double kFarPx = 1e5;
-// A side shorter than this many pixels counts as straight under any lens: an arc of 100 px radius
-// deviates from a chord of that length by 1/800 px.
-constexpr double kStraightPx = 1;
-// A fraction of the distance between samples.
-constexpr double kNegligiblePx = 0.004;
 
 bool is_near(const Corners& corners) {
   return std::all_of(corners.begin(), corners.end(), [](const Seen* corner) {
@@ -41,6 +37,12 @@ unsigned strips_between(double low, double high) {
   return up_to & ~((1U << strip(std::clamp(low - kMargin, 0.0, 1.0))) - 1);
 }
 
+// The coefficients of 1, u and u^2 of the parabola of between() in ray_grid.h.
+template <typename T>
+Thrice<T> coefficients(const T& first, const T& middle, const T& last) {
+  return {middle, 0.5 * (last - first), 0.5 * (last - 2 * middle + first)};
+}
+
 double across(const Pixel& a, const Pixel& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Perpendicular to a side, towards the inside of a triangle whose corners are in the order of a
@@ -59,90 +61,133 @@ bool add_side(const Straight& side, PixelSides& sides) {
   return true;
 }
 
+// A side that passes through two corners of a triangle seen edge-on excludes everything.
+constexpr double kNowhere = -1;
+
 }  // namespace
 
-std::optional<StraightTriangle> StraightTriangle::of(const std::vector<Corners>& corners,
-                                                     const std::vector<Eye>& eyes,
-                                                     double exposure_share) {
-  for (std::size_t e = 0; e < eyes.size(); ++e)
-    if (!is_near(corners[e]) || !(eyes[e].is_pinhole() || extent_px(corners[e]) <= kStraightPx))
-      return std::nullopt;
-  StraightTriangle triangle;
-  triangle.moves_ = eyes.size() == 3;
-  if (!triangle.moves_) {
-    for (std::size_t k = 0; k < 3; ++k)
-      triangle.corner_[k] = {corners[0][k]->pixel, Pixel::Zero(), Pixel::Zero()};
-    triangle.stand_still();
-    return triangle;
+std::optional<StillTriangle> StillTriangle::of(const Corners& corners,
+                                               const Eye& eye,
+                                               const Tolerance& tolerance) {
+  if (!is_near(corners) || !(eye.is_pinhole() || extent_px(corners) <= tolerance.size_px))
+    return std::nullopt;
+  StillTriangle triangle;
+  const Pixel a = corners[0]->pixel;
+  const Pixel b = corners[1]->pixel;
+  const Pixel c = corners[2]->pixel;
+  triangle.left_ = std::min({a.x(), b.x(), c.x()});
+  triangle.right_ = std::max({a.x(), b.x(), c.x()});
+  const double area = across(b - a, c - a);
+  // A triangle that is seen edge-on is outside everywhere.
+  if (area == 0) triangle.opposite_[0] = {kNowhere, 0, 0};
+  if (area == 0) return triangle;
+  const double sign = area > 0 ? 1 : -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pixel from = corners[(k + 1) % 3]->pixel;
+    const Pixel inward = sign * inward_of(from, corners[(k + 2) % 3]->pixel);
+    triangle.opposite_[k] = {-inward.dot(from), inward.x(), inward.y()};
+    const double share = corners[k]->nearness / std::abs(area);
+    triangle.nearness_[k] = static_cast<float>(corners[k]->nearness);
+    triangle.depth_.at_origin += share * triangle.opposite_[k].at_origin;
+    triangle.depth_.per_x += share * triangle.opposite_[k].per_x;
+    triangle.depth_.per_y += share * triangle.opposite_[k].per_y;
   }
+  return triangle;
+}
+
+PixelSides StillTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
+  PixelSides result;
+  for (const Line& line : opposite_)
+    if (!add_side(line.over(pixel), result)) return result;
+  result.strips = strips_between(left_ - pixel.x, right_ - pixel.x);
+  if (depth != nullptr) *depth = depth_over(pixel);
+  return result;
+}
+
+PixelDepth StillTriangle::depth_over(const PixelPlace& pixel) const {
+  return {depth_.over(pixel), farthest(), nearest()};
+}
+
+std::array<float, 2> StillTriangle::weights_at(const PixelPlace& pixel,
+                                               const std::array<float, 3>& place) const {
+  std::array<float, 3> weight;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Straight side = opposite_[k].over(pixel);
+    // Equal steps in the picture are not equal steps on the surface.
+    weight[k] = std::max(0.0F, side.a + side.b * place[0] + side.c * place[1]) * nearness_[k];
+  }
+  const float sum = weight[0] + weight[1] + weight[2];
+  return {weight[1] / sum, weight[2] / sum};
+}
+
+std::optional<MovingTriangle> MovingTriangle::of(const std::vector<Corners>& corners,
+                                                 const std::vector<Eye>& eyes,
+                                                 double exposure_share,
+                                                 const Tolerance& tolerance) {
+  const double most_px = tolerance.motion_px;
+  for (std::size_t e = 0; e < eyes.size(); ++e)
+    if (!is_near(corners[e]) ||
+        !(eyes[e].is_pinhole() || extent_px(corners[e]) <= tolerance.size_px))
+      return std::nullopt;
+  MovingTriangle triangle;
+  triangle.has_depth_ = true;
   triangle.half_ = exposure_share;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Pixel first = corners[0][k]->pixel;
-    const Pixel middle = corners[1][k]->pixel;
-    const Pixel last = corners[2][k]->pixel;
-    triangle.corner_[k] = {middle, 0.5 * (last - first), 0.5 * (last - 2 * middle + first)};
+    triangle.corner_[k] =
+        coefficients(corners[0][k]->pixel, corners[1][k]->pixel, corners[2][k]->pixel);
+    triangle.nearness_[k] =
+        coefficients(corners[0][k]->nearness, corners[1][k]->nearness, corners[2][k]->nearness);
+    for (const Corners& of : corners) {
+      triangle.has_depth_ = triangle.has_depth_ && of[k]->nearness > 0;
+      triangle.nearest_ = std::max(triangle.nearest_, static_cast<float>(of[k]->nearness));
+    }
     const double bend = largest(triangle.corner_[k][2]);
     // The next term of the series, where each is smaller than the one before by one factor.
     const double next = bend * bend / largest(triangle.corner_[k][1]);
     const double bend_in_exposure = exposure_share * exposure_share * bend;
-    if (bend > kNegligiblePx && !(bend_in_exposure <= kNegligiblePx && next <= kNegligiblePx))
-      return std::nullopt;
+    if (bend > most_px && !(bend_in_exposure <= most_px && next <= most_px)) return std::nullopt;
   }
   for (std::size_t k = 0; k < 3; ++k)
     if (exposure_share * largest(triangle.corner_[k][1] - triangle.corner_[(k + 1) % 3][1]) >
-        kNegligiblePx)
+        most_px)
       return std::nullopt;
   return triangle;
 }
 
-void StraightTriangle::stand_still() {
-  const Pixel a = corner_[0][0];
-  const Pixel b = corner_[1][0];
-  const Pixel c = corner_[2][0];
-  left_ = std::min({a.x(), b.x(), c.x()});
-  right_ = std::max({a.x(), b.x(), c.x()});
-  const double area = across(b - a, c - a);
-  const std::array<Pixel, 4> corners =
-      area > 0 ? std::array<Pixel, 4>{a, b, c, a} : std::array<Pixel, 4>{a, c, b, a};
+MovingTriangle::Now MovingTriangle::now(const PixelPlace& pixel) const {
+  Now now;
+  const double u = pixel.u;
+  now.drift = Pixel::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    const Pixel inward = inward_of(corners[k], corners[k + 1]);
-    line_[k] = {-inward.dot(corners[k]), inward.x(), inward.y()};
+    const Thrice<Pixel>& p = corner_[k];
+    now.corner[k] = p[0] - Pixel(pixel.x, pixel.y) + u * (p[1] + u * p[2]);
+    now.drift += half_ / 3 * (p[1] + 2 * u * p[2]);
   }
-  // A triangle that is seen edge-on is outside everywhere.
-  if (area == 0) line_[0] = {-1, 0, 0};
+  return now;
 }
 
-PixelSides StraightTriangle::over(int x, int y, double u) const {
-  if (moves_) return over_moving(x, y, u);
-  PixelSides result;
-  for (const Line& line : line_) {
-    const Straight side{static_cast<float>(line.at_origin + line.per_x * x + line.per_y * y),
-                        static_cast<float>(line.per_x),
-                        static_cast<float>(line.per_y),
-                        0};
-    if (!add_side(side, result)) return result;
-  }
-  result.strips = strips_between(left_ - x, right_ - x);
-  return result;
-}
-
-PixelSides StraightTriangle::over_moving(int x, int y, double u) const {
-  PixelSides result;
-  std::array<Pixel, 3> p;
-  Pixel drift(0, 0);
-  for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = corner_[k][0] - Pixel(x, y) + u * (corner_[k][1] + u * corner_[k][2]);
-    drift += half_ / 3 * (corner_[k][1] + 2 * u * corner_[k][2]);
-  }
+Box MovingTriangle::box_at(double u) const {
+  const auto [p, drift] = now({0, 0, u});
   const Pixel reach = drift.cwiseAbs();
   const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - reach;
   const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + reach;
-  const double area = across(p[1] - p[0], p[2] - p[0]);
-  result.is_outside = low.maxCoeff() > 1 || high.minCoeff() < 0 || area == 0;
+  return {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
+}
+
+PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
+  PixelSides result;
+  auto [p, drift] = now(pixel);
+  const Pixel reach = drift.cwiseAbs();
+  const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - reach;
+  const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + reach;
+  result.is_outside = low.maxCoeff() > 1 || high.minCoeff() < 0;
   if (result.is_outside) return result;
-  if (area < 0) std::swap(p[1], p[2]);
+  const double area = across(p[1] - p[0], p[2] - p[0]);
+  result.is_outside = area == 0;
+  if (result.is_outside) return result;
+  const double sign = area > 0 ? 1 : -1;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Pixel inward = inward_of(p[k], p[(k + 1) % 3]);
+    const Pixel inward = sign * inward_of(p[k], p[(k + 1) % 3]);
     const double drifts = inward.dot(drift);
     const Straight side{static_cast<float>(drifts - inward.dot(p[k])),
                         static_cast<float>(inward.x()),
@@ -151,7 +196,56 @@ PixelSides StraightTriangle::over_moving(int x, int y, double u) const {
     if (!add_side(side, result)) return result;
   }
   result.strips = strips_between(low.x(), high.x());
+  if (depth != nullptr) *depth = depth_at(pixel.u, p, drift, area);
   return result;
+}
+
+PixelDepth MovingTriangle::depth_over(const PixelPlace& pixel) const {
+  const auto [p, drift] = now(pixel);
+  return depth_at(pixel.u, p, drift, across(p[1] - p[0], p[2] - p[0]));
+}
+
+PixelDepth MovingTriangle::depth_at(double u,
+                                    const std::array<Pixel, 3>& corner,
+                                    const Pixel& drift,
+                                    double area) const {
+  std::array<double, 3> at;
+  double nearing = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = nearness(k, u);
+    nearing += half_ / 3 * (nearness_[k][1] + 2 * u * nearness_[k][2]);
+  }
+  const Pixel p = corner[1] - corner[0];
+  const Pixel q = corner[2] - corner[0];
+  const double rise_p = at[1] - at[0];
+  const double rise_q = at[2] - at[0];
+  const double scale = 1 / area;
+  const Pixel slope(scale * (rise_p * q.y() - rise_q * p.y()),
+                    scale * (rise_q * p.x() - rise_p * q.x()));
+  const double over_time = nearing - slope.dot(drift);
+  const double change = std::abs(nearing);
+  return {{static_cast<float>(at[0] - slope.dot(corner[0]) - over_time),
+           static_cast<float>(slope.x()),
+           static_cast<float>(slope.y()),
+           static_cast<float>(2 * over_time)},
+          static_cast<float>(std::min({at[0], at[1], at[2]}) - change),
+          static_cast<float>(std::max({at[0], at[1], at[2]}) + change)};
+}
+
+std::array<float, 2> MovingTriangle::weights_at(const PixelPlace& pixel,
+                                                const std::array<float, 3>& place) const {
+  const auto [corner, drift] = now(pixel);
+  const Pixel here = Pixel(place[0], place[1]) - (2.0 * place[2] - 1) * drift;
+  const double area = across(corner[1] - corner[0], corner[2] - corner[0]);
+  std::array<double, 3> weight;
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pixel a = corner[(k + 1) % 3] - here;
+    const Pixel b = corner[(k + 2) % 3] - here;
+    weight[k] = std::max(0.0, across(a, b) / area) * nearness(k, pixel.u);
+    sum += weight[k];
+  }
+  return {static_cast<float>(weight[1] / sum), static_cast<float>(weight[2] / sum)};
 }
 
 }  // namespace airtruth::render

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
 
-#include "picture/render/marking.h"
+#include "picture/render/nearest.h"
 #include "picture/render/reach.h"
 
 // Triangles whose sides are straight lines in the picture: all in front of a pinhole, and small
 // ones under any lens. A side is one linear function of the place in the picture (Pineda 1988, "A
 // parallel algorithm for polygon rasterization"), which costs far less for each pixel than the
-// planes of silhouette.h.
+// planes of silhouette.h. The reciprocal of the depth is such a function too.
 //
 // During an exposure such a triangle moves along parabolas, and over one pixel's exposure uniformly
 // and without a change of its shape.
@@ -27,39 +28,124 @@ struct PixelSides {
   unsigned strips = kAllStrips;
 };
 
-class StraightTriangle {
- public:
-  // Empty where the sides bend, the shape changes, or the picture is not finite. corners, eyes: at
-  // one moment, or at the three moments of the patch's span. exposure_share: a pixel's exposure as
-  // a share of that span.
-  static std::optional<StraightTriangle> of(const std::vector<Corners>& corners,
-                                            const std::vector<Eye>& eyes,
-                                            double exposure_share);
+// The pixel of a triangle's picture: its place in the frame, and the middle of its exposure in the
+// patch's span, from -1 to 1.
+struct PixelPlace {
+  int x = 0;
+  int y = 0;
+  double u = 0;
+};
 
-  // u: the middle of the pixel's exposure in the span, from -1 to 1.
-  PixelSides over(int x, int y, double u) const;
+// How far a triangle may be from straight sides and a uniform motion.
+struct Tolerance {
+  // Its size under a lens other than a pinhole.
+  double size_px = 0;
+  // What a pixel's exposure may leave out of its motion.
+  double motion_px = 0;
+};
+// For its outline.
+// - An arc of 100 px radius deviates from a chord of 1 px by 1/800 px.
+// - The motion: a fraction of the distance between samples.
+constexpr Tolerance kStraight{1, 0.004};
+// For its depth, and for places on it.
+constexpr Tolerance kNearlyStraight{16, 0.5};
+
+// A triangle at an instant.
+class StillTriangle {
+ public:
+  // Empty where the sides bend too far or the picture is not finite.
+  static std::optional<StillTriangle> of(const Corners& corners,
+                                         const Eye& eye,
+                                         const Tolerance& tolerance);
+
+  // `depth` receives the triangle's depth where it is not null and the pixel is not outside.
+  PixelSides over(const PixelPlace& pixel, PixelDepth* depth) const;
+
+  // False where a corner has no depth.
+  bool has_depth() const { return farthest() > 0; }
+  // The largest and the smallest nearness (Seen) of the corners.
+  float nearest() const { return std::max({nearness_[0], nearness_[1], nearness_[2]}); }
+  float farthest() const { return std::min({nearness_[0], nearness_[1], nearness_[2]}); }
+  // The nearness of the triangle over a pixel.
+  PixelDepth depth_over(const PixelPlace& pixel) const;
+  // The barycentric weights of the second and the third corner, as in Hit, at a place of the pixel
+  // and a time of its exposure, each from 0 to 1.
+  std::array<float, 2> weights_at(const PixelPlace& pixel,
+                                  const std::array<float, 3>& place_and_time) const;
 
  private:
-  // The value of a side at a place in the frame, in pixels times the side's length: positive
-  // inside.
+  // A linear function of the place in the frame.
   struct Line {
     double at_origin = 0;
     double per_x = 0;
     double per_y = 0;
+    Straight over(const PixelPlace& pixel) const {
+      return {static_cast<float>(at_origin + per_x * pixel.x + per_y * pixel.y),
+              static_cast<float>(per_x),
+              static_cast<float>(per_y),
+              0};
+    }
   };
-  StraightTriangle() = default;
-  void stand_still();
-  PixelSides over_moving(int x, int y, double u) const;
+  StillTriangle() = default;
 
-  bool moves_ = false;
-  // If it does not move.
-  std::array<Line, 3> line_;
+  // The value of the side opposite to a corner, in pixels times the side's length: positive inside.
+  std::array<Line, 3> opposite_;
+  Line depth_;
   double left_ = 0;
   double right_ = 0;
-  // The coefficients of 1, u and u^2 of each corner; the last two are used if it moves.
+  std::array<float, 3> nearness_;
+};
+
+// A triangle during an exposure.
+class MovingTriangle {
+ public:
+  // Empty where the sides bend or the shape changes too much, or the picture is not finite.
+  // corners, eyes: at the three moments of the patch's span. exposure_share: a pixel's exposure as
+  // a share of that span.
+  static std::optional<MovingTriangle> of(const std::vector<Corners>& corners,
+                                          const std::vector<Eye>& eyes,
+                                          double exposure_share,
+                                          const Tolerance& tolerance);
+
+  // As in StillTriangle.
+  PixelSides over(const PixelPlace& pixel, PixelDepth* depth) const;
+  bool has_depth() const { return has_depth_; }
+  float nearest() const { return nearest_; }
+  PixelDepth depth_over(const PixelPlace& pixel) const;
+  std::array<float, 2> weights_at(const PixelPlace& pixel,
+                                  const std::array<float, 3>& place_and_time) const;
+
+  // How far the middle moves during the exposure of a pixel.
+  Pixel motion_px(const PixelPlace& pixel) const { return 2 * now(pixel).drift; }
+  // A box about the picture during the exposure of a pixel, in the frame.
+  Box box_at(double u) const;
+
+ private:
+  MovingTriangle() = default;
+  // The corners over one pixel, relative to it, in the middle of its exposure.
+  struct Now {
+    std::array<Pixel, 3> corner;
+    // What is added from the middle of the exposure to its end.
+    Pixel drift;
+  };
+  Now now(const PixelPlace& pixel) const;
+  PixelDepth depth_at(double u,
+                      const std::array<Pixel, 3>& corner,
+                      const Pixel& drift,
+                      double area) const;
+  double nearness(std::size_t corner, double u) const {
+    const Thrice<double>& n = nearness_[corner];
+    return n[0] + u * (n[1] + u * n[2]);
+  }
+
+  // The coefficients of 1, u and u^2 of each corner.
   std::array<Thrice<Pixel>, 3> corner_;
   // Half of a pixel's exposure, in u.
   double half_ = 0;
+  // The same for the nearness of each corner.
+  std::array<Thrice<double>, 3> nearness_;
+  float nearest_ = 0;
+  bool has_depth_ = false;
 };
 
 }  // namespace airtruth::render

@@ -95,6 +95,8 @@ struct Fragment {
   Hit hit;
 };
 
+struct Visible;
+
 // Traces rays (Embree) and accumulates the surfaces that they meet.
 class Tracer {
  public:
@@ -115,9 +117,12 @@ class Tracer {
                  double pixel_rad,
                  std::vector<Fragment>& fragments) const;
 
-  // Computes the light and the distance of a pixel from the samples that are known to meet one
-  // opaque actor (`is_covered` is not 0, in the order of PixelSamples::fill()), by tracing rays
-  // through some of them. Returns false where none of those rays hits.
+  // Computes the light and the distance of a pixel from the surfaces that one opaque actor shows
+  // there.
+  void shade_visible(int x, int y, int actor, const Visible& visible, Sum& sum) const;
+  // The same from the samples that are known to meet the actor (`is_covered` is not 0, in the order
+  // of PixelSamples::fill()), by tracing rays through some of them. Returns false where none of
+  // those rays hits.
   bool shade_covered(
       int x, int y, int actor, const std::vector<std::int32_t>& is_covered, Sum& sum) const;
 

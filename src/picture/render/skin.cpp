@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/skin.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::render {
+namespace {
+
+int wrapped(int i, int size, bool repeat) {
+  if (i >= 0 && i < size) return i;
+  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
+}
+
+// Four channels at once.
+using Channels = Eigen::Array4f;
+
+Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, float v) {
+  const auto& level = texture.levels[index];
+  const float x = u * static_cast<float>(level.width) - 0.5f;
+  const float y = v * static_cast<float>(level.height) - 0.5f;
+  const float x_floor = std::floor(x);
+  const float y_floor = std::floor(y);
+  const float fx = x - x_floor;
+  const float fy = y - y_floor;
+  const int x0 = wrapped(static_cast<int>(x_floor), level.width, texture.repeat_u);
+  const int x1 = wrapped(static_cast<int>(x_floor) + 1, level.width, texture.repeat_u);
+  const int y0 = wrapped(static_cast<int>(y_floor), level.height, texture.repeat_v);
+  const int y1 = wrapped(static_cast<int>(y_floor) + 1, level.height, texture.repeat_v);
+  const auto at = [&](int i, int j) {
+    return Eigen::Map<const Channels>(
+        level
+            .texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) +
+                    static_cast<std::size_t>(i)]
+            .data());
+  };
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
+         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
+}
+
+}  // namespace
+
+Skin::Skin(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m) : facet_(&facet) {
+  const int index = mesh.materials[facet.material].texture;
+  if (index < 0) return;
+  texture_ = &mesh.textures[static_cast<std::size_t>(index)];
+  const float texels = footprint_m * facet.texels_per_m;
+  const float deepest = static_cast<float>(texture_->levels.size() - 1);
+  const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
+  level_ = static_cast<std::size_t>(level);
+  coarser_ = level - static_cast<float>(level_);
+}
+
+Texel Skin::texel(float u, float v) const {
+  if (texture_ == nullptr) return {1, 1, 1, 1};
+  const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
+  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return {1, 1, 1, 1};
+  Texel result;
+  Eigen::Map<Channels> channels(result.data());
+  channels = bilinear(*texture_, level_, uv.x(), uv.y());
+  if (coarser_ > 0)
+    channels += coarser_ * (bilinear(*texture_, level_ + 1, uv.x(), uv.y()) - channels);
+  return result;
+}
+
+Texel Skin::albedo(float u, float v) const {
+  Texel result = texel(u, v);
+  if (facet_->is_opaque && result[3] > 0 && result[3] < 1) {
+    const float alpha = result[3];
+    for (float& channel : result) channel = std::min(1.0f, channel / alpha);
+  }
+  return result;
+}
+
+void Skin::prefetch(float u, float v) const {
+  if (texture_ == nullptr) return;
+  const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
+  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return;
+  for (std::size_t l = level_; l <= level_ + (coarser_ > 0 ? 1 : 0); ++l) {
+    const auto& level = texture_->levels[l];
+    const int x = static_cast<int>(std::floor(uv.x() * static_cast<float>(level.width) - 0.5f));
+    const int y = static_cast<int>(std::floor(uv.y() * static_cast<float>(level.height) - 0.5f));
+    for (int row = 0; row < 2; ++row)
+      __builtin_prefetch(
+          &level.texels[static_cast<std::size_t>(
+                            wrapped(y + row, level.height, texture_->repeat_v)) *
+                            static_cast<std::size_t>(level.width) +
+                        static_cast<std::size_t>(wrapped(x, level.width, texture_->repeat_u))]);
+  }
+}
+
+}  // namespace airtruth::render
