@@ -90,8 +90,7 @@ class OverASet(Case):
         for number in range(COUNT):
             left, top, width, height = (float(v) for v in next(line for line in lines if int(line[0]) == number + 1)[2:6])
             for found, wanted in zip((left - 1, top - 1, width, height), target(number)):
-                # A sample, of 2 px, of the octave that bounds it, on either side.
-                self.assertLessEqual(abs(found - wanted), 4, f"frame {number}: {left},{top} {width}x{height}")
+                self.assertLessEqual(abs(found - wanted), 2, f"frame {number}: {left},{top} {width}x{height}")
         coco = json.loads(read("all", "cmo", "detections.json"))
         of_two = [one for one in coco if 2 * COUNT < one["image_id"] <= 3 * COUNT]
         self.assertEqual(len(of_two), len(lines))

@@ -5,17 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "detection/classical/region.h"
+#include "detection/classical/surroundings.h"
+
 namespace airtruth::detection {
 namespace {
 
-// Half sides of the ring around an object, in samples of its level: from beyond what the elements
-// let through to as much again.
-constexpr int kRingFrom = kElement;
-constexpr int kRingTo = 2 * kElement - 2;
-// At the picture's border, a ring with less than this share of its samples tells too little.
-constexpr double kLeastRing = 0.6;
-constexpr int kWholeRing =
-    (2 * kRingTo + 1) * (2 * kRingTo + 1) - (2 * kRingFrom - 1) * (2 * kRingFrom - 1);
 // An object that reaches further from its strongest sample, in samples of its level, is part of
 // something else.
 constexpr int kReach = 2 * kElement;
@@ -24,159 +19,18 @@ constexpr int kMostAcross = kElement + 2;
 // What belongs to the object differs by this share of its contrast: low enough for wings thinner
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
+// Where the noise allows it and the object stays bounded, by this share: a wing in shade has a
+// tenth of the contrast of a sunlit fuselage.
+constexpr double kFaintShare = 0.1;
+// Of some 200 samples around an object, noise exceeds three standard deviations in every other
+// object, and four in one of a hundred.
+constexpr double kFaintNoise = 4;
 constexpr double kBoxNoise = 3;
 // Of a response, which is not bounded on a finer level: half of it is left at a smoothed edge.
 constexpr double kResponseShare = 0.5;
-// Samples this far apart belong together: between a lit and a shaded part lies one that looks like
-// the sky.
-constexpr int kGap = 2;
-// Standard deviation of normal noise over its median absolute deviation (Rousseeuw and Croux 1993).
-constexpr double kSigmaOfMad = 1.4826;
-// Noise is taken from the median deviation and from this quantile of it, whichever is more: clutter
-// has long tails.
-constexpr double kTailQuantile = 0.9;
-constexpr double kSigmaOfTail = 1 / 1.6449;
 // Closing and opening have noise of their own, which adds to that of the sample: its largest
 // responses are as of this many times the noise (classical_test.cpp).
 constexpr double kResponseNoise = 1.2;
-// The rounding to whole grey levels, which makes patches that smoothing does not remove.
-const double kLeastNoise = kGreyScale / std::sqrt(12.0);
-
-// v(x, y) = middle + x * along_x + y * along_y around a sample.
-struct Surroundings {
-  double middle = 0, along_x = 0, along_y = 0;
-  double noise = 0;
-  double at(double x, double y) const { return middle + along_x * x + along_y * y; }
-};
-
-double median_of(std::vector<float>& values) {
-  const auto half = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
-}
-
-// The plane's slope is by least squares and its height by the median, which other objects in the
-// ring do not lift. Samples within `object` do not count; of the others, every `stride`-th of every
-// `stride`-th row.
-std::optional<Surroundings> surroundings_of(const Level& level,
-                                            const cv::Point& centre,
-                                            const cv::Rect& object,
-                                            int stride) {
-  static thread_local std::vector<float> values;
-  static thread_local std::vector<cv::Point> places;
-  values.clear();
-  places.clear();
-  const cv::Mat& picture = level.picture;
-  double sum_x = 0, sum_y = 0, sum_v = 0;
-  for (int dy = -kRingTo; dy <= kRingTo; dy += stride) {
-    const int y = centre.y + dy;
-    if (y < 0 || y >= picture.rows) continue;
-    const short* row = picture.ptr<short>(y);
-    const bool crosses = std::abs(dy) < kRingFrom;
-    for (int dx = -kRingTo; dx <= kRingTo; dx += stride) {
-      if (crosses && std::abs(dx) < kRingFrom) continue;
-      const int x = centre.x + dx;
-      if (x < 0 || x >= picture.cols || object.contains({x, y}) || level.hides({x, y})) continue;
-      values.push_back(row[x]);
-      places.push_back({dx, dy});
-      sum_x += dx;
-      sum_y += dy;
-      sum_v += row[x];
-    }
-  }
-  if (static_cast<double>(values.size()) * stride * stride < kLeastRing * kWholeRing)
-    return std::nullopt;
-  const double n = static_cast<double>(values.size());
-  double xx = 0, yy = 0, xy = 0, xv = 0, yv = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double x = places[i].x - sum_x / n, y = places[i].y - sum_y / n;
-    const double v = values[i] - sum_v / n;
-    xx += x * x;
-    yy += y * y;
-    xy += x * y;
-    xv += x * v;
-    yv += y * v;
-  }
-  Surroundings around;
-  if (const double det = xx * yy - xy * xy; det > 0) {
-    around.along_x = (xv * yy - yv * xy) / det;
-    around.along_y = (yv * xx - xv * xy) / det;
-  }
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] -= static_cast<float>(around.along_x * places[i].x + around.along_y * places[i].y);
-  around.middle = median_of(values);
-  for (float& value : values) value = std::abs(value - static_cast<float>(around.middle));
-  const double mad = median_of(values);
-  const auto tail = values.begin() + static_cast<std::ptrdiff_t>(kTailQuantile * n);
-  std::nth_element(values.begin(), tail, values.end());
-  around.noise = std::max({kLeastNoise, kSigmaOfMad * mad, kSigmaOfTail * *tail});
-  return around;
-}
-
-// Bounds of the connected samples around a seed whose excess over the surroundings is at least
-// `least`; empty where they reach beyond `reach` samples from the seed, or the picture's border.
-class Region {
- public:
-  Region(const Level& level, const cv::Point& seed, int reach)
-      : level_(level), seed_(seed), reach_(reach), side_(2 * reach + 1) {}
-
-  std::optional<cv::Rect> grown(const auto& excess, double least) {
-    static thread_local std::vector<char> seen;
-    static thread_local std::vector<cv::Point> open;
-    seen.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
-    open.assign(1, seed_);
-    mark(seen, seed_);
-    cv::Point low = seed_, high = seed_;
-    while (!open.empty()) {
-      const cv::Point at = open.back();
-      open.pop_back();
-      low = {std::min(low.x, at.x), std::min(low.y, at.y)};
-      high = {std::max(high.x, at.x), std::max(high.y, at.y)};
-      for (int dy = -kGap; dy <= kGap; ++dy)
-        for (int dx = -kGap; dx <= kGap; ++dx) {
-          const cv::Point next{at.x + dx, at.y + dy};
-          if (!is_inside(next)) continue;
-          const bool is_beyond =
-              std::max(std::abs(next.x - seed_.x), std::abs(next.y - seed_.y)) > reach_;
-          // Each sample is looked at once.
-          if (!is_beyond && !mark(seen, next)) continue;
-          if (excess(next) < least) continue;
-          if (is_beyond) return std::nullopt;
-          open.push_back(next);
-        }
-    }
-    return cv::Rect(low, high + cv::Point(1, 1));
-  }
-
- private:
-  bool is_inside(const cv::Point& p) const {
-    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
-           !level_.hides(p);
-  }
-  // False where it was marked.
-  bool mark(std::vector<char>& seen, const cv::Point& p) const {
-    char& cell =
-        seen[static_cast<std::size_t>(p.y - seed_.y + reach_) * static_cast<std::size_t>(side_) +
-             static_cast<std::size_t>(p.x - seed_.x + reach_)];
-    const bool is_new = cell == 0;
-    cell = 1;
-    return is_new;
-  }
-
-  const Level& level_;
-  cv::Point seed_;
-  int reach_;
-  int side_;
-};
-
-Box box_of(const cv::Rect& samples, int step) {
-  const double half = 0.5 * step;
-  return {step * samples.x + 0.5 - half,
-          step * samples.y + 0.5 - half,
-          double(step) * samples.width,
-          double(step) * samples.height};
-}
-
 // The samples of a level `finer` times coarser that the smoothing lets an object reach.
 cv::Rect coarser(const cv::Rect& samples, int finer) {
   const cv::Point low{samples.x / finer - 1, samples.y / finer - 1};
@@ -218,8 +72,6 @@ std::optional<Blob> against_ring(const std::vector<Level>& levels,
   if (!around) return std::nullopt;
   const double contrast = level.picture.at<short>(sample) - around->middle;
   const double sign = contrast < 0 ? -1 : 1;
-  const double least = std::max(kBoxShare * std::abs(contrast),
-                                std::min(0.5 * std::abs(contrast), kBoxNoise * around->noise));
   const bool has_finer = number > 0;
   const Level& fine = has_finer ? levels[number - 1] : level;
   const cv::Point seed = has_finer ? strongest_under(fine, sample, sign) : sample;
@@ -229,17 +81,27 @@ std::optional<Blob> against_ring(const std::vector<Level>& levels,
     return std::abs(fine.picture.at<short>(p) - around->at(x, y));
   };
   const int finer = has_finer ? 2 : 1;
-  const auto samples = Region(fine, seed, finer * kReach).grown(excess, least);
-  if (!samples || std::min(samples->width, samples->height) > finer * kMostAcross)
-    return std::nullopt;
+  const auto bounded = [&](double least) {
+    auto region = region_around(fine, seed, finer * kReach, excess, least);
+    if (region && std::min(region->samples.width, region->samples.height) > finer * kMostAcross)
+      region.reset();
+    return region;
+  };
+  const double usual = std::max(kBoxShare * std::abs(contrast),
+                                std::min(0.5 * std::abs(contrast), kBoxNoise * around->noise));
+  const double faint = std::max(kFaintShare * std::abs(contrast),
+                                kFaintNoise * std::max(around->noise, fine.noise_at(seed)));
+  auto region = faint < usual ? bounded(faint) : std::nullopt;
+  if (!region) region = bounded(usual);
+  if (!region) return std::nullopt;
   // Wings that reach across the ring are neither noise nor surroundings.
-  around = surroundings_of(level, sample, coarser(*samples, finer), 1);
+  around = surroundings_of(level, sample, coarser(region->samples, finer), 1);
   if (!around) return std::nullopt;
   Blob blob;
-  blob.box_px = box_of(*samples, fine.step);
-  blob.contrast_to_noise = std::abs(level.picture.at<short>(sample) - around->middle) /
-                           std::hypot(around->noise, level.clutter_at(sample));
-  blob.against_ring = blob.contrast_to_noise;
+  blob.box_px = box_of(*region, fine);
+  const double excess_there = std::abs(level.picture.at<short>(sample) - around->middle);
+  blob.contrast_to_noise = excess_there / std::hypot(around->noise, level.clutter_at(sample));
+  blob.against_ring = excess_there / around->noise;
   blob.is_dark = sign < 0;
   blob.level = number;
   blob.sample = sample;
@@ -257,14 +119,14 @@ std::optional<Blob> against_response(const Level& level,
   if (contrast <= 0) return std::nullopt;
   const double least = std::max(kResponseShare * response, kBoxNoise * noise);
   const auto excess = [&](const cv::Point& p) { return double(level.response.at<short>(p)); };
-  const auto samples = Region(level, sample, kReach).grown(excess, least);
+  const auto region = region_around(level, sample, kReach, excess, least);
   // A line from border to border ends at neither.
   const cv::Rect inner(kGap, kGap, level.picture.cols - 2 * kGap, level.picture.rows - 2 * kGap);
-  if (!samples || (*samples & inner) != *samples ||
-      std::min(samples->width, samples->height) > kMostAcross)
+  if (!region || (region->samples & inner) != region->samples ||
+      std::min(region->samples.width, region->samples.height) > kMostAcross)
     return std::nullopt;
   Blob blob;
-  blob.box_px = box_of(*samples, level.step);
+  blob.box_px = box_of(*region, level);
   blob.contrast_to_noise = contrast / std::hypot(kResponseNoise * noise, level.clutter_at(sample));
   blob.level = number;
   blob.sample = sample;

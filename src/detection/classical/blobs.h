@@ -17,8 +17,9 @@ struct Blob {
   // Contrast of the object's strongest sample to its surroundings over the noise and the clutter
   // there (their root sum of squares), all in the level's smoothed picture.
   double contrast_to_noise = 0;
-  // The same against the ring alone: of several boxes of an object, that of the largest is the
-  // best. 0 where the ring does not bound it.
+  // The same against the ring alone and without clutter, which differs from scale to scale and says
+  // nothing about the object: of several boxes of an object, that of the largest is the best. 0
+  // where the ring does not bound it.
   double against_ring = 0;
   bool is_dark = false;
   std::size_t level = 0;  // on which it was found
@@ -28,9 +29,10 @@ struct Blob {
 // The blob at a sample of a level. Its surroundings are a square ring; a plane is fitted to them,
 // so that a slope of the sky is neither contrast nor noise, and the noise follows from the absolute
 // deviations from it: it is their standard deviation where they are normal. The box bounds the
-// connected samples of the next finer level that differ from the surroundings, to either side, by
-// three tenths of the contrast and by three times the noise. Empty where they reach too far: the
-// object is larger than the level's, or part of something else.
+// connected samples of the next finer level that differ from the surroundings, to either side, by a
+// tenth of the contrast where the noise allows it and they end somewhere, else by three tenths; it
+// is that of the object before the level's smoothing (region.h). Empty where they reach too far:
+// the object is larger than the level's, or part of something else.
 std::optional<Blob> blob_at(const std::vector<Level>& levels,
                             std::size_t level,
                             const cv::Point& sample);

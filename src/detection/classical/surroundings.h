@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "detection/classical/scale_space.h"
+
+// What an object is seen against: the ring of samples around it.
+namespace airtruth::detection {
+
+// v(x, y) = middle + x * along_x + y * along_y around a sample, in units of the level's picture.
+struct Surroundings {
+  double middle = 0, along_x = 0, along_y = 0;
+  double noise = 0;
+  double at(double x, double y) const { return middle + along_x * x + along_y * y; }
+};
+
+// The plane's slope is by least squares and its height by the median, which other objects in the
+// ring do not lift. Samples within `object` do not count; of the others, every `stride`-th of every
+// `stride`-th row.
+// Empty where too few samples of the ring lie in the picture.
+std::optional<Surroundings> surroundings_of(const Level& level,
+                                            const cv::Point& centre,
+                                            const cv::Rect& object,
+                                            int stride);
+
+}  // namespace airtruth::detection
