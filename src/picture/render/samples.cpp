@@ -67,8 +67,8 @@ template <std::uint32_t kSide>
 constexpr std::array<std::uint16_t, kSide * kSide> points_of_cells() {
   std::array<std::uint16_t, kSide * kSide> result{};
   constexpr std::uint32_t kCell = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / kSide);
-  for (std::uint16_t n = 0; n < kSide * kSide; ++n)
-    result[kPoints.x[n] / kCell * kSide + kPoints.y[n] / kCell] = n;
+  for (std::uint32_t n = 0; n < kSide * kSide; ++n)
+    result[kPoints.x[n] / kCell * kSide + kPoints.y[n] / kCell] = static_cast<std::uint16_t>(n);
   return result;
 }
 
