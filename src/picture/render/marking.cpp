@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "picture/render/vectors.h"
+#include "foundation/base/vectors.h"
 
 namespace airtruth::render {
 namespace {
@@ -36,7 +36,7 @@ template <typename Inside>
 
 // A sample is inside where it is on the inner side of all three sides; an unused side is +1
 // everywhere.
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 bool mark_all(
     const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = sides[0];
@@ -53,7 +53,7 @@ bool mark_all(
 }
 
 // The same for a single side that crosses the pixel.
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 bool mark_one(
     const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = *side;
@@ -80,7 +80,7 @@ std::optional<Bilinear> even_side(const Swept& side) {
   return Bilinear{p.a - p.d / 4 - drift + bend, p.b + p.d / 2, p.c + p.d / 2, 2 * drift};
 }
 
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 bool mark_even(const Bilinear* sides,
                const float* px,
                const float* py,
@@ -101,7 +101,7 @@ bool mark_even(const Bilinear* sides,
   });
 }
 
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 bool mark_one_even(const Bilinear* side,
                    const float* px,
                    const float* py,
@@ -114,7 +114,7 @@ bool mark_one_even(const Bilinear* side,
 }
 
 // The same for sides without a linear form; an unused one is 1 everywhere.
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 void side_values(
     const Swept* side, const float* px, const float* py, const float* pt, int n, float* least) {
   const Bilinear p = side->steady;
@@ -132,7 +132,7 @@ void side_values(
 }
 
 // Tests `width` samples at a time: the strips that are the bits of `strips`.
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 unsigned mark_straight(const Straight* sides,
                        const float* px,
                        const float* py,
@@ -161,7 +161,7 @@ unsigned mark_straight(const Straight* sides,
 }
 
 // The same during an exposure.
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 unsigned mark_straight_moving(const Straight* sides,
                               const float* px,
                               const float* py,

@@ -3,12 +3,35 @@
 
 #include <bit>
 
-#include "picture/render/vectors.h"
+#include "foundation/base/vectors.h"
 
 namespace airtruth::render {
 namespace {
 
-AIRTRUTH_VECTORS
+// A plane may leave the range of its triangle's corners between the samples of a pixel; `here` does
+// not.
+template <typename Inside, typename Plane>
+[[gnu::always_inline]] inline void keep_where(int from,
+                                              int to,
+                                              const PixelDepth& depth,
+                                              std::int32_t triangle,
+                                              float* __restrict nearness,
+                                              std::int32_t* __restrict who,
+                                              const Inside& inside,
+                                              const Plane& plane) {
+  const float low = depth.farthest;
+  const float high = depth.nearest;
+  for (int i = from; i < to; ++i) {
+    const float there = plane(i);
+    const float above = there < low ? low : there;
+    const float here = above > high ? high : above;
+    const bool in_front = inside(i) & (here > nearness[i]);
+    nearness[i] = in_front ? here : nearness[i];
+    who[i] = in_front ? triangle : who[i];
+  }
+}
+
+AIRTRUTH_FOR_VECTORS
 void nearest_still(const Straight* sides,
                    const PixelDepth& depth,
                    std::int32_t triangle,
@@ -22,24 +45,21 @@ void nearest_still(const Straight* sides,
   const Straight q = sides[1];
   const Straight r = sides[2];
   const Straight n = depth.nearness;
-  const float low = depth.farthest;
-  const float high = depth.nearest;
-  for (int i = from; i < to; ++i) {
-    const float x = px[i];
-    const float y = py[i];
-    const float u = p.a + p.b * x + p.c * y;
-    const float v = q.a + q.b * x + q.c * y;
-    const float w = r.a + r.b * x + r.c * y;
-    const float plane = n.a + n.b * x + n.c * y;
-    const float above = plane < low ? low : plane;
-    const float here = above > high ? high : above;
-    const bool in_front = (u >= 0) & (v >= 0) & (w >= 0) & (here > nearness[i]);
-    nearness[i] = in_front ? here : nearness[i];
-    who[i] = in_front ? triangle : who[i];
-  }
+  const auto at = [=](const Straight& form, int i) {
+    return form.a + form.b * px[i] + form.c * py[i];
+  };
+  keep_where(
+      from,
+      to,
+      depth,
+      triangle,
+      nearness,
+      who,
+      [=](int i) { return (at(p, i) >= 0) & (at(q, i) >= 0) & (at(r, i) >= 0); },
+      [=](int i) { return at(n, i); });
 }
 
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 void nearest_moving(const Straight* sides,
                     const PixelDepth& depth,
                     std::int32_t triangle,
@@ -54,25 +74,21 @@ void nearest_moving(const Straight* sides,
   const Straight q = sides[1];
   const Straight r = sides[2];
   const Straight n = depth.nearness;
-  const float low = depth.farthest;
-  const float high = depth.nearest;
-  for (int i = from; i < to; ++i) {
-    const float x = px[i];
-    const float y = py[i];
-    const float t = pt[i];
-    const float u = (p.a + p.b * x) + (p.c * y + p.d * t);
-    const float v = (q.a + q.b * x) + (q.c * y + q.d * t);
-    const float w = (r.a + r.b * x) + (r.c * y + r.d * t);
-    const float plane = (n.a + n.b * x) + (n.c * y + n.d * t);
-    const float above = plane < low ? low : plane;
-    const float here = above > high ? high : above;
-    const bool in_front = (u >= 0) & (v >= 0) & (w >= 0) & (here > nearness[i]);
-    nearness[i] = in_front ? here : nearness[i];
-    who[i] = in_front ? triangle : who[i];
-  }
+  const auto at = [=](const Straight& form, int i) {
+    return (form.a + form.b * px[i]) + (form.c * py[i] + form.d * pt[i]);
+  };
+  keep_where(
+      from,
+      to,
+      depth,
+      triangle,
+      nearness,
+      who,
+      [=](int i) { return (at(p, i) >= 0) & (at(q, i) >= 0) & (at(r, i) >= 0); },
+      [=](int i) { return at(n, i); });
 }
 
-AIRTRUTH_VECTORS
+AIRTRUTH_FOR_VECTORS
 void nearest_inside(const std::int32_t* inside,
                     const PixelDepth& depth,
                     float per_time,
@@ -84,16 +100,15 @@ void nearest_inside(const std::int32_t* inside,
                     float* __restrict nearness,
                     std::int32_t* __restrict who) {
   const Straight plane = depth.nearness;
-  const float low = depth.farthest;
-  const float high = depth.nearest;
-  for (int i = 0; i < n; ++i) {
-    const float there = (plane.a + plane.b * px[i]) + (plane.c * py[i] + per_time * pt[i]);
-    const float above = there < low ? low : there;
-    const float here = above > high ? high : above;
-    const bool in_front = (inside[i] != 0) & (here > nearness[i]);
-    nearness[i] = in_front ? here : nearness[i];
-    who[i] = in_front ? triangle : who[i];
-  }
+  keep_where(
+      0,
+      n,
+      depth,
+      triangle,
+      nearness,
+      who,
+      [=](int i) { return inside[i] != 0; },
+      [=](int i) { return (plane.a + plane.b * px[i]) + (plane.c * py[i] + per_time * pt[i]); });
 }
 
 }  // namespace
