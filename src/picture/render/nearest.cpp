@@ -55,7 +55,12 @@ void nearest_still(const Straight* sides,
       triangle,
       nearness,
       who,
-      [=](int i) { return (at(p, i) >= 0) & (at(q, i) >= 0) & (at(r, i) >= 0); },
+      [=](int i) {
+        const float u = at(p, i);
+        const float v = at(q, i);
+        const float w = at(r, i);
+        return (u >= 0) & (v >= 0) & (w >= 0);
+      },
       [=](int i) { return at(n, i); });
 }
 
@@ -84,7 +89,12 @@ void nearest_moving(const Straight* sides,
       triangle,
       nearness,
       who,
-      [=](int i) { return (at(p, i) >= 0) & (at(q, i) >= 0) & (at(r, i) >= 0); },
+      [=](int i) {
+        const float u = at(p, i);
+        const float v = at(q, i);
+        const float w = at(r, i);
+        return (u >= 0) & (v >= 0) & (w >= 0);
+      },
       [=](int i) { return at(n, i); });
 }
 
