@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long one aircraft's layer takes, and how far its colours are from those of 4,096 rays a
-// pixel: ./dev bench renderer [--error] [--still | --exposure] [SIZE_PX...] [AIRCRAFT...]
+// How long one aircraft's layer takes, and how far its colours are from those of a picture of eight
+// times as many pixels a side: ./dev bench renderer [--error] [--still | --exposure] [SIZE_PX...] [AIRCRAFT...]
 //
 // One thread. Each aircraft is seen in random poses (12, 40, 100 and 400 px where no size is given),
 // at an instant and during an exposure of 8 ms with 16 ms of readout. Printed: milliseconds of processor time a frame,
@@ -26,12 +26,12 @@ namespace {
 
 using namespace airtruth;
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 20;
 constexpr int kPoses = 12;
 constexpr int kPosesOfError = 4;
 constexpr double kFocalPx = 1500;
 constexpr int kQuality = 3;
-constexpr int kReference = 5;  // 4,096 rays a pixel
+constexpr int kFiner = 8;  // pixels of the reference along a side of one
 // A search box goes beyond the exact box by this much, as the program's own does.
 constexpr double kMarginPx = 1.5;
 
@@ -64,8 +64,12 @@ struct Subject {
   }
 };
 
-lens::Lens lens_of(int side) {
-  return lens::Lens(lens::Pinhole{{kFocalPx, kFocalPx}, {side / 2.0, side / 2.0}}, {side, side});
+// A frame of `side` pixels, each divided into `finer` by `finer`.
+lens::Lens lens_of(int side, int finer = 1) {
+  const double focal_px = finer * kFocalPx;
+  const double middle_px = finer * side / 2.0;
+  return lens::Lens(lens::Pinhole{{focal_px, focal_px}, {middle_px, middle_px}},
+                    {finer * side, finer * side});
 }
 
 std::vector<Scene> scenes_of(const Subject& subject,
@@ -115,15 +119,15 @@ std::vector<Scene> scenes_of(const Subject& subject,
   return scenes;
 }
 
-image::Layer layer_of(const Scene& scene, int quality) {
-  return render::render(scene.view, {}, {scene.instance}, {scene.search}, {quality});
+image::Layer layer_of(const Scene& scene) {
+  return render::render(scene.view, {}, {scene.instance}, {scene.search}, {kQuality});
 }
 
 double milliseconds_a_frame(const std::vector<Scene>& scenes) {
   double fastest_s = 1e9;
   for (int round = 0; round < kRounds; ++round) {
     const double begin_s = processor_s();
-    for (const Scene& scene : scenes) layer_of(scene, kQuality);
+    for (const Scene& scene : scenes) layer_of(scene);
     fastest_s = std::min(fastest_s, processor_s() - begin_s);
   }
   return 1e3 * fastest_s / static_cast<double>(scenes.size());
@@ -135,25 +139,70 @@ struct Errors {
   double distance_m = 0;
 };
 
-double code_of(float colour, float alpha) {
-  constexpr float kBackground = 0.25f;  // linear light
-  return 255.0 * static_cast<double>(image::srgb_from_linear(colour + (1 - alpha) * kBackground));
+struct Mean {
+  double red = 0, green = 0, blue = 0, alpha = 0, depth = 0;
+};
+
+// The layer of the same scene by pixels of an eighth of the size, averaged over each pixel of
+// `patch`.
+std::vector<Mean> reference_of(const Scene& scene, const PixelBox& patch) {
+  const lens::Lens lens = lens_of(scene.view.width, kFiner);
+  Scene finer = scene;
+  finer.view.lens = &lens;
+  finer.view.width = finer.view.height = kFiner * scene.view.width;
+  finer.search = {kFiner * scene.search.x,
+                  kFiner * scene.search.y,
+                  kFiner * scene.search.width,
+                  kFiner * scene.search.height};
+  const image::Layer layer = layer_of(finer);
+  std::vector<Mean> means(static_cast<std::size_t>(patch.width) *
+                          static_cast<std::size_t>(patch.height));
+  constexpr double kShare = 1.0 / (kFiner * kFiner);
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+      if (!patch.contains(x / kFiner, y / kFiner)) continue;
+      const std::size_t from = layer.index(x, y);
+      const image::LayerPixel& pixel = layer.pixels[from];
+      if (!(pixel.alpha > 0)) continue;
+      Mean& mean = means[static_cast<std::size_t>(y / kFiner - patch.y) *
+                             static_cast<std::size_t>(patch.width) +
+                         static_cast<std::size_t>(x / kFiner - patch.x)];
+      const double alpha = static_cast<double>(pixel.alpha);
+      mean.red += kShare * static_cast<double>(pixel.red);
+      mean.green += kShare * static_cast<double>(pixel.green);
+      mean.blue += kShare * static_cast<double>(pixel.blue);
+      mean.alpha += kShare * alpha;
+      mean.depth += kShare * alpha * static_cast<double>(layer.depth_m[from]);
+    }
+  return means;
+}
+
+double code_of(double colour, double alpha) {
+  constexpr double kBackground = 0.25;  // linear light
+  const double linear = colour + (1 - alpha) * kBackground;
+  return 255.0 * static_cast<double>(image::srgb_from_linear(static_cast<float>(linear)));
 }
 
 void compare(const Scene& scene, Errors& errors) {
-  const image::Layer here = layer_of(scene, kQuality);
-  const image::Layer there = layer_of(scene, kReference);
-  for (std::size_t i = 0; i < here.pixels.size(); ++i) {
-    const image::LayerPixel& p = here.pixels[i];
-    const image::LayerPixel& q = there.pixels[i];
-    if (!(p.alpha > 0 || q.alpha > 0)) continue;
-    errors.alpha = std::max(errors.alpha, std::abs(static_cast<double>(p.alpha - q.alpha)));
-    if (p.alpha > 0 && q.alpha > 0)
+  const image::Layer layer = layer_of(scene);
+  const std::vector<Mean> means = reference_of(scene, layer.patch);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    const image::LayerPixel& pixel = layer.pixels[i];
+    const Mean& mean = means[i];
+    const double alpha = static_cast<double>(pixel.alpha);
+    if (!(alpha > 0 || mean.alpha > 0)) continue;
+    errors.alpha = std::max(errors.alpha, std::abs(alpha - mean.alpha));
+    if (alpha > 0 && mean.alpha > 0)
       errors.distance_m = std::max(
-          errors.distance_m, std::abs(static_cast<double>(here.depth_m[i] - there.depth_m[i])));
-    for (const auto channel :
-         {&image::LayerPixel::red, &image::LayerPixel::green, &image::LayerPixel::blue})
-      errors.colour.push_back(std::abs(code_of(p.*channel, p.alpha) - code_of(q.*channel, q.alpha)));
+          errors.distance_m,
+          std::abs(static_cast<double>(layer.depth_m[i]) - mean.depth / mean.alpha));
+    const auto add = [&](float colour, double expected) {
+      errors.colour.push_back(
+          std::abs(code_of(static_cast<double>(colour), alpha) - code_of(expected, mean.alpha)));
+    };
+    add(pixel.red, mean.red);
+    add(pixel.green, mean.green);
+    add(pixel.blue, mean.blue);
   }
 }
 
