@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long one aircraft's layer takes, and how far its colours are from those of a picture of eight
-// times as many pixels a side: ./dev bench renderer [--error] [--still | --exposure] [SIZE_PX...] [AIRCRAFT...]
+// times as many pixels a side: ./dev bench renderer [--error] [--still | --exposure] [SIZE_PX...]
+// [AIRCRAFT...]
 //
-// One thread. Each aircraft is seen in random poses (12, 40, 100 and 400 px where no size is given),
-// at an instant and during an exposure of 8 ms with 16 ms of readout. Printed: milliseconds of processor time a frame,
-// the least of the rounds; with --error the rms, the 99.9 % quantile and the largest error of a
-// colour in 8-bit code values over a grey background, and the largest error of alpha. Markdown.
+// One thread. Each aircraft is seen in random poses (12, 40, 100 and 400 px where no size is
+// given), at an instant and during an exposure of 8 ms with 16 ms of readout. Printed: milliseconds
+// of processor time a frame, the least of the rounds; with --error the rms, the 99.9 % quantile and
+// the largest error of a colour in 8-bit code values over a grey background, and the largest error
+// of alpha. Markdown.
+#include "picture/render/renderer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -15,11 +19,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <tbb/global_control.h>
 
 #include "aircraft/fleet/fleet.h"
 #include "foundation/image/colour.h"
-#include "picture/render/renderer.h"
 #include "truth/projection/exact_box.h"
 
 namespace {
@@ -103,12 +107,10 @@ std::vector<Scene> scenes_of(const Subject& subject,
                                   Homography::Identity(),
                                   scene.view.shutter,
                                   scene.view.camera};
-    const auto exact = projection::exact_box(sight,
-                                             subject.silhouette,
-                                             scene.instance.world_from_body,
-                                             0,
-                                             scene.instance.twist)
-                           .box;
+    const auto exact =
+        projection::exact_box(
+            sight, subject.silhouette, scene.instance.world_from_body, 0, scene.instance.twist)
+            .box;
     if (!exact) continue;
     scene.search = {exact->x - kMarginPx,
                     exact->y - kMarginPx,
@@ -193,9 +195,9 @@ void compare(const Scene& scene, Errors& errors) {
     if (!(alpha > 0 || mean.alpha > 0)) continue;
     errors.alpha = std::max(errors.alpha, std::abs(alpha - mean.alpha));
     if (alpha > 0 && mean.alpha > 0)
-      errors.distance_m = std::max(
-          errors.distance_m,
-          std::abs(static_cast<double>(layer.depth_m[i]) - mean.depth / mean.alpha));
+      errors.distance_m =
+          std::max(errors.distance_m,
+                   std::abs(static_cast<double>(layer.depth_m[i]) - mean.depth / mean.alpha));
     const auto add = [&](float colour, double expected) {
       errors.colour.push_back(
           std::abs(code_of(static_cast<double>(colour), alpha) - code_of(expected, mean.alpha)));
@@ -224,6 +226,9 @@ std::string errors_of(const std::vector<Scene>& scenes) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // As airtruth does: memory is kept from one frame to the next.
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<std::string> names(argv + 1, argv + argc);
   const bool with_errors = std::erase(names, "--error") > 0;

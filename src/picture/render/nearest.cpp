@@ -2,6 +2,7 @@
 #include "picture/render/nearest.h"
 
 #include <bit>
+#include <limits>
 
 #include "foundation/base/vectors.h"
 
@@ -121,6 +122,18 @@ void nearest_inside(const std::int32_t* inside,
       [=](int i) { return (plane.a + plane.b * px[i]) + (plane.c * py[i] + per_time * pt[i]); });
 }
 
+// Floats that are not negative have the order of their bits. The least of whole numbers, unlike
+// that of floats, may be found in any order, and so by vectors.
+AIRTRUTH_FOR_VECTORS
+std::int32_t least_bits(const float* nearness, int n) {
+  std::int32_t least = std::numeric_limits<std::int32_t>::max();
+  for (int i = 0; i < n; ++i) {
+    const auto bits = std::bit_cast<std::int32_t>(nearness[i]);
+    least = bits < least ? bits : least;
+  }
+  return least;
+}
+
 }  // namespace
 
 void keep_nearest(const std::array<Straight, 3>& sides,
@@ -162,6 +175,10 @@ void keep_nearest(const std::int32_t* inside,
                  samples,
                  nearest.nearness.data(),
                  nearest.triangle.data());
+}
+
+float least_nearness(const Nearest& nearest, int samples) {
+  return std::bit_cast<float>(least_bits(nearest.nearness.data(), samples));
 }
 
 }  // namespace airtruth::render

@@ -41,4 +41,7 @@ void keep_nearest(const std::int32_t* inside,
                   int samples,
                   Nearest& nearest);
 
+// The least nearness of the first `samples`: what is less near is hidden in all of them.
+float least_nearness(const Nearest& nearest, int samples);
+
 }  // namespace airtruth::render

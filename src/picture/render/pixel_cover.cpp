@@ -1,54 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 #include "picture/render/marking.h"
 #include "picture/render/nearest.h"
+#include "picture/render/pencil.h"
 #include "picture/render/pieces.h"
-#include "picture/render/pixel_rays.h"
 #include "picture/render/silhouette.h"
+#include "picture/render/sorted_samples.h"
 
 namespace airtruth::render {
-
-struct Silhouette::Pencil {
-  bool known = true;
-  bool moves = false;
-  // Directions at a pixel's corners. At an instant: in world (moment 1). During a motion: in body,
-  // with e x d, at the three moments of the pixel's exposure (or at moment 1 alone).
-  Thrice<std::array<Vector3, 4>> direction;
-  Thrice<std::array<Vector3, 4>> moment;
-  bool exposes = false;
-
-  double product(const Planes& planes, std::size_t side, std::size_t k, std::size_t corner) const {
-    const double still = planes.side[side].dot(direction[k][corner]);
-    return moves ? still + planes.edge[side].dot(moment[k][corner]) : still;
-  }
-};
-
-Silhouette::Pencil Silhouette::pencil_of(int x, int y) const {
-  Pencil pencil;
-  pencil.moves = actor_.moves;
-  if (!actor_.moves) {
-    pencil.direction[1] = grid_.corners(x, y);
-    pencil.known = finite(pencil.direction[1]);
-    return pencil;
-  }
-  const Beam beam = beam_of(actor_, grid_, x, y);
-  pencil.known = beam.known;
-  pencil.exposes = beam.exposes;
-  pencil.direction = beam.direction_in_body;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t c = 0; c < 4; ++c)
-      pencil.moment[k][c] = beam.eye_in_body[k].cross(pencil.direction[k][c]);
-  return pencil;
-}
-
-bool Silhouette::is_known(int x, int y) const {
-  for (int k = actor_.moves ? 0 : 1; k < (actor_.moves ? 3 : 2); ++k)
-    if (!finite(grid_.corners(x, y, k))) return false;
-  return true;
-}
 
 class Silhouette::PixelCover {
  public:
@@ -62,10 +26,15 @@ class Silhouette::PixelCover {
 
   // Asks for the coverage by a number of samples.
   void cover(int samples, Cover& result) {
-    result.is_covered.assign(static_cast<std::size_t>(samples), 0);
-    covered_ = result.is_covered.data();
+    result.marks.assign(static_cast<std::size_t>(samples), 0);
+    result.order.clear();
+    cover_ = &result;
     samples_ = samples;
     open_ = kAllStrips;
+    // Sorting the samples costs as much as the tests that it saves in this number of triangles.
+    constexpr std::size_t kWorthSorting = 32;
+    is_dense_ = exposes_ && silhouette_.grid_.reads_rows() &&
+                silhouette_.triangles_of(pixel_.x, pixel_.y).size() >= kWorthSorting;
   }
 
   // Asks for a depth buffer.
@@ -81,23 +50,26 @@ class Silhouette::PixelCover {
 
   void look() {
     if (!silhouette_.is_known(pixel_.x, pixel_.y)) return;
-    for (const std::uint32_t i : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
+    for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
+      const std::uint32_t i = entry.triangle;
       const Triangle& triangle = silhouette_.triangles_[i];
       // All others are hidden too.
       if (open_ == 0 && (side_ == 0 || triangle.nearest < hidden_)) break;
       if (triangle.planes != kNone)
         add_planes(triangle, i);
+      else if (entry.in_row != kNone)
+        add(i, silhouette_.in_row_[entry.in_row], pixel_.x);
       else if (silhouette_.actor_.moves)
-        add(silhouette_.moving_[triangle.picture], i);
+        add(i, silhouette_.moving_[triangle.picture], pixel_);
       else
-        add(silhouette_.still_[triangle.picture], i);
+        add(i, silhouette_.still_[triangle.picture], pixel_);
     }
   }
 
   // Counts the samples.
   void finish(Cover& result) const {
-    if (is_full_) std::fill_n(covered_, samples_, -1);
-    result.covered = -std::accumulate(covered_, covered_ + samples_, 0);
+    if (is_full_) std::fill(result.marks.begin(), result.marks.end(), -1);
+    result.covered = -std::accumulate(result.marks.begin(), result.marks.end(), 0);
   }
 
   // Returns the number of the samples in which a surface is visible.
@@ -120,40 +92,48 @@ class Silhouette::PixelCover {
   }
 
  private:
-  template <typename Straight>
-  void add(const Straight& triangle, std::uint32_t i) {
-    const bool sees = side_ > 0 && triangle.nearest() >= hidden_;
+  // picture, place: a StillTriangle, a MovingTriangle or a RowTriangle, and what its over() takes.
+  template <typename Picture, typename Place>
+  void add(std::uint32_t i, const Picture& picture, const Place& place) {
+    const bool sees = side_ > 0 && picture.nearest() >= hidden_;
     if (!sees && open_ == 0) return;
     PixelDepth depth;
-    const PixelSides sides = triangle.over(pixel_, sees ? &depth : nullptr);
+    const PixelSides sides = picture.over(place, sees ? &depth : nullptr);
     if (sides.is_outside) return;
     if (sees) {
       keep_nearest(sides.side, depth, i, exposes_, cells_, side_ * side_, sides.strips, nearest_);
       hide_behind();
     }
-    if (open_ != 0) mark_straight(sides);
-  }
-
-  // Everything behind all samples is hidden.
-  void hide_behind() {
-    // The look at all samples costs as much as a triangle.
-    constexpr int kEvery = 4;
-    if (++kept_ % kEvery != 0) return;
-    const auto end = nearest_.nearness.begin() + side_ * side_;
-    hidden_ = *std::min_element(nearest_.nearness.begin(), end);
-  }
-
-  void mark_straight(const PixelSides& sides) {
+    if (open_ == 0) return;
     if (sides.crossing == 0) {
       is_full_ = true;
       open_ = 0;
       return;
     }
+    if constexpr (std::is_same_v<Picture, RowTriangle>) {
+      if (is_dense_) return mark_sorted(sides, picture);
+    }
+    mark_straight(sides);
+  }
+
+  // Everything behind all samples is hidden.
+  void hide_behind() { hidden_ = least_nearness(nearest_, side_ * side_); }
+
+  void mark_straight(const PixelSides& sides) {
     const unsigned strips = sides.strips & open_;
     if (strips == 0) return;
     place();
-    open_ &= ~mark(sides.side, exposes_, places_, samples_, strips, covered_);
+    open_ &= ~mark(sides.side, exposes_, places(), samples_, strips, cover_->marks.data());
   }
+
+  // The same where the samples are sorted.
+  void mark_sorted(const PixelSides& sides, const RowTriangle& triangle) {
+    place();
+    sorted_.mark(triangle, pixel_.x, sides.side, cover_->marks.data());
+    if (sorted_.open() == 0) open_ = 0;
+  }
+
+  const Places& places() const { return is_dense_ ? sorted_.places() : places_; }
 
   // Of the first surface that is visible.
   Pixel motion_px() const {
@@ -211,7 +191,7 @@ class Silhouette::PixelCover {
   template <typename Side>
   void mark_planes(const std::array<Side, 3>& sides, int crossing) {
     if (crossing > 0) place();
-    if (crossing > 0 && !mark(sides, crossing, places_, samples_, covered_)) return;
+    if (crossing > 0 && !mark(sides, crossing, places(), samples_, cover_->marks.data())) return;
     is_full_ = true;
     open_ = 0;
   }
@@ -233,8 +213,22 @@ class Silhouette::PixelCover {
     if (is_placed_) return;
     is_placed_ = true;
     const PixelSamples here(pixel_.x, pixel_.y);
+    if (is_dense_) {
+      sorted_.fill(here, samples_, drift_px(), cover_->order);
+      return;
+    }
     here.fill(samples_, places_.x.data(), places_.y.data());
     if (exposes_) here.fill_times(samples_, places_.t.data());
+  }
+
+  // Of the first triangle whose motion is known: those of others differ little.
+  Pixel drift_px() const {
+    for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
+      const Triangle& triangle = silhouette_.triangles_[entry.triangle];
+      if (triangle.picture != kNone)
+        return silhouette_.moving_[triangle.picture].motion_px(pixel_) / 2;
+    }
+    return Pixel::Zero();
   }
 
   const Silhouette& silhouette_;
@@ -242,13 +236,17 @@ class Silhouette::PixelCover {
   bool exposes_ = false;
 
   // Coverage.
-  std::int32_t* covered_ = nullptr;
+  Cover* cover_ = nullptr;
   int samples_ = 0;
   std::optional<Pencil> pencil_;
+  // True where many triangles touch the pixel during an exposure; the samples are then in sorted_
+  // and else in places_.
+  bool is_dense_ = false;
+  SortedSamples sorted_;
   Places places_;
   bool is_placed_ = false;
   bool is_full_ = false;
-  // The strips with samples that are not covered yet.
+  // The strips with samples that are not covered yet; in sorted_ all until nothing is open.
   unsigned open_ = 0;
 
   // Depth.
@@ -258,7 +256,6 @@ class Silhouette::PixelCover {
   Nearest nearest_;
   // What is less near than this is hidden in the whole pixel.
   float hidden_ = 0;
-  int kept_ = 0;
 };
 
 int Silhouette::see(int x, int y, const SampleCounts& counts, Visible& visible) const {

@@ -149,10 +149,10 @@ class Refiner {
   // Shades a pixel whose surfaces are not known yet. `found`: of the pixel; null: every sample is
   // covered, or none.
   void outline(int x, int y, int only, const Cover* found) {
-    static const std::vector<std::int32_t> kEverySample(kRoughCover, -1);
+    static const Cover kEverySample{kRoughCover, std::vector<std::int32_t>(kRoughCover, -1), {}};
     Sum& sum = canvas_.sums[canvas_.index(x, y)];
     if (sum.hits == 0 || sum.opaque_shaded > 0 ||
-        tracer_.shade_covered(x, y, only, found ? found->is_covered : kEverySample, sum))
+        tracer_.shade_covered(x, y, only, found ? *found : kEverySample, sum))
       return;
     // The outline covers a sample, but no ray hits.
     forget(x, y, only);

@@ -137,6 +137,14 @@ void PixelSamples::fill_strips(int n,
   }
 }
 
+void PixelSamples::fill_in_sequence(int n, float* x, float* y, float* t) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+    x[i] = unit(kPoints.x[i] ^ scramble_x_);
+    y[i] = unit(kPoints.y[i] ^ scramble_y_);
+    t[i] = unit(kPoints.t[i] ^ scramble_t_);
+  }
+}
+
 SampleCounts counts_for(int quality, double size_px) {
   switch (quality) {
     case 1:

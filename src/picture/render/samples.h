@@ -31,7 +31,9 @@ class PixelSamples {
   // of a grid of side x side over the pixel contains one. Place column * side + row holds the point
   // of that cell, so that columns are strips, or halves of them.
   void fill_cells(int side, float* x, float* y, float* t) const;
-  // The place of point i among the first n in that order.
+  // The first n points in their own order.
+  void fill_in_sequence(int n, float* x, float* y, float* t) const;
+  // The place of point i among the first n in the order of fill().
   int place(int i, int n) const { return strip_of(i % kStrips) * (n / kStrips) + i / kStrips; }
 
  private:

@@ -10,8 +10,6 @@
 namespace airtruth::render {
 namespace {
 
-// Covers the rounding of a triangle's place.
-constexpr double kRowMarginPx = 0.02;
 // Largest number of triangles over one pixel; with more, rays are faster.
 constexpr std::size_t kMaxTriangles = 1024;
 // Largest number of entries in the lists of a patch. An aircraft that encloses the eye exceeds it,
@@ -208,8 +206,8 @@ std::vector<std::uint32_t> Silhouette::nearest_first() {
   return order;
 }
 
-std::vector<Silhouette::RowSpan> Silhouette::rows_of(
-    const std::vector<Reach>& reaches, const std::vector<std::uint32_t>& order) const {
+std::vector<Silhouette::RowSpan> Silhouette::rows_of(const std::vector<Reach>& reaches,
+                                                     const std::vector<std::uint32_t>& order) {
   // With any other readout the pixels of a row have different times.
   const bool row_by_row = actor_.moves && grid_.reads_rows();
   std::vector<double> u;
@@ -217,6 +215,10 @@ std::vector<Silhouette::RowSpan> Silhouette::rows_of(
     for (int y = patch_.y; y < patch_.bottom(); ++y)
       u.push_back(grid_.span().u(grid_.middle_s(patch_.x, y)));
   std::vector<RowSpan> rows;
+  std::size_t most = 0;
+  for (const Reach& r : reaches) most += static_cast<std::size_t>(r.y1 - r.y0);
+  rows.reserve(most);
+  if (row_by_row) in_row_.reserve(most);
   for (const std::uint32_t i : order) {
     const Reach& r = reaches[i];
     const bool follows =
@@ -226,12 +228,14 @@ std::vector<Silhouette::RowSpan> Silhouette::rows_of(
         rows.push_back({i, y, r.x0, r.x1});
         continue;
       }
-      const Box box =
-          moving_[triangles_[i].picture].box_at(u[static_cast<std::size_t>(y - patch_.y)]);
-      if (box.y > y + 1 + kRowMarginPx || box.bottom() < y - kRowMarginPx) continue;
-      const int x0 = std::max(r.x0, static_cast<int>(std::floor(box.x - kRowMarginPx)));
-      const int x1 = std::min(r.x1, static_cast<int>(std::ceil(box.right() + kRowMarginPx)));
-      if (x0 < x1) rows.push_back({i, y, x0, x1});
+      const RowTriangle row =
+          moving_[triangles_[i].picture].over_row(y, u[static_cast<std::size_t>(y - patch_.y)]);
+      const auto [first, last] = row.columns();
+      const int x0 = std::max(r.x0, first);
+      const int x1 = std::min(r.x1, last);
+      if (x0 >= x1) continue;
+      rows.push_back({i, y, x0, x1, static_cast<std::uint32_t>(in_row_.size())});
+      in_row_.push_back(row);
     }
   }
   return rows;
@@ -253,14 +257,14 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   const auto each = [&](const auto& body) {
     for (const RowSpan& row : rows) {
       const std::size_t start = index(0, row.y);
-      for (int x = row.x0; x < row.x1; ++x) body(start + static_cast<std::size_t>(x), row.triangle);
+      for (int x = row.x0; x < row.x1; ++x) body(start + static_cast<std::size_t>(x), row);
     }
   };
-  each([&](std::size_t pixel, std::uint32_t i) {
+  each([&](std::size_t pixel, const RowSpan& row) {
     ++first_[pixel + 1];
-    if (!triangles_[i].opaque)
+    if (!triangles_[row.triangle].opaque)
       touch_[pixel] = Touch::kRays;
-    else if (!triangles_[i].has_depth && touch_[pixel] == Touch::kNone)
+    else if (!triangles_[row.triangle].has_depth && touch_[pixel] == Touch::kNone)
       touch_[pixel] = Touch::kOpaqueByRays;
   });
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
@@ -273,10 +277,12 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   }
   by_pixel_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  each([&](std::size_t pixel, std::uint32_t i) { by_pixel_[next[pixel]++] = i; });
+  each([&](std::size_t pixel, const RowSpan& row) {
+    by_pixel_[next[pixel]++] = {row.triangle, row.in_row};
+  });
 }
 
-std::span<const std::uint32_t> Silhouette::triangles_of(int x, int y) const {
+std::span<const Silhouette::Entry> Silhouette::triangles_of(int x, int y) const {
   const std::size_t i = index(x, y);
   return {by_pixel_.data() + first_[i], by_pixel_.data() + first_[i + 1]};
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "picture/render/cover.h"
 #include "picture/render/pixel_light.h"
 #include "picture/render/reach.h"
 #include "picture/render/straight.h"
@@ -34,13 +35,6 @@
 // products.
 namespace airtruth::render {
 
-// The samples, among a pixel's first n, that an aircraft covers.
-struct Cover {
-  int covered = 0;
-  // 0 or -1 for each sample, in the order of PixelSamples::fill().
-  std::vector<std::int32_t> is_covered;
-};
-
 class Silhouette {
  public:
   enum class Touch { kNone, kOpaque, kOpaqueByRays, kRays };
@@ -59,7 +53,7 @@ class Silhouette {
   Touch touch(int x, int y) const;
 
   // Covers the samples of a pixel of the kind kOpaque. No sample is covered where the lens lacks a
-  // direction for some part of the pixel. samples: a multiple of PixelSamples::kStrips, up to
+  // direction for some part of the pixel. samples: a multiple of PixelSamples::kCells^2, up to
   // PixelSamples::kMost.
   void cover(int x, int y, int samples, Cover& result) const;
 
@@ -116,9 +110,12 @@ class Silhouette {
     int y = 0;
     int x0 = 0;
     int x1 = 0;
+    // In in_row_; kNone: nowhere.
+    std::uint32_t in_row = kNone;
   };
+  // Fills in_row_.
   std::vector<RowSpan> rows_of(const std::vector<Reach>& reaches,
-                               const std::vector<std::uint32_t>& order) const;
+                               const std::vector<std::uint32_t>& order);
   // The order in which a depth buffer tests triangles; sets Triangle::nearest.
   std::vector<std::uint32_t> nearest_first();
   // Empty where the triangle is seen edge-on.
@@ -126,7 +123,13 @@ class Silhouette {
   Pencil pencil_of(int x, int y) const;
   bool is_known(int x, int y) const;
   void sort_by_pixel(const std::vector<Reach>& reaches);
-  std::span<const std::uint32_t> triangles_of(int x, int y) const;
+  // A triangle over a pixel.
+  struct Entry {
+    std::uint32_t triangle = 0;
+    // In in_row_; kNone: nowhere.
+    std::uint32_t in_row = kNone;
+  };
+  std::span<const Entry> triangles_of(int x, int y) const;
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - patch_.y) * static_cast<std::size_t>(patch_.width) +
            static_cast<std::size_t>(x - patch_.x);
@@ -139,10 +142,11 @@ class Silhouette {
   std::vector<Triangle> triangles_;
   std::vector<StillTriangle> still_;
   std::vector<MovingTriangle> moving_;
+  std::vector<RowTriangle> in_row_;
   std::vector<Planes> planes_;
   // The index in by_pixel_ of each pixel's first triangle; one more entry at the end.
   std::vector<std::uint32_t> first_;
-  std::vector<std::uint32_t> by_pixel_;
+  std::vector<Entry> by_pixel_;
   std::vector<Touch> touch_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace airtruth::render {
 namespace {
@@ -12,21 +13,34 @@ int wrapped(int i, int size, bool repeat) {
   return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
 }
 
+// Texture coordinates beyond this count as damaged.
+constexpr float kFarthestRepeat = 1e5f;
+
+// A place between two texels: the first of them, and the share of the second.
+struct Between {
+  int first;
+  float share;
+};
+
+// Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
+// call of the library on machines that are only known to have SSE2.
+Between between(float place) {
+  const auto towards_zero = static_cast<std::int64_t>(place);
+  const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);
+  return {static_cast<int>(below), place - static_cast<float>(below)};
+}
+
 // Four channels at once.
 using Channels = Eigen::Array4f;
 
 Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, float v) {
   const auto& level = texture.levels[index];
-  const float x = u * static_cast<float>(level.width) - 0.5f;
-  const float y = v * static_cast<float>(level.height) - 0.5f;
-  const float x_floor = std::floor(x);
-  const float y_floor = std::floor(y);
-  const float fx = x - x_floor;
-  const float fy = y - y_floor;
-  const int x0 = wrapped(static_cast<int>(x_floor), level.width, texture.repeat_u);
-  const int x1 = wrapped(static_cast<int>(x_floor) + 1, level.width, texture.repeat_u);
-  const int y0 = wrapped(static_cast<int>(y_floor), level.height, texture.repeat_v);
-  const int y1 = wrapped(static_cast<int>(y_floor) + 1, level.height, texture.repeat_v);
+  const auto [x, fx] = between(u * static_cast<float>(level.width) - 0.5f);
+  const auto [y, fy] = between(v * static_cast<float>(level.height) - 0.5f);
+  const int x0 = wrapped(x, level.width, texture.repeat_u);
+  const int x1 = wrapped(x + 1, level.width, texture.repeat_u);
+  const int y0 = wrapped(y, level.height, texture.repeat_v);
+  const int y1 = wrapped(y + 1, level.height, texture.repeat_v);
   const auto at = [&](int i, int j) {
     return Eigen::Map<const Channels>(
         level
@@ -54,7 +68,7 @@ Skin::Skin(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m) : 
 Texel Skin::texel(float u, float v) const {
   if (texture_ == nullptr) return {1, 1, 1, 1};
   const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
-  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return {1, 1, 1, 1};
+  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kFarthestRepeat) return {1, 1, 1, 1};
   Texel result;
   Eigen::Map<Channels> channels(result.data());
   channels = bilinear(*texture_, level_, uv.x(), uv.y());
@@ -75,17 +89,18 @@ Texel Skin::albedo(float u, float v) const {
 void Skin::prefetch(float u, float v) const {
   if (texture_ == nullptr) return;
   const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
-  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > 1e6f) return;
+  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kFarthestRepeat) return;
   for (std::size_t l = level_; l <= level_ + (coarser_ > 0 ? 1 : 0); ++l) {
     const auto& level = texture_->levels[l];
-    const int x = static_cast<int>(std::floor(uv.x() * static_cast<float>(level.width) - 0.5f));
-    const int y = static_cast<int>(std::floor(uv.y() * static_cast<float>(level.height) - 0.5f));
-    for (int row = 0; row < 2; ++row)
-      __builtin_prefetch(
-          &level.texels[static_cast<std::size_t>(
-                            wrapped(y + row, level.height, texture_->repeat_v)) *
-                            static_cast<std::size_t>(level.width) +
-                        static_cast<std::size_t>(wrapped(x, level.width, texture_->repeat_u))]);
+    const int x = between(uv.x() * static_cast<float>(level.width) - 0.5f).first;
+    const int y = between(uv.y() * static_cast<float>(level.height) - 0.5f).first;
+    const auto column = static_cast<std::size_t>(wrapped(x, level.width, texture_->repeat_u));
+    for (int row = 0; row < 2; ++row) {
+      const int wrapped_row = wrapped(y + row, level.height, texture_->repeat_v);
+      __builtin_prefetch(&level.texels[static_cast<std::size_t>(wrapped_row) *
+                                           static_cast<std::size_t>(level.width) +
+                                       column]);
+    }
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "picture/render/sides.h"
+
 namespace airtruth::render {
 namespace {
 
@@ -25,40 +27,10 @@ double extent_px(const Corners& c) {
 
 double largest(const Pixel& v) { return v.cwiseAbs().maxCoeff(); }
 
-// The strips between two places in the pixel.
-unsigned strips_between(double low, double high) {
-  // Covers the rounding of the samples' places.
-  constexpr double kMargin = 1e-5;
-  const auto strip = [](double x) {
-    return std::clamp(
-        static_cast<int>(std::floor(x * PixelSamples::kStrips)), 0, PixelSamples::kStrips - 1);
-  };
-  const unsigned up_to = (2U << strip(std::clamp(high + kMargin, 0.0, 1.0))) - 1;
-  return up_to & ~((1U << strip(std::clamp(low - kMargin, 0.0, 1.0))) - 1);
-}
-
 // The coefficients of 1, u and u^2 of the parabola of between() in ray_grid.h.
 template <typename T>
 Thrice<T> coefficients(const T& first, const T& middle, const T& last) {
   return {middle, 0.5 * (last - first), 0.5 * (last - 2 * middle + first)};
-}
-
-double across(const Pixel& a, const Pixel& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// Perpendicular to a side, towards the inside of a triangle whose corners are in the order of a
-// positive area.
-Pixel inward_of(const Pixel& from, const Pixel& to) {
-  return {from.y() - to.y(), to.x() - from.x()};
-}
-
-// Adds a side that crosses the pixel. Returns false where the whole pixel is outside.
-bool add_side(const Straight& side, PixelSides& sides) {
-  const float low = std::min(0.0f, side.b) + std::min(0.0f, side.c) + std::min(0.0f, side.d);
-  const float high = std::max(0.0f, side.b) + std::max(0.0f, side.c) + std::max(0.0f, side.d);
-  sides.is_outside = side.a + high < 0;
-  if (sides.is_outside) return false;
-  if (side.a + low < 0) sides.side[static_cast<std::size_t>(sides.crossing++)] = side;
-  return true;
 }
 
 // A side that passes through two corners of a triangle seen edge-on excludes everything.
@@ -166,21 +138,13 @@ MovingTriangle::Now MovingTriangle::now(const PixelPlace& pixel) const {
   return now;
 }
 
-Box MovingTriangle::box_at(double u) const {
-  const auto [p, drift] = now({0, 0, u});
-  const Pixel reach = drift.cwiseAbs();
-  const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - reach;
-  const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + reach;
-  return {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
-}
-
 PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
   PixelSides result;
   auto [p, drift] = now(pixel);
   const Pixel reach = drift.cwiseAbs();
-  const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - reach;
-  const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + reach;
-  result.is_outside = low.maxCoeff() > 1 || high.minCoeff() < 0;
+  const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]);
+  const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
+  result.is_outside = (low - reach).maxCoeff() > 1 || (high + reach).minCoeff() < 0;
   if (result.is_outside) return result;
   const double area = across(p[1] - p[0], p[2] - p[0]);
   result.is_outside = area == 0;
@@ -195,7 +159,7 @@ PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) cons
                         static_cast<float>(-2 * drifts)};
     if (!add_side(side, result)) return result;
   }
-  result.strips = strips_between(low.x(), high.x());
+  result.strips = strips_between(low.x() - reach.x(), high.x() + reach.x());
   if (depth != nullptr) *depth = depth_at(pixel.u, p, drift, area);
   return result;
 }
@@ -205,10 +169,10 @@ PixelDepth MovingTriangle::depth_over(const PixelPlace& pixel) const {
   return depth_at(pixel.u, p, drift, across(p[1] - p[0], p[2] - p[0]));
 }
 
-PixelDepth MovingTriangle::depth_at(double u,
-                                    const std::array<Pixel, 3>& corner,
-                                    const Pixel& drift,
-                                    double area) const {
+MovingTriangle::DepthPlane MovingTriangle::depth_plane(double u,
+                                                       const std::array<Pixel, 3>& corner,
+                                                       const Pixel& drift,
+                                                       double area) const {
   std::array<double, 3> at;
   double nearing = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -224,12 +188,24 @@ PixelDepth MovingTriangle::depth_at(double u,
                     scale * (rise_q * p.x() - rise_p * q.x()));
   const double over_time = nearing - slope.dot(drift);
   const double change = std::abs(nearing);
-  return {{static_cast<float>(at[0] - slope.dot(corner[0]) - over_time),
-           static_cast<float>(slope.x()),
-           static_cast<float>(slope.y()),
-           static_cast<float>(2 * over_time)},
+  return {at[0] - slope.dot(corner[0]) - over_time,
+          slope,
+          2 * over_time,
           static_cast<float>(std::min({at[0], at[1], at[2]}) - change),
           static_cast<float>(std::max({at[0], at[1], at[2]}) + change)};
+}
+
+PixelDepth MovingTriangle::depth_at(double u,
+                                    const std::array<Pixel, 3>& corner,
+                                    const Pixel& drift,
+                                    double area) const {
+  const DepthPlane plane = depth_plane(u, corner, drift, area);
+  return {{static_cast<float>(plane.at_corner),
+           static_cast<float>(plane.slope.x()),
+           static_cast<float>(plane.slope.y()),
+           static_cast<float>(plane.per_time)},
+          plane.farthest,
+          plane.nearest};
 }
 
 std::array<float, 2> MovingTriangle::weights_at(const PixelPlace& pixel,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "picture/render/nearest.h"
@@ -96,6 +97,40 @@ class StillTriangle {
   std::array<float, 3> nearness_;
 };
 
+// A triangle during the exposure of one row of pixels, all of which have one time: what over()
+// below computes is shared by the row's pixels but for their column.
+struct RowTriangle {
+  struct Side {
+    // At column 0.
+    double at_start = 0;
+    double per_x = 0;
+    float per_y = 0;
+    float per_time = 0;
+  };
+  std::array<Side, 3> side;
+  // The nearness at column 0, as in Side, and its bounds.
+  Side nearness;
+  float farthest_depth = 0;
+  float nearest_depth = 0;
+  // A box about the triangle in the middle of the exposure: columns of the frame, and rows from the
+  // top of this one.
+  double left = 0;
+  double right = 0;
+  float top = 0;
+  float bottom = 0;
+  // What the triangle moves from the middle of the exposure to its end, in pixels.
+  float drift_x = 0;
+  float drift_y = 0;
+  // True where the triangle is seen edge-on or outside the row.
+  bool is_outside = true;
+
+  // As in StillTriangle.
+  PixelSides over(int x, PixelDepth* depth) const;
+  float nearest() const { return nearest_depth; }
+  // The columns of pixels that the triangle can touch, [first, last). Empty: none.
+  std::pair<int, int> columns() const;
+};
+
 // A triangle during an exposure.
 class MovingTriangle {
  public:
@@ -115,10 +150,11 @@ class MovingTriangle {
   std::array<float, 2> weights_at(const PixelPlace& pixel,
                                   const std::array<float, 3>& place_and_time) const;
 
+  // Over the row y of pixels, whose exposure has its middle at u.
+  RowTriangle over_row(int y, double u) const;
+
   // How far the middle moves during the exposure of a pixel.
   Pixel motion_px(const PixelPlace& pixel) const { return 2 * now(pixel).drift; }
-  // A box about the picture during the exposure of a pixel, in the frame.
-  Box box_at(double u) const;
 
  private:
   MovingTriangle() = default;
@@ -129,6 +165,18 @@ class MovingTriangle {
     Pixel drift;
   };
   Now now(const PixelPlace& pixel) const;
+  // The nearness over a pixel, from its corner and the beginning of its exposure.
+  struct DepthPlane {
+    double at_corner = 0;
+    Pixel slope;
+    double per_time = 0;
+    float farthest = 0;
+    float nearest = 0;
+  };
+  DepthPlane depth_plane(double u,
+                         const std::array<Pixel, 3>& corner,
+                         const Pixel& drift,
+                         double area) const;
   PixelDepth depth_at(double u,
                       const std::array<Pixel, 3>& corner,
                       const Pixel& drift,

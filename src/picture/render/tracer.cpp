@@ -216,15 +216,14 @@ void Tracer::shade_visible(int x, int y, int actor_index, const Visible& visible
   sum.depth = light.distance_m * sum.alpha;
 }
 
-bool Tracer::shade_covered(
-    int x, int y, int actor_index, const std::vector<std::int32_t>& is_covered, Sum& sum) const {
+bool Tracer::shade_covered(int x, int y, int actor_index, const Cover& cover, Sum& sum) const {
   // About one code value of a video in the middle of its range.
   constexpr float kTolerance = 0.015f;
   const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
   const PixelRays rays(actor, grid_, x, y);
   const PixelEye eye(rays, actor.moves && grid_.exposure_s() > 0);
   const PixelSamples order(x, y);
-  const auto all = static_cast<int>(is_covered.size());
+  const int all = cover.samples();
   const auto share = static_cast<float>(sum.alpha / sum.count);
   thread_local Visible visible;
   visible.of_samples = counts_.shaded;
@@ -236,7 +235,7 @@ bool Tracer::shade_covered(
     const auto wanted =
         static_cast<std::size_t>(std::min(counts_.shaded_alike, counts_.shaded - spread.count));
     for (; next < all && n < wanted; ++next)
-      if (is_covered[static_cast<std::size_t>(order.place(next, all))] != 0) samples[n++] = next;
+      if (cover.covers(order, next)) samples[n++] = next;
     if (n == 0) break;
     find_visible(actor.placed, rays, order, {samples.data(), n}, visible);
     if (visible.spots.empty()) continue;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "picture/render/cover.h"
 #include "picture/render/ray_grid.h"
 #include "picture/render/samples.h"
 #include "picture/render/shade.h"
@@ -120,11 +121,9 @@ class Tracer {
   // Computes the light and the distance of a pixel from the surfaces that one opaque actor shows
   // there.
   void shade_visible(int x, int y, int actor, const Visible& visible, Sum& sum) const;
-  // The same from the samples that are known to meet the actor (`is_covered` is not 0, in the order
-  // of PixelSamples::fill()), by tracing rays through some of them. Returns false where none of
-  // those rays hits.
-  bool shade_covered(
-      int x, int y, int actor, const std::vector<std::int32_t>& is_covered, Sum& sum) const;
+  // The same from the samples that are known to meet the actor, by tracing rays through some of
+  // them. Returns false where none of those rays hits.
+  bool shade_covered(int x, int y, int actor, const Cover& cover, Sum& sum) const;
 
  private:
   void add(const Shot& shot,
