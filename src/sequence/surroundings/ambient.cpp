@@ -114,7 +114,7 @@ std::vector<Block> by_brightness(const std::vector<Block>& blocks) {
   std::vector<std::uint64_t> order;
   order.reserve(blocks.size());
   for (std::size_t i = 0; i < blocks.size(); ++i)
-    order.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(blocks[i].brightness)} << 32 | i);
+    order.push_back((std::uint64_t{std::bit_cast<std::uint32_t>(blocks[i].brightness)} << 32) | i);
   std::sort(order.begin(), order.end());
   std::vector<Block> sorted;
   sorted.reserve(blocks.size());
