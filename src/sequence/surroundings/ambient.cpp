@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
 #include "picture/render/renderer.h"
@@ -353,9 +354,12 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
 
 void AmbientEstimator::follow_rays(const image::Picture& picture, const projection::Sight& sight) {
   const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
+  const lens::ImageSize size{picture.width, picture.height};
+  check(rays_.empty() || size == rays_size_, "frames keep their size");
   if (!rays_.empty() && nominal_from_frame == rays_nominal_from_frame_) return;
   rays_ = rays_of(picture, *sight.lens, nominal_from_frame);
   rays_nominal_from_frame_ = nominal_from_frame;
+  rays_size_ = size;
 }
 
 void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {

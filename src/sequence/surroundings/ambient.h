@@ -73,6 +73,7 @@ class AmbientEstimator {
   // The rays of the blocks in the nominal camera, which stay as long as the homography does.
   std::vector<std::optional<Vector3>> rays_;
   Homography rays_nominal_from_frame_ = Homography::Identity();
+  lens::ImageSize rays_size_;
 };
 
 }  // namespace airtruth::sequence
