@@ -31,6 +31,8 @@ constexpr int kMaxRounds = 8;
 // A search ends after a step of less than this many samples: the next step would be shorter by an
 // order of magnitude.
 constexpr double kSettledPx = 0.06;
+// After the last round, a step of up to this many samples still counts as settled.
+constexpr double kLooselySettledPx = 0.5;
 // The longest way from the guess, in samples.
 constexpr double kMaxWayPx = 5;
 
@@ -39,30 +41,33 @@ constexpr double kMaxWayPx = 5;
 std::optional<Patch> Patch::at(const cv::Mat& grey, int x, int y) {
   if (x < 1 || y < 1 || x + kPatchPx >= grey.cols || y + kPatchPx >= grey.rows) return std::nullopt;
   Patch patch;
-  int sum = 0, squares = 0, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+  std::int16_t x_difference[kSamples], y_difference[kSamples], luma[kSamples];
   for (int row = 0; row < kPatchPx; ++row) {
     const std::uint8_t* above = grey.ptr<std::uint8_t>(y + row - 1) + x;
     const std::uint8_t* here = grey.ptr<std::uint8_t>(y + row) + x;
     const std::uint8_t* below = grey.ptr<std::uint8_t>(y + row + 1) + x;
-    const auto first = static_cast<std::size_t>(row * kPatchPx);
-    std::int16_t* luma = &patch.luma_[first];
-    std::int16_t* slope_x = &patch.slope_x_[first];
-    std::int16_t* slope_y = &patch.slope_y_[first];
-    const std::int16_t* weight = &kWeight[first];
+    const int first = row * kPatchPx;
     for (int i = 0; i < kPatchPx; ++i) {
-      const auto x_difference = static_cast<std::int16_t>(here[i + 1] - here[i - 1]);
-      const auto y_difference = static_cast<std::int16_t>(below[i] - above[i]);
-      luma[i] = static_cast<std::int16_t>(here[i] * kLumaSteps);
-      slope_x[i] = static_cast<std::int16_t>(x_difference * weight[i]);
-      slope_y[i] = static_cast<std::int16_t>(y_difference * weight[i]);
-      sum += here[i];
-      squares += here[i] * here[i];
-      sum_x += slope_x[i];
-      sum_y += slope_y[i];
-      xx += slope_x[i] * x_difference;
-      xy += slope_x[i] * y_difference;
-      yy += slope_y[i] * y_difference;
+      luma[first + i] = here[i];
+      x_difference[first + i] = static_cast<std::int16_t>(here[i + 1] - here[i - 1]);
+      y_difference[first + i] = static_cast<std::int16_t>(below[i] - above[i]);
     }
+  }
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    patch.luma_[i] = static_cast<std::int16_t>(luma[i] * kLumaSteps);
+    patch.slope_x_[i] = static_cast<std::int16_t>(x_difference[i] * kWeight[i]);
+    patch.slope_y_[i] = static_cast<std::int16_t>(y_difference[i] * kWeight[i]);
+  }
+  // All factors have 16 bits: compilers multiply and add eight pairs in one instruction.
+  int sum = 0, squares = 0, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    sum += luma[i];
+    squares += luma[i] * luma[i];
+    sum_x += patch.slope_x_[i];
+    sum_y += patch.slope_y_[i];
+    xx += patch.slope_x_[i] * x_difference[i];
+    xy += patch.slope_x_[i] * y_difference[i];
+    yy += patch.slope_y_[i] * y_difference[i];
   }
   patch.mean_slope_x_ = double(sum_x) / kWeightOfAll;
   patch.mean_slope_y_ = double(sum_y) / kWeightOfAll;
@@ -99,33 +104,36 @@ Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th)
   const std::uint16_t w01 = weight(right, kPositionSteps - down);
   const std::uint16_t w10 = weight(kPositionSteps - right, down);
   const std::uint16_t w11 = weight(right, down);
-  Difference all;
+  std::int16_t more[kSamples];
   for (int row = 0; row < kPatchPx; ++row) {
     const std::uint8_t* upper = grey.ptr<std::uint8_t>(y + row) + x;
     const std::uint8_t* lower = grey.ptr<std::uint8_t>(y + row + 1) + x;
-    const auto first = static_cast<std::size_t>(row * kPatchPx);
-    const std::int16_t* luma = &luma_[first];
-    const std::int16_t* slope_x = &slope_x_[first];
-    const std::int16_t* slope_y = &slope_y_[first];
-    std::int16_t more[kPatchPx];
+    const std::int16_t* luma = &luma_[static_cast<std::size_t>(row * kPatchPx)];
+    std::int16_t* row_of_more = &more[row * kPatchPx];
     for (int i = 0; i < kPatchPx; ++i) {
       const auto sample = static_cast<std::uint16_t>(upper[i] * w00 + upper[i + 1] * w01 +
                                                      lower[i] * w10 + lower[i + 1] * w11);
       constexpr int kShift = 5;
       static_assert(kWeightSum >> kShift == kLumaSteps);
-      more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
+      row_of_more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
     }
-    const std::int16_t* sample_weight = &kWeight[first];
-    for (int i = 0; i < kPatchPx; ++i) {
-      all.times_slope_x += more[i] * slope_x[i];
-      all.times_slope_y += more[i] * slope_y[i];
-      all.weighted += more[i] * sample_weight[i];
-      all.sum += more[i];
-      all.squares += more[i] * more[i];
-    }
+  }
+  Difference all;  // factors of 16 bits, as in at()
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    all.times_slope_x += more[i] * slope_x_[i];
+    all.times_slope_y += more[i] * slope_y_[i];
+    all.weighted += more[i] * kWeight[i];
+    all.sum += more[i];
+    all.squares += more[i] * more[i];
   }
   return all;
 }
+
+namespace {
+
+double squared(double x, double y) { return x * x + y * y; }
+
+}  // namespace
 
 std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, double guess_y) const {
   double x = guess_x, y = guess_y;
@@ -144,11 +152,11 @@ std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, dou
     const double step_y = -(inverse_xy_ * bx + inverse_yy_ * by);
     const double from_x = double(x_16th) / kPositionSteps;
     const double from_y = double(y_16th) / kPositionSteps;
-    const double settled = std::hypot(from_x + step_x - x, from_y + step_y - y);
+    const double unsettled = squared(from_x + step_x - x, from_y + step_y - y);
     x = from_x + step_x, y = from_y + step_y;
-    if (std::hypot(x - guess_x, y - guess_y) > kMaxWayPx) return std::nullopt;
-    if (settled > kSettledPx && round + 1 < kMaxRounds) continue;
-    if (settled > 0.5) return std::nullopt;
+    if (squared(x - guess_x, y - guess_y) > kMaxWayPx * kMaxWayPx) return std::nullopt;
+    if (unsettled > kSettledPx * kSettledPx && round + 1 < kMaxRounds) continue;
+    if (unsettled > kLooselySettledPx * kLooselySettledPx) return std::nullopt;
     const double m = double(more.sum) / kSamples;
     const double variance = (double(more.squares) / kSamples - m * m) / (kLumaSteps * kLumaSteps);
     return Found{x, y, std::sqrt(std::max(0.0, variance - kNoiseVariance)) / contrast_};

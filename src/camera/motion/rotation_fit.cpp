@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/SVD>
 
@@ -13,7 +14,10 @@ namespace {
 
 constexpr int kMaxTrials = 300;
 constexpr double kConfidence = 0.9999;
-constexpr int kRefinements = 12;
+constexpr int kRefinements = 12;  // at most
+// A refinement that turns by less than this share of the limit is the last: the next would be
+// smaller.
+constexpr double kSettledShare = 1e-4;
 constexpr double kMinTurnShare = 0.15;
 constexpr double kMinSpreadRad = 0.02;  // rms distance of the inliers from their mean direction
 constexpr double kShortestBaseRad = 0.05;
@@ -174,7 +178,11 @@ Quaternion refined(const Start& start, const std::vector<Bearings>& bearings, do
                                    limit_rad,
                                    variance * near.value * near.value);
     }
-    cam_from_reference = best_rotation(bearings, weights);
+    const Quaternion before = std::exchange(cam_from_reference, best_rotation(bearings, weights));
+    const bool is_narrowest = scale == limit_rad / 4;
+    if (step > kFarSteps && is_narrowest &&
+        before.angularDistance(cam_from_reference) < kSettledShare * limit_rad)
+      break;
     scale = std::max(0.7 * scale, limit_rad / 4);
   }
   return cam_from_reference;

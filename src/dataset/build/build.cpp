@@ -20,6 +20,7 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/stopwatch.h"
+#include "sequence/sequence/frame_maker.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/shared_inputs.h"
 
@@ -199,8 +200,9 @@ class Work {
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<BackgroundFiles> files_;
+  // Aircraft are the same in every set: their openness is kept where `render` keeps it.
   std::shared_ptr<sequence::SharedInputs> shared_ =
-      std::make_shared<sequence::SharedInputs>(folder_.cache() / "openness");
+      std::make_shared<sequence::SharedInputs>(sequence::openness_cache({}));
   std::mutex mutex_;
   BuildSummary summary_;
 };

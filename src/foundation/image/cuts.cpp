@@ -8,6 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "foundation/base/vectors.h"
+
 namespace airtruth::image {
 namespace {
 
@@ -27,7 +29,9 @@ constexpr int kMaxRowsInSums = 257;
 
 // Adds a row of samples to the sums of their columns. The inner loop has a constant length, so that
 // compilers use vector instructions; they also need to know that the two do not overlap.
-void add_row(const std::uint8_t* __restrict row, int width, std::uint16_t* __restrict column_sums) {
+AIRTRUTH_FOR_VECTORS void add_row(const std::uint8_t* __restrict row,
+                                  int width,
+                                  std::uint16_t* __restrict column_sums) {
   constexpr int kBlock = 32;
   int x = 0;
   for (; x + kBlock <= width; x += kBlock)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -154,14 +155,22 @@ void check_still_output(const fs::path& path, bool overwrite) {
   check_output_file(path, overwrite);
 }
 
-image::Rgb8 read_still(const fs::path& path) {
+namespace {
+
+image::Picture first_picture(const fs::path& path) {
   ReaderOptions options;
   options.frame_count = 1;
   options.threads = 1;
   options.with_timing = false;
   auto frame = Reader(path, options).next();
   if (!frame) throw Error("holds no picture", {path.string()});
-  return image::rgb8_from_picture(frame->picture);
+  return std::move(frame->picture);
+}
+
+}  // namespace
+
+image::Rgb8 read_still(const fs::path& path) {
+  return image::rgb8_from_picture(first_picture(path));
 }
 
 std::string jpeg_of(const image::Rgb8& rgb, int quality) {
@@ -205,8 +214,37 @@ void write_still(const fs::path& path, const image::Picture& picture, Flush flus
   write_file(path, encoded(jpeg_frame(picture), kQuality, path), flush);
 }
 
+namespace {
+
+// 255 where a pixel of a mask's picture is light, else 0.
+std::uint8_t free_at(int red, int green, int blue) {
+  return (red + 2 * green + blue) / 4 >= 128 ? 255 : 0;
+}
+
+// R'G'B' is read where it lies: its planes are G, B and R.
+void fill_mask(const image::Picture& picture, image::Mask& mask) {
+  const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
+  const image::Rgb8 packed = is_rgb ? image::Rgb8{} : image::rgb8_from_picture(picture);
+  const auto width = static_cast<std::size_t>(picture.width);
+  for (int y = 0; y < picture.height; ++y) {
+    auto* row = &mask.free[static_cast<std::size_t>(y) * width];
+    if (is_rgb) {
+      const std::uint8_t* green = picture.planes[0].row(y);
+      const std::uint8_t* blue = picture.planes[1].row(y);
+      const std::uint8_t* red = picture.planes[2].row(y);
+      for (std::size_t x = 0; x < width; ++x) row[x] = free_at(red[x], green[x], blue[x]);
+    } else {
+      const std::uint8_t* rgb = packed.at(0, y);
+      for (std::size_t x = 0; x < width; ++x)
+        row[x] = free_at(rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]);
+    }
+  }
+}
+
+}  // namespace
+
 image::Mask read_mask(const fs::path& path, int width, int height) {
-  const image::Rgb8 picture = read_still(path);
+  const image::Picture picture = first_picture(path);
   if (picture.width != width || picture.height != height)
     throw Error("is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
                     "; expected the video's " + std::to_string(width) + "x" +
@@ -216,12 +254,8 @@ image::Mask read_mask(const fs::path& path, int width, int height) {
   mask.width = width;
   mask.height = height;
   mask.free.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  bool any = false;
-  for (std::size_t i = 0; i < mask.free.size(); ++i) {
-    const std::uint8_t* p = picture.samples.get() + 3 * i;
-    mask.free[i] = (int(p[0]) + 2 * int(p[1]) + int(p[2])) / 4 >= 128 ? 255 : 0;
-    any = any || mask.free[i] != 0;
-  }
+  fill_mask(picture, mask);
+  const bool any = std::any_of(mask.free.begin(), mask.free.end(), [](auto v) { return v != 0; });
   if (!any)
     throw Error(
         "is black all over: the own aircraft would hide everything; expected white where the sky "

@@ -2,10 +2,13 @@
 #include "sequence/surroundings/ambient.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
 #include "picture/render/renderer.h"
@@ -47,60 +50,77 @@ float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
-// Direction of a pixel of the frame in world axes; empty where the lens has no direction.
-std::optional<Vector3> direction_of(const projection::Sight& sight,
-                                    const Homography& nominal_from_frame,
-                                    int x,
-                                    int y) {
-  const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
-  if (!(nominal.z() > 0)) return std::nullopt;
-  const auto ray =
-      sight.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
-  if (!ray) return std::nullopt;
-  return (sight.cam_from_world.rotation.conjugate() * *ray).normalized();
+int grid_step(const image::Picture& picture) {
+  return std::max(1, std::max(picture.width, picture.height) / kGrid);
 }
 
+// Calls visit(x, y) with the middle of each block.
+template <typename Visit>
+void each_block(const image::Picture& picture, const Visit& visit) {
+  const int step = grid_step(picture);
+  for (int y = step / 2; y < picture.height; y += step)
+    for (int x = step / 2; x < picture.width; x += step) visit(x, y);
+}
+
+// The rays of the blocks in the nominal camera.
+std::vector<std::optional<Vector3>> rays_of(const image::Picture& picture,
+                                            const lens::Lens& lens,
+                                            const Homography& nominal_from_frame) {
+  std::vector<std::optional<Vector3>> rays;
+  each_block(picture, [&](int x, int y) {
+    const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
+    rays.push_back(nominal.z() > 0
+                       ? lens.ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()})
+                       : std::nullopt);
+  });
+  return rays;
+}
+
+// The part of the picture whose blocks count more.
+std::optional<PixelBox> surroundings_of(const std::optional<PixelBox>& near, int step) {
+  if (!near) return std::nullopt;
+  const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
+  return PixelBox{
+      near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
+}
+
+// `rays`: as rays_of().
 std::vector<Block> blocks_of(const image::Picture& picture,
                              const image::ToneCurve& tone,
                              const image::Mask* own_aircraft,
-                             const projection::Sight& sight,
+                             const std::vector<std::optional<Vector3>>& rays,
+                             const Quaternion& world_from_cam,
                              const std::optional<PixelBox>& near) {
   const image::ColourCode code(picture.colour);
-  const int step = std::max(1, std::max(picture.width, picture.height) / kGrid);
-  std::optional<PixelBox> around;
-  if (near) {
-    const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
-    around = PixelBox{
-        near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
-  }
-  const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
+  const std::optional<PixelBox> around = surroundings_of(near, grid_step(picture));
   std::vector<Block> blocks;
-  blocks.reserve(
-      static_cast<std::size_t>((picture.width / step + 1) * (picture.height / step + 1)));
-  for (int y = step / 2; y < picture.height; y += step) {
-    for (int x = step / 2; x < picture.width; x += step) {
-      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
-      Block block;
-      block.linear = image::linear_at(picture, code, x, y, tone);
-      block.brightness = brightness(block.linear);
-      block.weight = around && around->contains(x, y) ? 4.0f : 1.0f;
-      block.direction = direction_of(sight, nominal_from_frame, x, y);
-      if (!block.direction) block.weight = 0;
-      blocks.push_back(block);
-    }
-  }
+  blocks.reserve(rays.size());
+  std::size_t i = 0;
+  each_block(picture, [&](int x, int y) {
+    const std::optional<Vector3>& ray = rays[i++];
+    if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) return;
+    Block block;
+    block.linear = image::linear_at(picture, code, x, y, tone);
+    block.brightness = brightness(block.linear);
+    block.weight = !ray ? 0.0f : around && around->contains(x, y) ? 4.0f : 1.0f;
+    if (ray) block.direction = (world_from_cam * *ray).normalized();
+    blocks.push_back(block);
+  });
   return blocks;
 }
 
 // Blocks of one brightness keep their order.
 std::vector<Block> by_brightness(const std::vector<Block>& blocks) {
-  std::vector<std::pair<float, std::size_t>> order;
+  // The bits of numbers from 0 on, as integers, are in the order of the numbers.
+  std::vector<std::uint64_t> order;
   order.reserve(blocks.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i) order.emplace_back(blocks[i].brightness, i);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    order.push_back((std::uint64_t{std::bit_cast<std::uint32_t>(blocks[i].brightness)} << 32) | i);
   std::sort(order.begin(), order.end());
   std::vector<Block> sorted;
   sorted.reserve(blocks.size());
-  for (const auto& [ignored, i] : order) sorted.push_back(blocks[i]);
+  for (const std::uint64_t entry : order)
+    sorted.push_back(blocks[static_cast<std::uint32_t>(entry)]);
   return sorted;
 }
 
@@ -314,7 +334,9 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   const bool all_stated =
       light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
   if (all_stated) return with_scene({});
-  const std::vector<Block> blocks = blocks_of(picture, tone_, own_aircraft_, sight, near);
+  follow_rays(picture, sight);
+  const std::vector<Block> blocks = blocks_of(
+      picture, tone_, own_aircraft_, rays_, sight.cam_from_world.rotation.conjugate(), near);
   std::vector<Rgb> colours;
   colours.reserve(blocks.size());
   for (const Block& block : blocks) colours.push_back(block.linear);
@@ -328,6 +350,16 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   blend(smooth_->ground, now.ground);
   blend(smooth_->airlight, now.airlight);
   return with_scene(*smooth_);
+}
+
+void AmbientEstimator::follow_rays(const image::Picture& picture, const projection::Sight& sight) {
+  const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
+  const lens::ImageSize size{picture.width, picture.height};
+  check(rays_.empty() || size == rays_size_, "frames keep their size");
+  if (!rays_.empty() && nominal_from_frame == rays_nominal_from_frame_) return;
+  rays_ = rays_of(picture, *sight.lens, nominal_from_frame);
+  rays_nominal_from_frame_ = nominal_from_frame;
+  rays_size_ = size;
 }
 
 void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {

@@ -51,9 +51,9 @@ class AmbientEstimator {
                    const image::ToneCurve& tone,
                    const image::Mask* own_aircraft);
 
-  // Takes the frames in order. `near` is the box of the intruders, where one is in view.
-  // `begins_shot` is true where the light differs from the previous frame's; the result is then not
-  // smoothed across the two.
+  // Takes the frames in order, all of one size and through one lens. `near` is the box of the
+  // intruders, where one is in view. `begins_shot` is true where the light differs from the
+  // previous frame's; the result is then not smoothed across the two.
   Ambient next(const image::Picture& picture,
                const projection::Sight& sight,
                const std::optional<PixelBox>& near,
@@ -61,6 +61,7 @@ class AmbientEstimator {
 
  private:
   Ambient with_scene(Ambient measured) const;
+  void follow_rays(const image::Picture& picture, const projection::Sight& sight);
   void follow_exposure(const std::vector<std::array<float, 3>>& blocks);
 
   scene::Light light_;
@@ -69,6 +70,10 @@ class AmbientEstimator {
   Skies skies_;
   std::optional<Ambient> smooth_;
   std::vector<std::array<float, 3>> blocks_before_;
+  // The rays of the blocks in the nominal camera, which stay as long as the homography does.
+  std::vector<std::optional<Vector3>> rays_;
+  Homography rays_nominal_from_frame_ = Homography::Identity();
+  lens::ImageSize rays_size_;
 };
 
 }  // namespace airtruth::sequence

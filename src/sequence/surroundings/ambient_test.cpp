@@ -112,5 +112,20 @@ TEST(Ambient, ACutBeginsTheLightAnew) {
   EXPECT_GT(after(false), 2 * truth);
 }
 
+// The second frame shows the same picture turned about: what was low in it is high in the sky.
+// After a cut nothing else of the first frame is left.
+TEST(Ambient, DirectionsFollowTheFramesHomography) {
+  const ClearSky clear(20, 90, 40);
+  projection::Sight turned = clear.sight;
+  turned.frame_from_nominal << -1, 0, kSkySize, 0, -1, kSkySize, 0, 0, 1;
+  const auto alone = [&](const projection::Sight& sight) {
+    return AmbientEstimator(clear.light, {}, nullptr).next(clear.picture, sight, {}).blue[1];
+  };
+  AmbientEstimator estimator(clear.light, {}, nullptr);
+  estimator.next(clear.picture, clear.sight, {});
+  EXPECT_FLOAT_EQ(estimator.next(clear.picture, turned, {}, true).blue[1], alone(turned));
+  EXPECT_GT(std::abs(alone(turned) / alone(clear.sight) - 1), 0.02);
+}
+
 }  // namespace
 }  // namespace airtruth::sequence

@@ -17,12 +17,10 @@ double sine(double elevation_deg) {
   return std::sin(radians(std::clamp(elevation_deg, kLowestSunDeg, 90.0)));
 }
 
-double elevation_deg(const Vector3& direction) {
-  return degrees(std::asin(std::clamp(-direction.z(), -1.0, 1.0)));
-}
+double sine_of_elevation(const Vector3& direction) { return std::clamp(-direction.z(), -1.0, 1.0); }
 
-double angle_deg(const Vector3& a, const Vector3& b) {
-  return degrees(std::acos(std::clamp(a.dot(b), -1.0, 1.0)));
+double cosine_between(const Vector3& a, const Vector3& b) {
+  return std::clamp(a.dot(b), -1.0, 1.0);
 }
 
 Environment grey(const std::function<double(const Vector3&)>& radiance) {
@@ -52,28 +50,24 @@ double level_of(const Luminance& luminance) {
   return sum / (kElevations * kAzimuths);
 }
 
-constexpr double kLowestSeenDeg = 3;
-constexpr double kNearestSunSeenDeg = 20;
+const double kLowestSeenSine = std::sin(radians(3));
+const double kNearestSunSeenCosine = std::cos(radians(20));
 
-// Luminance of the clear sky (Perez et al. 1993, equation 1), by the cosine of the angle from the
-// zenith and by the angle from the sun in radians. The parameters are those of Preetham et al.
-// 1999, table 2, at turbidity 2.5.
-double perez(double cosine, double gamma) {
+// Luminance of the clear sky (Perez et al. 1993, equation 1), by the sine of the elevation and the
+// cosine of the angle from the sun. The parameters are those of Preetham et al. 1999, table 2, at
+// turbidity 2.5.
+double perez(double sine, double cosine_from_sun) {
   constexpr double a = -1.0163, b = -0.4610, c = 5.2684, d = -2.2756, e = 0.2028;
-  const double cosine_gamma = std::cos(gamma);
-  return (1 + a * std::exp(b / cosine)) *
-         (1 + c * std::exp(d * gamma) + e * cosine_gamma * cosine_gamma);
+  // The model divides by the sine, which the horizon lacks.
+  constexpr double kMinSine = 0.01;
+  return (1 + a * std::exp(b / std::max(kMinSine, sine))) *
+         (1 + c * std::exp(d * std::acos(cosine_from_sun)) + e * cosine_from_sun * cosine_from_sun);
 }
 
-double clear_at(double elevation_deg, double from_sun_deg) {
-  // The horizon itself has no cosine to divide by.
-  constexpr double kMinCosine = 0.01;
-  return perez(std::max(kMinCosine, std::sin(radians(elevation_deg))), radians(from_sun_deg));
-}
+double clear_at_zenith(double sun_elevation_deg) { return perez(1, sine(sun_elevation_deg)); }
 
-double clear_at_zenith(double sun_elevation_deg) {
-  return perez(1, radians(90 - std::max(sun_elevation_deg, kLowestSunDeg)));
-}
+// Moon and Spencer 1942.
+double overcast_at(double sine) { return (1 + 2 * sine) / 3; }
 
 }  // namespace
 
@@ -88,25 +82,26 @@ double clear_sky_illuminance_klx(double elevation_deg) {
 double overcast_illuminance_klx(double elevation_deg) { return 0.3 + 21 * sine(elevation_deg); }
 
 double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
-  return clear_at(elevation_deg, from_sun_deg) / clear_at_zenith(sun_elevation_deg);
+  return perez(std::sin(radians(elevation_deg)), std::cos(radians(from_sun_deg))) /
+         clear_at_zenith(sun_elevation_deg);
 }
 
 double overcast_over_zenith(double elevation_deg) {
-  return (1 + 2 * std::sin(radians(elevation_deg))) / 3;
+  return overcast_at(std::sin(radians(elevation_deg)));
 }
 
 Skies skies(const Vector3& to_sun_in_world) {
-  const double sun_deg = elevation_deg(to_sun_in_world);
+  const double zenith = clear_at_zenith(degrees(std::asin(sine_of_elevation(to_sun_in_world))));
   const auto clear = [&](const Vector3& d) {
     if (d.z() > 0) return 0.0;
-    return clear_sky_over_zenith(elevation_deg(d), angle_deg(d, to_sun_in_world), sun_deg);
+    return perez(sine_of_elevation(d), cosine_between(d, to_sun_in_world)) / zenith;
   };
   const auto overcast = [](const Vector3& d) {
-    return d.z() > 0 ? 0.0 : overcast_over_zenith(elevation_deg(d));
+    return d.z() > 0 ? 0.0 : overcast_at(sine_of_elevation(d));
   };
   Skies result;
   result.to_sun = to_sun_in_world;
-  result.clear_zenith = clear_at_zenith(sun_deg);
+  result.clear_zenith = zenith;
   result.clear_level = level_of(clear);
   result.overcast_level = level_of(overcast);
   result.clear = grey([&](const Vector3& d) { return clear(d) / result.clear_level; });
@@ -116,13 +111,13 @@ Skies skies(const Vector3& to_sun_in_world) {
 }
 
 double Skies::clear_seen(const Vector3& direction_in_world) const {
-  const double from_sun_deg = std::max(kNearestSunSeenDeg, angle_deg(direction_in_world, to_sun));
-  return clear_at(std::max(kLowestSeenDeg, elevation_deg(direction_in_world)), from_sun_deg) /
+  return perez(std::max(kLowestSeenSine, sine_of_elevation(direction_in_world)),
+               std::min(kNearestSunSeenCosine, cosine_between(direction_in_world, to_sun))) /
          clear_zenith / clear_level;
 }
 
 double Skies::overcast_seen(const Vector3& direction_in_world) const {
-  return overcast_over_zenith(std::max(kLowestSeenDeg, elevation_deg(direction_in_world))) /
+  return overcast_at(std::max(kLowestSeenSine, sine_of_elevation(direction_in_world))) /
          overcast_level;
 }
 
