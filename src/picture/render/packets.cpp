@@ -42,10 +42,12 @@ RTCIntersectContext coherent() {
 void nearest_hits_of_eight(const Placed& placed,
                            std::span<const BodyRay> rays,
                            std::span<const double> dt_s,
+                           std::span<const float> from_m,
                            std::span<std::optional<Hit>> hits) {
   alignas(32) RTCRayHit8 packet;
   alignas(32) Lanes valid;
   set_rays(packet.ray, valid, rays);
+  std::copy(from_m.begin(), from_m.end(), packet.ray.tnear);
   for (std::size_t part = 0; part < placed.model->scenes.size(); ++part) {
     const bool spins = placed.model->mesh.parts[part].moves();
     for (std::size_t i = 0; spins && i < rays.size(); ++i) {
@@ -95,12 +97,24 @@ Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt
 void nearest_hits(const Placed& placed,
                   std::span<const BodyRay> rays,
                   std::span<const double> dt_s,
+                  std::span<const float> from_m,
                   std::span<std::optional<Hit>> hits) {
   std::fill(hits.begin(), hits.end(), std::nullopt);
   for (std::size_t i = 0; i < rays.size(); i += kLanes) {
     const std::size_t n = std::min(kLanes, rays.size() - i);
-    nearest_hits_of_eight(placed, rays.subspan(i, n), dt_s.subspan(i, n), hits.subspan(i, n));
+    nearest_hits_of_eight(placed,
+                          rays.subspan(i, n),
+                          dt_s.subspan(i, n),
+                          from_m.empty() ? from_m : from_m.subspan(i, n),
+                          hits.subspan(i, n));
   }
+}
+
+void nearest_hits(const Placed& placed,
+                  std::span<const BodyRay> rays,
+                  std::span<const double> dt_s,
+                  std::span<std::optional<Hit>> hits) {
+  nearest_hits(placed, rays, dt_s, {}, hits);
 }
 
 void find_blocked(const Model::Impl& model,

@@ -12,8 +12,14 @@
 // tracing").
 namespace airtruth::render {
 
-// The nearest surface along each ray; empty where there is none. Each ray has its own time within
-// the frame, for the parts that spin. The three spans have one length.
+// The nearest surface along each ray from its `from_m` on; empty where there is none. Each ray has
+// its own time within the frame, for the parts that spin. The spans have one length.
+void nearest_hits(const Placed& placed,
+                  std::span<const BodyRay> rays,
+                  std::span<const double> dt_s,
+                  std::span<const float> from_m,
+                  std::span<std::optional<Hit>> hits);
+// The same from the rays' origins on.
 void nearest_hits(const Placed& placed,
                   std::span<const BodyRay> rays,
                   std::span<const double> dt_s,

@@ -2,6 +2,7 @@
 #include "picture/render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -26,7 +27,11 @@ void write_pixel(const Canvas& canvas, std::size_t i, image::Layer& layer) {
   for (std::size_t c = 0; c < 3; ++c) {
     const double opaque =
         sum.opaque_shaded > 0 ? sum.opaque_rgb[c] / sum.opaque_shaded * sum.opaque : 0.0;
-    rgb[c] = static_cast<float>((opaque + sum.translucent_rgb[c]) / n);
+    const double translucent =
+        sum.translucent_shaded > 0
+            ? sum.translucent_rgb[c] / sum.translucent_shaded * sum.translucent
+            : 0.0;
+    rgb[c] = static_cast<float>((opaque + translucent) / n);
   }
   pixel = {rgb[0], rgb[1], rgb[2], static_cast<float>(std::min(1.0, sum.alpha / n))};
   layer.depth_m[i] = static_cast<float>(sum.depth / sum.alpha);
@@ -46,15 +51,16 @@ double area_outside(const View& view, const Tracer& tracer, int actor, const Box
   const double cell = (x1 - x0) * (y1 - y0) / (kAreaSamples * kAreaSamples);
   std::vector<double> rows(kAreaSamples, 0.0);
   tbb::parallel_for(0, kAreaSamples, [&](int row) {
-    std::vector<Fragment> unused;
+    std::array<std::vector<Fragment>, 1> unused;
     for (int column = 0; column < kAreaSamples; ++column) {
       const Pixel p(x0 + (column + 0.5) * (x1 - x0) / kAreaSamples,
                     y0 + (row + 0.5) * (y1 - y0) / kAreaSamples);
       if (p.x() >= 0 && p.y() >= 0 && p.x() < view.width && p.y() < view.height) continue;
       const Vector3 direction = RayGrid::direction(view, p);
       if (!direction.allFinite()) continue;
-      unused.clear();
-      rows[static_cast<std::size_t>(row)] += tracer.collect(actor, {direction, 0, 0}, 1e-3, unused);
+      unused[0].clear();
+      const std::array<Shot, 1> shot{Shot{direction, 0, 0}};
+      rows[static_cast<std::size_t>(row)] += tracer.collect(actor, shot, 1e-3, unused);
     }
   });
   double sum = 0;

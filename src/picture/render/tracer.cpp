@@ -15,6 +15,9 @@ namespace {
 constexpr float kStep = 1e-4f;
 // Footprint of one of the many samples of opacity, as a share of the pixel's side.
 constexpr double kSampleShare = 0.25;
+// How many times as many samples are shaded where the first surface is translucent, as where it is
+// opaque: their colours differ more.
+constexpr int kTranslucentShaded = 2;
 // Largest number of translucent surfaces along one ray.
 constexpr int kMaxLayers = 24;
 
@@ -32,34 +35,6 @@ BodyRay body_ray(const TracedIntruder& actor, const Shot& shot) {
           ? Vector3((between(actor.body_from_world_at, shot.u) * shot.direction).normalized())
           : Vector3(actor.body_from_world * shot.direction);
   return {(eye + actor.start_m * d).cast<float>(), d.cast<float>().normalized()};
-}
-
-std::optional<Hit> nearest_hit(const Placed& placed, const BodyRay& ray, float from, double dt_s) {
-  std::optional<Hit> best;
-  for (std::size_t i = 0; i < placed.model->scenes.size(); ++i) {
-    const bool moves = placed.model->mesh.parts[i].moves();
-    Eigen::Vector3f o = ray.origin;
-    Eigen::Vector3f d = ray.direction;
-    if (moves) {
-      const Eigen::Affine3f here = part_from_body(placed, i, dt_s);
-      o = here * ray.origin;
-      d = here.linear() * ray.direction;
-    }
-    RTCRayHit query{};
-    query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
-    query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
-    query.ray.tnear = from;
-    query.ray.tfar = best ? best->t : INFINITY;
-    query.ray.mask = 0xffffffffu;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect1(placed.model->scenes[i].get(), &context, &query);
-    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-      best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
-  }
-  return best;
 }
 
 // Finds the surfaces that rays meet. A sample that meets none is left out: so close to an edge the
@@ -167,42 +142,73 @@ bool finite(const std::array<Vector3, 4>& corners) {
 
 void Tracer::sample(
     int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const {
-  const PixelShots shots(grid_, x, y);
+  const PixelShots shot_of(grid_, x, y);
   sum.count += to - from;
-  if (!shots.known()) return;
-  const double pixel_rad = shots.pixel_rad();
-  std::vector<Fragment> fragments;
-  for (int i = from; i < to; ++i) {
-    const Shot shot = shots(i);
-    fragments.clear();
+  if (!shot_of.known()) return;
+  const double pixel_rad = shot_of.pixel_rad();
+  std::array<Shot, kTogether> shots;
+  std::array<std::vector<Fragment>, kTogether> fragments;
+  for (int first = from; first < to; first += static_cast<int>(kTogether)) {
+    const std::size_t n = std::min(kTogether, static_cast<std::size_t>(to - first));
+    for (std::size_t i = 0; i < n; ++i) {
+      shots[i] = shot_of(first + static_cast<int>(i));
+      fragments[i].clear();
+    }
+    const auto now = std::span(shots).first(n);
     for (std::size_t a = 0; a < actors_.size(); ++a) {
       if (!actors_[a].pixels || !actors_[a].pixels->contains(x, y)) continue;
-      alone[a] += collect(static_cast<int>(a), shot, pixel_rad, fragments);
+      alone[a] += collect(static_cast<int>(a), now, pixel_rad, std::span(fragments).first(n));
     }
-    if (!fragments.empty()) add(shot, pixel_rad, fragments, sum, coverage);
+    for (std::size_t i = 0; i < n; ++i)
+      if (!fragments[i].empty()) add(shots[i], pixel_rad, fragments[i], sum, coverage);
   }
 }
 
 double Tracer::collect(int actor_index,
-                       const Shot& shot,
+                       std::span<const Shot> shots,
                        double pixel_rad,
-                       std::vector<Fragment>& fragments) const {
+                       std::span<std::vector<Fragment>> fragments) const {
   const TracedIntruder& actor = actors_[static_cast<std::size_t>(actor_index)];
-  const BodyRay ray = body_ray(actor, shot);
-  double through = 1;
-  float from = 0;
-  for (int layer = 0; layer < kMaxLayers; ++layer) {
-    const auto hit = nearest_hit(actor.placed, ray, from, shot.dt_s);
-    if (!hit) break;
-    const double distance = actor.start_m + hit->t;
-    const auto sample_m = static_cast<float>(kSampleShare * distance * pixel_rad);
-    const float alpha = opacity_at(actor.placed, *hit, sample_m);
-    if (alpha > 0) fragments.push_back({distance, actor_index, alpha, *hit});
-    through *= 1.0 - alpha;
-    if (alpha >= 1) break;
-    from = hit->t + kStep;
+  // The rays that go on, with their samples.
+  std::array<BodyRay, kTogether> rays;
+  std::array<double, kTogether> dt_s;
+  std::array<float, kTogether> from_m{};
+  std::array<std::size_t, kTogether> sample;
+  std::array<double, kTogether> through;
+  std::size_t count = shots.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    rays[i] = body_ray(actor, shots[i]);
+    dt_s[i] = shots[i].dt_s;
+    sample[i] = i;
+    through[i] = 1;
   }
-  return 1 - through;
+  std::array<std::optional<Hit>, kTogether> hits;
+  for (int layer = 0; layer < kMaxLayers && count > 0; ++layer) {
+    nearest_hits(actor.placed,
+                 std::span(rays).first(count),
+                 std::span(dt_s).first(count),
+                 std::span(from_m).first(count),
+                 std::span(hits).first(count));
+    std::size_t going_on = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!hits[i]) continue;
+      const Hit& hit = *hits[i];
+      const double distance = actor.start_m + hit.t;
+      const auto sample_m = static_cast<float>(kSampleShare * distance * pixel_rad);
+      const float alpha = opacity_at(actor.placed, hit, sample_m);
+      if (alpha > 0) fragments[sample[i]].push_back({distance, actor_index, alpha, hit});
+      through[sample[i]] *= 1.0 - alpha;
+      if (alpha >= 1) continue;
+      rays[going_on] = rays[i];
+      dt_s[going_on] = dt_s[i];
+      from_m[going_on] = hit.t + kStep;
+      sample[going_on++] = sample[i];
+    }
+    count = going_on;
+  }
+  double stopped = 0;
+  for (std::size_t i = 0; i < shots.size(); ++i) stopped += 1 - through[i];
+  return stopped;
 }
 
 void Tracer::shade_visible(int x, int y, int actor_index, const Visible& visible, Sum& sum) const {
@@ -274,24 +280,30 @@ void Tracer::blend(const Shot& shot,
                    double* coverage) const {
   double through = 1;
   const bool simple = fragments.front().alpha >= 1;
+  const bool shades = simple ? sum.opaque_shaded < counts_.shaded
+                             : sum.translucent_samples_shaded < kTranslucentShaded * counts_.shaded;
+  std::array<double, 3> rgb_sum{};
   for (const Fragment& fragment : fragments) {
     const double share = through * fragment.alpha;
     coverage[static_cast<std::size_t>(fragment.actor)] += share;
     sum.alpha += share;
     sum.depth += share * fragment.distance_m;
-    if (simple) {
-      sum.opaque += share;
-      if (sum.opaque_shaded < counts_.shaded) {
-        const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
-        for (std::size_t c = 0; c < 3; ++c) sum.opaque_rgb[c] += rgb[c];
-        ++sum.opaque_shaded;
-      }
-      return;
+    if (shades) {
+      const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
+      for (std::size_t c = 0; c < 3; ++c) rgb_sum[c] += through * rgb[c];
     }
-    const std::array<float, 3> rgb = colour(shot, pixel_rad, fragment);
-    for (std::size_t c = 0; c < 3; ++c) sum.translucent_rgb[c] += through * rgb[c];
     through *= 1.0 - fragment.alpha;
-    if (through <= 0) return;
+    if (through <= 0) break;
+  }
+  (simple ? sum.opaque : sum.translucent) += 1 - through;
+  if (!shades) return;
+  for (std::size_t c = 0; c < 3; ++c)
+    (simple ? sum.opaque_rgb : sum.translucent_rgb)[c] += rgb_sum[c];
+  if (simple) {
+    ++sum.opaque_shaded;
+  } else {
+    ++sum.translucent_samples_shaded;
+    sum.translucent_shaded += 1 - through;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "picture/render/cover.h"
@@ -77,7 +78,12 @@ struct Sum {
   int opaque_shaded = 0;
   // Sum of the samples' alpha that opaque surfaces contribute, not yet coloured.
   double opaque = 0;
+  // Sum over the shaded samples whose first surface is translucent, with the sum of their alpha.
   std::array<double, 3> translucent_rgb{};
+  double translucent_shaded = 0;
+  int translucent_samples_shaded = 0;
+  // Sum of the alpha of all such samples.
+  double translucent = 0;
   double alpha = 0;
   // Sum weighted by alpha.
   double depth = 0;
@@ -111,12 +117,13 @@ class Tracer {
   // each actor.
   void sample(int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const;
 
-  // Returns the share of a sample's light that this actor alone would stop, and appends its
-  // surfaces to `fragments`.
+  // Returns the sum over the samples of the share of light that this actor alone would stop, and
+  // appends its surfaces to each sample's fragments. The spans have one length, up to kTogether.
   double collect(int actor,
-                 const Shot& shot,
+                 std::span<const Shot> shots,
                  double pixel_rad,
-                 std::vector<Fragment>& fragments) const;
+                 std::span<std::vector<Fragment>> fragments) const;
+  static constexpr std::size_t kTogether = 32;
 
   // Computes the light and the distance of a pixel from the surfaces that one opaque actor shows
   // there.
