@@ -48,11 +48,13 @@ class Silhouette::PixelCover {
     std::fill_n(nearest_.triangle.begin(), samples, -1);
   }
 
-  void look() {
+  // only_opaque: looks at triangles of that kind alone; empty: at all.
+  void look(std::optional<bool> only_opaque = {}) {
     if (!silhouette_.is_known(pixel_.x, pixel_.y)) return;
     for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
       const std::uint32_t i = entry.triangle;
       const Triangle& triangle = silhouette_.triangles_[i];
+      if (only_opaque && triangle.opaque != *only_opaque) continue;
       // All others are hidden too.
       if (open_ == 0 && (side_ == 0 || triangle.nearest < hidden_)) break;
       if (triangle.planes != kNone)
@@ -270,6 +272,16 @@ void Silhouette::cover(int x, int y, int samples, Cover& result) const {
   pixel.cover(samples, result);
   pixel.look();
   pixel.finish(result);
+}
+
+void Silhouette::cover_mixed(int x, int y, int samples, Cover& opaque, Cover& translucent) const {
+  for (const bool is_opaque : {true, false}) {
+    Cover& result = is_opaque ? opaque : translucent;
+    PixelCover pixel(*this, x, y);
+    pixel.cover(samples, result);
+    pixel.look(is_opaque);
+    pixel.finish(result);
+  }
 }
 
 int Silhouette::cover_and_see(

@@ -117,6 +117,10 @@ class Refiner {
       return;
     }
     const Silhouette& silhouette = *silhouettes_[static_cast<std::size_t>(only)];
+    if (silhouette.touch(x, y) == Silhouette::Touch::kMixed) {
+      mixed(x, y, only);
+      return;
+    }
     const bool sees = counts_.sees && silhouette.touch(x, y) == Silhouette::Touch::kOpaque;
     thread_local Visible visible;
     thread_local Cover found;
@@ -135,10 +139,38 @@ class Refiner {
     if (counts_.at_once) outline(x, y, only, &found);
   }
 
+  // A pixel in which an aircraft has translucent surfaces, too.
+  void mixed(int x, int y, int only) {
+    thread_local Cover opaque;
+    thread_local Cover translucent;
+    const Silhouette& silhouette = *silhouettes_[static_cast<std::size_t>(only)];
+    int samples = counts_.at_once ? counts_.outline : kRoughCover;
+    silhouette.cover_mixed(x, y, samples, opaque, translucent);
+    const bool is_even =
+        opaque.covered == samples || (opaque.covered == 0 && translucent.covered == 0);
+    // Each sample that only a translucent surface covers costs a ray.
+    const int edge = std::min(counts_.outline / 2, 2 * counts_.edge);
+    if (!is_even && samples < edge) {
+      samples = edge;
+      silhouette.cover_mixed(x, y, samples, opaque, translucent);
+    }
+    const std::size_t i = canvas_.index(x, y);
+    if (!tracer_.sample_mixed(x, y, only, opaque, translucent, canvas_.sums[i])) {
+      forget(x, y, only);
+      sample_pixel(tracer_, canvas_, x, y, 0, counts_.edge);
+      return;
+    }
+    const std::size_t of_actor = i * canvas_.actors + static_cast<std::size_t>(only);
+    canvas_.coverage[of_actor] = canvas_.alone[of_actor] = canvas_.sums[i].alpha;
+  }
+
   void refine(int x, int y, const std::vector<std::uint8_t>& kind) {
     const int only = only_actor(x, y);
     if (only == kNobody) return;
     const bool edge = on_edge(canvas_, kind, x, y);
+    if (only != kRays &&
+        silhouettes_[static_cast<std::size_t>(only)]->touch(x, y) == Silhouette::Touch::kMixed)
+      return;
     if (only == kRays) {
       if (edge) refine_by_rays(x, y, kind[canvas_.index(x, y)]);
       return;

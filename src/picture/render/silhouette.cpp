@@ -171,7 +171,7 @@ bool Silhouette::place(const std::vector<Corners>& corners,
 void Silhouette::add_disc(const Reach& reach, std::vector<Reach>& reaches) {
   if (reach.empty()) return;
   Triangle triangle;
-  triangle.opaque = false;
+  triangle.is_disc = true;
   triangles_.push_back(triangle);
   reaches.push_back(reach);
 }
@@ -262,9 +262,12 @@ void Silhouette::sort_by_pixel(const std::vector<Reach>& reaches) {
   };
   each([&](std::size_t pixel, const RowSpan& row) {
     ++first_[pixel + 1];
-    if (!triangles_[row.triangle].opaque)
+    const Triangle& triangle = triangles_[row.triangle];
+    if (triangle.is_disc)
       touch_[pixel] = Touch::kRays;
-    else if (!triangles_[row.triangle].has_depth && touch_[pixel] == Touch::kNone)
+    else if (!triangle.opaque && touch_[pixel] != Touch::kRays)
+      touch_[pixel] = Touch::kMixed;
+    else if (!triangle.has_depth && touch_[pixel] == Touch::kNone)
       touch_[pixel] = Touch::kOpaqueByRays;
   });
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {

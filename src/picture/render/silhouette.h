@@ -37,7 +37,7 @@ namespace airtruth::render {
 
 class Silhouette {
  public:
-  enum class Touch { kNone, kOpaque, kOpaqueByRays, kRays };
+  enum class Touch { kNone, kOpaque, kOpaqueByRays, kMixed, kRays };
 
   // Sorts the actor's triangles by the pixels of the patch that they can touch. The object keeps
   // references to `actor` and `grid`. sees: whether see() will be called.
@@ -49,13 +49,17 @@ class Silhouette {
 
   // The content of a pixel: kNone, no part of the aircraft; kOpaque, only opaque triangles, few
   // enough for cover() to be faster than rays; kOpaqueByRays, the same, but see() does not know the
-  // depth of each; kRays, anything else.
+  // depth of each; kMixed, opaque triangles and translucent ones; kRays, anything else.
   Touch touch(int x, int y) const;
 
   // Covers the samples of a pixel of the kind kOpaque. No sample is covered where the lens lacks a
   // direction for some part of the pixel. samples: a multiple of PixelSamples::kCells^2, up to
   // PixelSamples::kMost.
   void cover(int x, int y, int samples, Cover& result) const;
+
+  // Covers the samples of a pixel of the kind kMixed by its opaque triangles and by its translucent
+  // ones.
+  void cover_mixed(int x, int y, int samples, Cover& opaque, Cover& translucent) const;
 
   // Finds the visible surfaces of a pixel of the kind kOpaque by a depth buffer over some of its
   // samples (PixelSamples::fill_cells()). Returns the number of the samples that are covered.
@@ -83,6 +87,8 @@ class Silhouette {
     // No later triangle is nearer.
     float nearest = std::numeric_limits<float>::infinity();
     bool opaque = true;
+    // A part that spins, of which only its reach is known.
+    bool is_disc = false;
     bool has_depth = false;
   };
 

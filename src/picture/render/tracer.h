@@ -106,6 +106,8 @@ struct Visible;
 
 // Traces rays (Embree) and accumulates the surfaces that they meet.
 class Tracer {
+  friend class MixedPixel;
+
  public:
   Tracer(const Light& light,
          const std::vector<TracedIntruder>& actors,
@@ -116,6 +118,13 @@ class Tracer {
   // Adds the samples [from, to) of a pixel to `sum`. `coverage` and `alone` hold one number for
   // each actor.
   void sample(int x, int y, int from, int to, Sum& sum, double* coverage, double* alone) const;
+
+  // Sets the sum of a pixel in which one actor has translucent surfaces. opaque, translucent: the
+  // samples that surfaces of either kind cover. A sample that opaque ones cover is opaque as a
+  // whole: rays are traced through some of those, for the colour, and through all others. Returns
+  // false where none of the rays hits.
+  bool sample_mixed(
+      int x, int y, int actor, const Cover& opaque, const Cover& translucent, Sum& sum) const;
 
   // Returns the sum over the samples of the share of light that this actor alone would stop, and
   // appends its surfaces to each sample's fragments. The spans have one length, up to kTogether.

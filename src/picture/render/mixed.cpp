@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "picture/render/tracer.h"
+
+// The pixels in which an aircraft has translucent surfaces (Tracer::sample_mixed).
+namespace airtruth::render {
+namespace {
+
+// How many times as many samples are shaded where a surface is translucent as where all are opaque:
+// their colours differ more.
+constexpr int kTranslucentShaded = 2;
+
+// How many samples that are opaque as a whole are traced, for the mean distance.
+constexpr int kTraced = 64;
+
+// Samples of one kind.
+struct Pool {
+  // Of all samples.
+  double alpha = 0;
+  // Sums over the traced samples, and over the shaded ones.
+  double traced_alpha = 0;
+  double depth = 0;
+  double shaded_alpha = 0;
+  std::array<double, 3> rgb{};
+  int shaded = 0;
+  int traced = 0;
+};
+
+// A sample that is to be traced.
+struct Asked {
+  int sample;
+  bool is_translucent;
+  bool is_covered;  // by an opaque surface
+  bool shades;
+};
+
+}  // namespace
+
+class MixedPixel {
+ public:
+  MixedPixel(const Tracer& tracer, const PixelShots& shots, int actor, int shaded)
+      : tracer_(tracer), shots_(shots), actor_(actor), shaded_(shaded) {}
+
+  void add(int sample, bool is_covered, bool is_translucent) {
+    Pool& pool = is_translucent ? translucent_ : opaque_;
+    const bool shades = pool.shaded < (is_translucent ? kTranslucentShaded * shaded_ : shaded_);
+    if (is_covered) pool.alpha += 1;
+    if (shades) ++pool.shaded;
+    if (is_covered && !shades && pool.traced >= kTraced) return;
+    ++pool.traced;
+    asked_[count_++] = {sample, is_translucent, is_covered, shades};
+    if (count_ == asked_.size()) trace();
+  }
+
+  // Returns false where no ray meets what the outlines cover.
+  bool finish(Sum& sum) {
+    trace();
+    sum.alpha = opaque_.alpha + translucent_.alpha;
+    if (sum.alpha > 0 && !(opaque_.shaded_alpha + translucent_.shaded_alpha > 0)) return false;
+    for (const Pool* kind : {&opaque_, &translucent_}) {
+      const Pool& pool = *kind;
+      if (!(pool.alpha > 0)) continue;
+      // So close to an edge the outlines and the rays may disagree on all of a few samples.
+      const Pool& seen = pool.shaded_alpha > 0 ? pool : kind == &opaque_ ? translucent_ : opaque_;
+      sum.depth += seen.depth / seen.traced_alpha * pool.alpha;
+      for (std::size_t c = 0; c < 3; ++c)
+        sum.translucent_rgb[c] += seen.rgb[c] / seen.shaded_alpha * pool.alpha;
+    }
+    // The colours are weighted already.
+    sum.translucent_shaded = sum.translucent = 1;
+    return true;
+  }
+
+ private:
+  void trace() {
+    const std::size_t n = count_;
+    count_ = 0;
+    std::array<Shot, Tracer::kTogether> shots;
+    for (std::size_t i = 0; i < n; ++i) {
+      shots[i] = shots_(asked_[i].sample);
+      fragments_[i].clear();
+    }
+    tracer_.collect(
+        actor_, std::span(shots).first(n), shots_.pixel_rad(), std::span(fragments_).first(n));
+    for (std::size_t i = 0; i < n; ++i)
+      if (!fragments_[i].empty()) blend(asked_[i], shots[i], fragments_[i]);
+  }
+
+  void blend(const Asked& asked, const Shot& shot, const std::vector<Fragment>& fragments) {
+    Pool& pool = asked.is_translucent ? translucent_ : opaque_;
+    double through = 1;
+    for (const Fragment& fragment : fragments) {
+      pool.depth += through * fragment.alpha * fragment.distance_m;
+      if (asked.shades) {
+        const std::array<float, 3> rgb = tracer_.colour(shot, shots_.pixel_rad(), fragment);
+        for (std::size_t c = 0; c < 3; ++c) pool.rgb[c] += through * rgb[c];
+      }
+      through *= 1.0 - fragment.alpha;
+      if (through <= 0) break;
+    }
+    const double alpha = 1 - through;
+    pool.traced_alpha += alpha;
+    if (asked.shades) pool.shaded_alpha += alpha;
+    if (!asked.is_covered) pool.alpha += alpha;
+  }
+
+  const Tracer& tracer_;
+  const PixelShots& shots_;
+  int actor_;
+  int shaded_;
+  Pool opaque_;
+  Pool translucent_;
+  std::array<Asked, Tracer::kTogether> asked_;
+  std::size_t count_ = 0;
+  std::array<std::vector<Fragment>, Tracer::kTogether> fragments_;
+};
+
+bool Tracer::sample_mixed(
+    int x, int y, int actor, const Cover& opaque, const Cover& translucent, Sum& sum) const {
+  const PixelSamples order(x, y);
+  const PixelShots shots(grid_, x, y);
+  sum.count = opaque.samples();
+  if (!shots.known()) return true;
+  MixedPixel pixel(*this, shots, actor, counts_.shaded);
+  for (int i = 0; i < sum.count; ++i) {
+    const bool is_covered = opaque.covered > 0 && opaque.covers(order, i);
+    const bool is_translucent = translucent.covered > 0 && translucent.covers(order, i);
+    if (!is_covered && !is_translucent) continue;
+    ++sum.hits;
+    pixel.add(i, is_covered, is_translucent);
+  }
+  sum.most = 1;
+  sum.least = opaque.covered == sum.count ? 1 : 0;
+  return pixel.finish(sum);
+}
+
+}  // namespace airtruth::render
