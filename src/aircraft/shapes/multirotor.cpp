@@ -25,6 +25,8 @@ constexpr float kLegBelow = 0.17f;
 // Multirotors below this size stand on a leg under each motor (DJI F450, Hubsan H501), larger ones
 // on skids (DJI S900: 0.9 m).
 constexpr float kLeastWithSkidsM = 0.6f;
+// Radius of a small one's arms: those of an F450 are 4 cm deep for 45 cm between rotors.
+constexpr float kStoutArm = 0.044f;
 
 // Radius of a rotor as a share of the size: neighbours leave a tenth of their distance free.
 float rotor_radius(int rotors) {
@@ -82,8 +84,8 @@ void add_legs(MeshBuilder& builder, float size, std::span<const V> rotors, std::
   for (const V& rotor : rotors) {
     const V top = 0.47f * size * rotor;
     const V foot = 0.50f * size * rotor + V(0, 0, kLegBelow * size);
-    builder.add_tube(top, 0.5f * (top + foot), 0.030f * size, 6, dark);
-    builder.add_tube(0.5f * (top + foot), foot, 0.020f * size, 6, dark);
+    builder.add_tube(top, 0.5f * (top + foot), 0.042f * size, 6, dark);
+    builder.add_tube(0.5f * (top + foot), foot, 0.030f * size, 6, dark);
   }
 }
 
@@ -126,11 +128,14 @@ Mesh multirotor(const MultirotorShape& shape) {
     const V at = 0.5f * size * direction;
     builder.add_tube(V(0, 0, 0) + 0.08f * size * direction,
                      at - V(0, 0, kArmAbove * size),
-                     (has_skids ? 0.020f : 0.028f) * size,
+                     (has_skids ? 0.020f : kStoutArm) * size,
                      8,
                      shell);
-    builder.add_tube(
-        at + V(0, 0, 0.012f * size), at - V(0, 0, 0.07f * size), 0.034f * size, 10, dark);
+    builder.add_tube(at + V(0, 0, 0.012f * size),
+                     at - V(0, 0, 0.07f * size),
+                     (has_skids ? 0.034f : kStoutArm) * size,
+                     10,
+                     dark);
   }
   for (std::size_t k = 0; k < rotors.size(); ++k) {
     const V hub = 0.5f * size * rotors[k] - V(0, 0, kRotorAbove * size);

@@ -170,7 +170,9 @@ class Script {
             "notitle");
       add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
       if (has_whiskers(series))
-        add("using 1:2:3:4 with yerrorbars pt 7 ps 0 lw 1 lc rgb '#333333'", "notitle");
+        // gnuplot's yerrorbars have a white gap in the middle.
+        add("using 1:3:(0):($4-$3) with vectors heads size graph 0.006,90 lw 1 lc rgb '#333333'",
+            "notitle");
     }
     // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";
