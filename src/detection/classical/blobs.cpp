@@ -26,7 +26,8 @@ constexpr double kFaintShare = 0.1;
 // object, and four in one of a hundred.
 constexpr double kFaintNoise = 4;
 constexpr double kBoxNoise = 3;
-// Of a response, which is not bounded on a finer level: half of it is left at a smoothed edge.
+// What belongs to an object that responds, which is not bounded on a finer level: half of the
+// response is left at a smoothed edge.
 constexpr double kResponseShare = 0.5;
 // Closing and opening have noise of their own, which adds to that of the sample: its largest
 // responses are as of this many times the noise (classical_test.cpp).
@@ -99,35 +100,58 @@ std::optional<Blob> against_ring(const std::vector<Level>& levels,
   if (!around) return std::nullopt;
   Blob blob;
   blob.box_px = box_of(*region, fine);
-  const double excess_there = std::abs(level.picture.at<short>(sample) - around->middle);
-  blob.contrast_to_noise = excess_there / std::hypot(around->noise, level.clutter_at(sample));
-  blob.against_ring = excess_there / around->noise;
+  blob.against_ring = std::abs(level.picture.at<short>(sample) - around->middle) / around->noise;
+  blob.contrast_to_noise = blob.against_ring;
   blob.is_dark = sign < 0;
   blob.level = number;
   blob.sample = sample;
   return blob;
 }
 
-// The object at a sample of a level against what closing or opening makes of its place, which
-// follows the edges of clouds and fields: it is found where the ring is no plane.
-std::optional<Blob> against_response(const Level& level,
-                                     std::size_t number,
-                                     const cv::Point& sample) {
+// The connected samples that are as dark (or bright) as a sample that responds, to half of its
+// response. An object must end in the picture: the top of a pole responds, and is part of the pole.
+// A line from border to border ends at neither.
+std::optional<Region> responding_region(const Level& level, const cv::Point& sample, double noise) {
   const double response = level.response.at<short>(sample);
-  const double noise = level.noise_at(sample);
-  const double contrast = response - Level::kMeanResponse * noise;
-  if (contrast <= 0) return std::nullopt;
+  const double sign = level.is_dark.at<std::uint8_t>(sample) != 0 ? -1 : 1;
+  const double without = level.picture.at<short>(sample) - sign * response;
+  const auto excess = [&](const cv::Point& p) {
+    return sign * (level.picture.at<short>(p) - without);
+  };
   const double least = std::max(kResponseShare * response, kBoxNoise * noise);
-  const auto excess = [&](const cv::Point& p) { return double(level.response.at<short>(p)); };
-  const auto region = region_around(level, sample, kReach, excess, least);
-  // A line from border to border ends at neither.
+  auto region = region_around(level, sample, kReach, excess, least);
   const cv::Rect inner(kGap, kGap, level.picture.cols - 2 * kGap, level.picture.rows - 2 * kGap);
   if (!region || (region->samples & inner) != region->samples ||
       std::min(region->samples.width, region->samples.height) > kMostAcross)
     return std::nullopt;
+  return region;
+}
+
+double response_to_noise(const Level& level, const cv::Point& sample, double noise) {
+  const double contrast = level.response.at<short>(sample) - Level::kMeanResponse * noise;
+  return contrast / std::hypot(kResponseNoise * noise, level.clutter_at(sample));
+}
+
+// The object at a sample of a level against what closing or opening makes of its place, which
+// follows the edges of clouds and fields: it is found where the ring is no plane. Its noise is that
+// of the responses in the same ring, or the typical one if that is more, and the clutter. Empty
+// where its score is not above `least`.
+std::optional<Blob> against_response(const Level& level,
+                                     std::size_t number,
+                                     const cv::Point& sample,
+                                     double least) {
+  const double typical = level.noise_at(sample);
+  if (response_to_noise(level, sample, typical) <= least) return std::nullopt;
+  const auto region = responding_region(level, sample, typical);
+  if (!region) return std::nullopt;
+  const cv::Point margin(kGap, kGap);
+  const cv::Rect own(region->samples.tl() - margin, region->samples.br() + margin);
+  const auto noise = noise_of_responses(level, sample, own);
+  if (!noise) return std::nullopt;
   Blob blob;
+  blob.contrast_to_noise = response_to_noise(level, sample, std::max(typical, *noise));
+  if (blob.contrast_to_noise <= least) return std::nullopt;
   blob.box_px = box_of(*region, level);
-  blob.contrast_to_noise = contrast / std::hypot(kResponseNoise * noise, level.clutter_at(sample));
   blob.level = number;
   blob.sample = sample;
   return blob;
@@ -139,9 +163,9 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
                             std::size_t number,
                             const cv::Point& sample) {
   const auto ring = against_ring(levels, number, sample);
-  const auto response = against_response(levels[number], number, sample);
+  const double least = ring ? ring->contrast_to_noise : 0;
+  const auto response = against_response(levels[number], number, sample, least);
   if (!ring || !response) return ring ? ring : response;
-  if (ring->contrast_to_noise >= response->contrast_to_noise) return ring;
   // The ring's box follows the finer level.
   Blob blob = *ring;
   blob.contrast_to_noise = response->contrast_to_noise;

@@ -14,11 +14,12 @@ namespace airtruth::detection {
 
 struct Blob {
   Box box_px;
-  // Contrast of the object's strongest sample to its surroundings over the noise and the clutter
-  // there (their root sum of squares), all in the level's smoothed picture.
+  // How much the object's strongest sample stands out of what is around it, in the level's smoothed
+  // picture: the larger of two measures. One is its contrast to the ring over the noise of the
+  // ring. The other is its response over the noise of the responses there and the clutter (their
+  // root sum of squares).
   double contrast_to_noise = 0;
-  // The same against the ring alone and without clutter, which differs from scale to scale and says
-  // nothing about the object: of several boxes of an object, that of the largest is the best. 0
+  // The first of the two alone: of several boxes of an object, that of the largest is the best. 0
   // where the ring does not bound it.
   double against_ring = 0;
   bool is_dark = false;

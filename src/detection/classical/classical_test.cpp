@@ -103,6 +103,45 @@ TEST(CloseMinusOpen, BoxesOfBarsAreNotWidenedBySmoothing) {
     }
 }
 
+void fill(image::Picture& picture, const cv::Rect& part, int level) {
+  for (int y = part.y; y < part.br().y; ++y)
+    for (int x = part.x; x < part.br().x; ++x)
+      picture.planes[0].row(y)[x] = static_cast<std::uint8_t>(level);
+}
+
+// A long aircraft with windows, engines and a lit tail: neither its parts nor a second one
+// elsewhere lower its score.
+TEST(CloseMinusOpen, ALargeObjectIsNotItsOwnClutter) {
+  const auto strongest = [](bool has_parts, bool has_other) {
+    image::Picture picture = shape({203, 151, 60, 12}, false, 90);
+    if (has_other) fill(picture, {403, 351, 60, 12}, 90);
+    if (has_parts)
+      for (const int x : {205, 220, 232, 246, 258}) fill(picture, {x, 154, 3, 3}, 220);
+    const auto detector = make_classical("cmo");
+    detector->begin(sequence_of(640, 480));
+    double score = 0;
+    for (const Detection& one : detector->detect({0, 0, &picture, true, {}}))
+      if (hits(one, {233, 157}, 30)) score = std::max(score, one.score);
+    return score;
+  };
+  for (const bool has_parts : {false, true}) {
+    EXPECT_NEAR(strongest(has_parts, true), strongest(has_parts, false), 1e-3) << has_parts;
+    EXPECT_GT(strongest(has_parts, true), 0.7 * strongest(false, false)) << has_parts;
+  }
+}
+
+// A slanting antenna on a roof responds, and is part of the house: an object must end.
+TEST(CloseMinusOpen, AnAntennaIsPartOfItsHouse) {
+  const auto detector = make_classical("cmo");
+  for (const int height : {6, 9, 12}) {
+    image::Picture picture = shape({0, 0, 1, 1}, false, 150);
+    fill(picture, {200, 240, 240, 240}, 90);
+    for (int up = 0; up < height; ++up) fill(picture, {300 + up, 239 - up, 3, 1}, 90);
+    detector->begin(sequence_of(640, 480));
+    EXPECT_THAT(detector->detect({0, 0, &picture, true, {}}), testing::IsEmpty()) << height;
+  }
+}
+
 TEST(CloseMinusOpen, DoesNotRespondToEdgesAndLines) {
   const auto detector = make_classical("cmo");
   for (const double slope : {0.0, 0.2, 0.7}) {

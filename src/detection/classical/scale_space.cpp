@@ -83,12 +83,13 @@ cv::Mat without_objects(const cv::Mat& padded, Extreme first, bool with_long) {
   return either;
 }
 
-cv::Mat close_minus_open(const cv::Mat& picture, bool with_long) {
+cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dark) {
   constexpr int kMargin = kLongElement - 1;
   cv::Mat padded, dark, bright;
   cv::copyMakeBorder(picture, padded, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);
   cv::subtract(without_objects(padded, Extreme::kMost, with_long), picture, dark);
   cv::subtract(picture, without_objects(padded, Extreme::kLeast, with_long), bright);
+  cv::compare(dark, bright, is_dark, cv::CMP_GE);
   cv::max(dark, bright, dark);
   return dark;
 }
@@ -182,9 +183,9 @@ Level level_of(cv::Mat picture, int step, const cv::Mat& hidden) {
     // Eight bits take half the time, and the picture has no more.
     cv::Mat samples;
     level.picture.convertTo(samples, CV_8U, 1.0 / kGreyScale);
-    close_minus_open(samples, false).convertTo(level.response, CV_16S, kGreyScale);
+    close_minus_open(samples, false, level.is_dark).convertTo(level.response, CV_16S, kGreyScale);
   } else {
-    level.response = close_minus_open(level.picture, true);
+    level.response = close_minus_open(level.picture, true, level.is_dark);
   }
   if (!hidden.empty()) level.response.setTo(0, hidden);
   cv::Mat mean;

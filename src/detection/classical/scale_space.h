@@ -40,6 +40,8 @@ struct Level {
   // Ford, Mejias and O'Shea (2013) join as close-minus-open. Edges, and lines longer than the
   // elements along rows or columns, do not respond.
   cv::Mat response;
+  // CV_8U, 255 where a sample responds as a dark one, 0 where as a bright one.
+  cv::Mat is_dark;
   // CV_32F, one value for each block: the mean response of the block's surroundings, which follows
   // the noise and the clutter there.
   cv::Mat typical;

@@ -26,4 +26,11 @@ std::optional<Surroundings> surroundings_of(const Level& level,
                                             const cv::Rect& object,
                                             int stride);
 
+// The noise of the level's picture that makes responses as large as those in the same ring: the
+// larger of what their median and their 90 % quantile say. Empty where too few samples lie in the
+// picture.
+std::optional<double> noise_of_responses(const Level& level,
+                                         const cv::Point& centre,
+                                         const cv::Rect& object);
+
 }  // namespace airtruth::detection
