@@ -21,7 +21,8 @@ class Grower {
         reach_(reach),
         side_(2 * reach + 1),
         excess_(excess),
-        least_(least) {}
+        least_(least),
+        hides_(!level.hidden.empty()) {}
 
   std::optional<Region> grown() {
     static thread_local std::vector<cv::Point> open;
@@ -55,7 +56,7 @@ class Grower {
  private:
   bool is_inside(const cv::Point& p) const {
     return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
-           !level_.hides(p);
+           !(hides_ && level_.hides(p));
   }
   bool is_within_reach(const cv::Point& p) const {
     return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) <= reach_;
@@ -93,6 +94,7 @@ class Grower {
   int side_;
   const Excess& excess_;
   double least_;
+  bool hides_;
   double most_ = 0;
   Region region_;
 };
