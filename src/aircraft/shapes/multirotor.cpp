@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,12 @@ std::array<float, 3> floats(const std::array<double, 3>& rgb) {
 constexpr float kArmAbove = 0.02f;  // height of the arms above the middle
 constexpr float kRotorAbove = 0.085f;
 constexpr float kSkidBelow = 0.20f;
+constexpr float kLegBelow = 0.17f;
+// Multirotors below this size stand on a leg under each motor (DJI F450, Hubsan H501), larger ones
+// on skids (DJI S900: 0.9 m).
+constexpr float kLeastWithSkidsM = 0.6f;
+// Radius of a small one's arms: those of an F450 are 4 cm deep for 45 cm between rotors.
+constexpr float kStoutArm = 0.044f;
 
 // Radius of a rotor as a share of the size: neighbours leave a tenth of their distance free.
 float rotor_radius(int rotors) {
@@ -72,6 +79,16 @@ void add_skids(MeshBuilder& builder, float size, std::uint32_t dark) {
   }
 }
 
+// Legs under the motors, in the line of their arms and wider at the top.
+void add_legs(MeshBuilder& builder, float size, std::span<const V> rotors, std::uint32_t dark) {
+  for (const V& rotor : rotors) {
+    const V top = 0.47f * size * rotor;
+    const V foot = 0.50f * size * rotor + V(0, 0, kLegBelow * size);
+    builder.add_tube(top, 0.5f * (top + foot), 0.042f * size, 6, dark);
+    builder.add_tube(0.5f * (top + foot), foot, 0.030f * size, 6, dark);
+  }
+}
+
 // Two blades, twisted and tapered.
 void add_rotor(MeshBuilder& builder, const V& hub, float radius, std::uint32_t dark) {
   for (const float side : {-1.0f, 1.0f}) {
@@ -99,18 +116,26 @@ Mesh multirotor(const MultirotorShape& shape) {
   const std::uint32_t blade = builder.add_material({0.03f, 0.03f, 0.032f});
   builder.begin_part({"airframe", {}});
   add_shell(builder, size, shell, dark);
-  add_skids(builder, size, dark);
   const std::vector<V> rotors = directions(shape.rotors);
+  const bool has_skids = size >= kLeastWithSkidsM;
+  if (has_skids) {
+    add_skids(builder, size, dark);
+  } else {
+    add_legs(builder, size, rotors, dark);
+  }
   const float radius = rotor_radius(shape.rotors) * size;
   for (const V& direction : rotors) {
     const V at = 0.5f * size * direction;
     builder.add_tube(V(0, 0, 0) + 0.08f * size * direction,
                      at - V(0, 0, kArmAbove * size),
-                     0.020f * size,
+                     (has_skids ? 0.020f : kStoutArm) * size,
                      8,
                      shell);
-    builder.add_tube(
-        at + V(0, 0, 0.012f * size), at - V(0, 0, 0.07f * size), 0.034f * size, 10, dark);
+    builder.add_tube(at + V(0, 0, 0.012f * size),
+                     at - V(0, 0, 0.07f * size),
+                     (has_skids ? 0.034f : kStoutArm) * size,
+                     10,
+                     dark);
   }
   for (std::size_t k = 0; k < rotors.size(); ++k) {
     const V hub = 0.5f * size * rotors[k] - V(0, 0, kRotorAbove * size);

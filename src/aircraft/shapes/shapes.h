@@ -50,8 +50,8 @@ struct MultirotorShape {
   std::array<double, 3> colour = {0.05, 0.05, 0.055};
   bool operator==(const MultirotorShape&) const = default;
 };
-// Arms, motors, a shell with a camera below, landing skids, and two-bladed rotors whose tips move
-// at kRotorTipMps.
+// Arms, motors, a shell with a camera below, legs or landing skids, and two-bladed rotors whose
+// tips move at kRotorTipMps.
 Mesh multirotor(const MultirotorShape& shape);
 constexpr double kRotorTipMps = 60;
 

@@ -156,6 +156,23 @@ TEST(Shapes, AMultirotorHasItsSizeAndItsRotors) {
   }
 }
 
+// Its lowest points: the feet of legs under the motors, or skids under the body.
+TEST(Shapes, ASmallMultirotorStandsOnLegsAndALargeOneOnSkids) {
+  for (const double size_m : {0.45, 0.9}) {
+    const Mesh mesh = multirotor({.size_m = size_m});
+    float lowest = 0;
+    for (const Eigen::Vector3f& p : mesh.positions) lowest = std::max(lowest, p.z());
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      if (p.z() < 0.95f * lowest) continue;
+      const double out = double(p.head<2>().norm()) / size_m;
+      if (size_m < 0.6)
+        EXPECT_NEAR(out, 0.5, 0.04);
+      else
+        EXPECT_LT(out, 0.3);
+    }
+  }
+}
+
 TEST(Shapes, ABalloonHasItsDiameter) {
   const Extents size = extents(balloon({.size_m = 0.3}));
   EXPECT_NEAR(size.length_m(), 0.3, 1e-3);

@@ -118,8 +118,9 @@ Plot declared_plot(const Assessment& assessment) {
 
 std::string name_of(const DetectionBin& bin) {
   if (!bin.name.empty()) return bin.name;
-  return std::isfinite(bin.to) ? fmt::format("{}–{}", bin.from, bin.to)
-                               : fmt::format("≥ {}", bin.from);
+  if (!std::isfinite(bin.to)) return fmt::format("≥ {}", bin.from);
+  // A dash beside a minus sign is hard to read.
+  return fmt::format(fmt::runtime(bin.from < 0 ? "{} to {}" : "{}–{}"), bin.from, bin.to);
 }
 
 // The colour of weighted bars beside the plain ones: half way to a light grey, which is seen on

@@ -67,6 +67,17 @@ TEST(DetectionPlots, BinsOfAllDetectorsShareTheirPlaces) {
   EXPECT_EQ(alarms->series[1].x, (std::vector<double>{1}));
 }
 
+TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
+  Assessment assessment = two_detectors();
+  DetectionBin left;
+  left.from = -20, left.to = -10, left.detection = share(0.5, 0.4, 0.6);
+  assessment.detectors[0].by["azimuth_deg"] = {left};
+  const auto plots = detection_plots(assessment);
+  const plot::Plot* by_bearing = plot_named(plots, "by_azimuth_deg");
+  ASSERT_NE(by_bearing, nullptr);
+  EXPECT_EQ(by_bearing->x.names, (std::vector<std::string>{"-20 to -10"}));
+}
+
 // Weighted bars stand beside the plain ones of their detector, where there are any.
 TEST(DetectionPlots, WeightedBarsStandBesideThePlainOnes) {
   Assessment assessment = two_detectors();

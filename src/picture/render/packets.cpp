@@ -90,6 +90,7 @@ void find_blocked_of_eight(const Model::Impl& model,
 
 Eigen::Affine3f part_from_body(const Placed& placed, std::size_t part, double dt_s) {
   if (dt_s == 0) return placed.part_from_body[part];
+  if (!placed.swings[part].empty()) return placed.swings[part].at(dt_s);
   return aircraft::body_from_part(placed.model->mesh.parts[part], placed.time_s + dt_s)
       .inverse(Eigen::Isometry);
 }

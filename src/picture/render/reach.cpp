@@ -50,6 +50,24 @@ BoxBounds bounds_before_plane(const Corners& corners, const Eye& eye, bool& all_
   return bounds;
 }
 
+// Bounds in the frame of an octahedron about the sphere that holds a moving part, at each moment.
+std::optional<Box> bounds_of_disc(const aircraft::Mesh& mesh,
+                                  const aircraft::Part& part,
+                                  const std::vector<Eye>& eyes) {
+  const double reach_m = std::sqrt(3.0) * static_cast<double>(aircraft::reach_m(mesh, part));
+  BoxBounds bounds;
+  for (const Eye& eye : eyes)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Vector3 in_body = part.centre_in_body.cast<double>();
+        in_body[axis] += side * reach_m;
+        const auto pixel = eye.pixel(eye.world_from_body * (in_body - eye.eye_in_body));
+        if (!pixel) return std::nullopt;
+        bounds.add(*pixel);
+      }
+  return bounds.box();
+}
+
 }  // namespace
 
 std::optional<Pixel> Eye::pixel(const Vector3& from_eye_in_world) const {
@@ -140,30 +158,55 @@ Reach reach_over_time(const PixelBox& patch,
     if (second.allFinite()) bulge = std::max(bulge, second.cwiseAbs().maxCoeff() / 8);
   }
   if (all.empty()) return {};
-  const int more = static_cast<int>(std::ceil(std::min(bulge, 1e4)));
-  return {std::max(all.x0 - more, patch.x),
-          std::max(all.y0 - more, patch.y),
-          std::min(all.x1 + more, patch.right()),
-          std::min(all.y1 + more, patch.bottom())};
+  return wider(all, static_cast<int>(std::ceil(std::min(bulge, 1e4))), patch);
 }
 
 Reach reach_of_disc(const PixelBox& patch,
                     const aircraft::Mesh& mesh,
                     const aircraft::Part& part,
                     const std::vector<Eye>& eyes) {
-  const double reach_m = std::sqrt(3.0) * static_cast<double>(aircraft::reach_m(mesh, part));
-  BoxBounds bounds;
-  for (const Eye& eye : eyes)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vector3 in_body = part.centre_in_body.cast<double>();
-        in_body[axis] += side * reach_m;
-        const auto pixel = eye.pixel(eye.world_from_body * (in_body - eye.eye_in_body));
-        if (!pixel) return {patch.x, patch.y, patch.right(), patch.bottom()};
-        bounds.add(*pixel);
-      }
-  const Box box = *bounds.box();
-  return reach_within(patch, {box.x, box.y}, {box.right(), box.bottom()}, 1);
+  const auto box = bounds_of_disc(mesh, part, eyes);
+  if (!box) return {patch.x, patch.y, patch.right(), patch.bottom()};
+  return reach_within(patch, {box->x, box->y}, {box->right(), box->bottom()}, 1);
+}
+
+std::vector<Eye> eyes_of(const TracedIntruder& actor, const View& view, const RayGrid& grid) {
+  std::vector<Eye> eyes;
+  for (int k = actor.moves ? 0 : 1; k < (actor.moves ? 3 : 2); ++k) {
+    const View then = view.at(grid.span().at(k));
+    const auto i = static_cast<std::size_t>(k);
+    eyes.push_back({then,
+                    actor.body_from_world_at[i].transpose(),
+                    actor.eye_in_body_at[i],
+                    then.nominal_from_frame.inverse(),
+                    then.world_from_cam.rotation.conjugate()});
+  }
+  return eyes;
+}
+
+std::optional<int> swing_margin_px(const aircraft::Mesh& mesh,
+                                   const aircraft::Part& part,
+                                   const std::vector<Eye>& eyes,
+                                   double span_s) {
+  if (part.spins) return std::nullopt;
+  // A function is within (T / 2)^3 / (9 sqrt 3) of its largest third derivative from the parabola
+  // through its values at the beginning, the middle and the end of a time T. The place of a point
+  // at distance r from a hinge whose angle is a wave of the rate s and turns at w at most has a
+  // third derivative of at most r (w^3 + 3 w^2 s + w s^2).
+  constexpr double kMostShare = 0.05;
+  const double turn = 2 * kPi * aircraft::fastest_turn_per_s(part);
+  const double wave = 2 * kPi * std::abs(part.beat.strokes_per_s);
+  const double share = std::pow((turn + wave) * span_s / 2, 3) / (9 * std::sqrt(3.0));
+  const auto box = bounds_of_disc(mesh, part, eyes);
+  if (!box || share > kMostShare) return std::nullopt;
+  return static_cast<int>(std::ceil(share * std::max(box->width, box->height) / 2));
+}
+
+Reach wider(const Reach& reach, int more, const PixelBox& patch) {
+  return {std::max(reach.x0 - more, patch.x),
+          std::max(reach.y0 - more, patch.y),
+          std::min(reach.x1 + more, patch.right()),
+          std::min(reach.y1 + more, patch.bottom())};
 }
 
 std::vector<std::uint32_t> largest_first(const std::vector<Reach>& reaches) {

@@ -51,6 +51,9 @@ struct Eye {
   double depth(const Vector3& in_world) const { return (cam_from_world * in_world).z(); }
 };
 
+// The views of a patch's span: three where the actor moves in it, else the middle one.
+std::vector<Eye> eyes_of(const TracedIntruder& actor, const View& view, const RayGrid& grid);
+
 // A box about the triangle's picture. Under a wide lens the sides may bend by at most twice the
 // deviation of their middles.
 Reach reach_of(const PixelBox& patch, const Corners& corners, const Eye& eye);
@@ -66,6 +69,17 @@ Reach reach_of_disc(const PixelBox& patch,
                     const aircraft::Mesh& mesh,
                     const aircraft::Part& part,
                     const std::vector<Eye>& eyes);
+
+// How far in the frame a point of a part that swings on hinges can be from the parabola through its
+// places at the three moments of a span. Empty for a part that spins, and where the span is so long
+// that the parabola tells little.
+std::optional<int> swing_margin_px(const aircraft::Mesh& mesh,
+                                   const aircraft::Part& part,
+                                   const std::vector<Eye>& eyes,
+                                   double span_s);
+
+// A reach with a margin, within the patch.
+Reach wider(const Reach& reach, int more, const PixelBox& patch);
 
 // The indices of reaches by their number of pixels, to a power of two: large triangles cover a
 // pixel early.

@@ -11,6 +11,7 @@
 #include "picture/render/coat.h"
 #include "picture/render/model.h"
 #include "picture/render/skin.h"
+#include "picture/render/swing.h"
 
 namespace airtruth::render {
 
@@ -30,6 +31,8 @@ struct Placed {
   double time_s = 0;
   std::vector<Eigen::Affine3f> part_from_body;  // at that time
   std::vector<Eigen::Affine3f> body_from_part;
+  // By part; without moments for a part that does not swing, and where the span is an instant.
+  std::vector<SwingTable> swings;
 
   const Facet& facet(const Hit& hit) const {
     return model->facets[static_cast<std::size_t>(hit.part)][hit.triangle];

@@ -24,16 +24,7 @@ Silhouette::Silhouette(const TracedIntruder& actor,
                        const RayGrid& grid,
                        bool sees)
     : patch_(patch), grid_(grid), actor_(actor), sees_(sees) {
-  std::vector<Eye> eyes;
-  for (int k = actor.moves ? 0 : 1; k < (actor.moves ? 3 : 2); ++k) {
-    const View then = view.at(grid.span().at(k));
-    const auto i = static_cast<std::size_t>(k);
-    eyes.push_back({then,
-                    actor.body_from_world_at[i].transpose(),
-                    actor.eye_in_body_at[i],
-                    then.nominal_from_frame.inverse(),
-                    then.world_from_cam.rotation.conjugate()});
-  }
+  const std::vector<Eye> eyes = eyes_of(actor, view, grid);
   std::vector<Reach> reaches;
   for (std::size_t part = 0; part < actor.placed.model->mesh.parts.size(); ++part)
     add_part(actor, part, eyes, reaches);
@@ -43,16 +34,20 @@ Silhouette::Silhouette(const TracedIntruder& actor,
 // A vertex is projected when the first triangle asks for it.
 class Silhouette::Vertices {
  public:
-  Vertices(const TracedIntruder& actor, std::size_t part, const std::vector<Eye>& eyes)
+  // `body_from_part`: one for each eye, where the part moves; else one.
+  Vertices(const TracedIntruder& actor,
+           std::vector<Eigen::Affine3f> body_from_part,
+           const std::vector<Eye>& eyes)
       : mesh_(actor.placed.model->mesh),
-        body_from_part_(actor.placed.body_from_part[part]),
+        body_from_part_(std::move(body_from_part)),
         eyes_(eyes),
         seen_(eyes.size(), std::vector<Seen>(mesh_.positions.size())),
         known_(mesh_.positions.size(), false),
         corners_(eyes.size()) {}
 
-  Vector3 in_body(std::uint32_t vertex) const {
-    return Vector3((body_from_part_ * mesh_.positions[vertex]).cast<double>());
+  Vector3 in_body(std::uint32_t vertex, std::size_t eye = 0) const {
+    const Eigen::Affine3f& pose = body_from_part_[std::min(eye, body_from_part_.size() - 1)];
+    return Vector3((pose * mesh_.positions[vertex]).cast<double>());
   }
 
   // The triangle's corners at each moment.
@@ -74,12 +69,12 @@ class Silhouette::Vertices {
     for (std::size_t e = 0; e < eyes_.size(); ++e) {
       Seen& result = seen_[e][vertex];
       result =
-          eyes_[e].look_at(eyes_[e].world_from_body * (in_body(vertex) - eyes_[e].eye_in_body));
+          eyes_[e].look_at(eyes_[e].world_from_body * (in_body(vertex, e) - eyes_[e].eye_in_body));
     }
   }
 
   const aircraft::Mesh& mesh_;
-  const Eigen::Affine3f& body_from_part_;
+  std::vector<Eigen::Affine3f> body_from_part_;
   const std::vector<Eye>& eyes_;
   std::vector<std::vector<Seen>> seen_;
   std::vector<bool> known_;
@@ -117,15 +112,13 @@ void Silhouette::add_part(const TracedIntruder& actor,
                           std::vector<Reach>& reaches) {
   const Model::Impl& model = *actor.placed.model;
   const aircraft::Part& mesh_part = model.mesh.parts[part];
-  // Rays handle a part that spins during the exposure.
   if (actor.moves && mesh_part.moves()) {
-    if (!mesh_part.triangles.empty())
-      add_disc(reach_of_disc(patch_, model.mesh, mesh_part, eyes), reaches);
+    if (!mesh_part.triangles.empty()) add_moving_part(actor, mesh_part, eyes, reaches);
     return;
   }
   const Span& span = grid_.span();
   const double exposure_share = actor.moves ? grid_.exposure_s() / (span.end_s - span.begin_s) : 0;
-  Vertices vertices(actor, part, eyes);
+  Vertices vertices(actor, {actor.placed.body_from_part[part]}, eyes);
   for (std::size_t i = 0; i < mesh_part.triangles.size(); ++i) {
     const std::vector<Corners>& corners = vertices.look_at(mesh_part.triangles[i]);
     const Reach reach = eyes.size() > 1 ? reach_over_time(patch_, corners, eyes)
@@ -142,6 +135,27 @@ void Silhouette::add_part(const TracedIntruder& actor,
     }
     triangles_.push_back(triangle);
     reaches.push_back(reach);
+  }
+}
+
+void Silhouette::add_moving_part(const TracedIntruder& actor,
+                                 const aircraft::Part& part,
+                                 const std::vector<Eye>& eyes,
+                                 std::vector<Reach>& reaches) {
+  const aircraft::Mesh& mesh = actor.placed.model->mesh;
+  const Span& span = grid_.span();
+  const auto margin_px = swing_margin_px(mesh, part, eyes, span.end_s - span.begin_s);
+  if (!margin_px) {
+    add_disc(reach_of_disc(patch_, mesh, part, eyes), reaches);
+    return;
+  }
+  std::vector<Eigen::Affine3f> poses;
+  for (int k = 0; k < 3; ++k)
+    poses.push_back(aircraft::body_from_part(part, actor.placed.time_s + span.at(k)));
+  Vertices vertices(actor, std::move(poses), eyes);
+  for (const aircraft::Triangle& triangle : part.triangles) {
+    const Reach reach = reach_over_time(patch_, vertices.look_at(triangle), eyes);
+    if (!reach.empty()) add_disc(wider(reach, *margin_px, patch_), reaches);
   }
 }
 

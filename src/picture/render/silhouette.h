@@ -108,7 +108,12 @@ class Silhouette {
              double exposure_share,
              const Tolerance& tolerance,
              Triangle& triangle);
-  // Adds a part of the aircraft that only rays can find.
+  // A part that spins or swings during the exposure: rays handle the pixels that it can touch.
+  void add_moving_part(const TracedIntruder& actor,
+                       const aircraft::Part& part,
+                       const std::vector<Eye>& eyes,
+                       std::vector<Reach>& reaches);
+  // Adds pixels that only rays can answer for.
   void add_disc(const Reach& reach, std::vector<Reach>& reaches);
   // The rows of pixels that a triangle can touch.
   struct RowSpan {

@@ -102,6 +102,7 @@ TracedIntruder place(const Instance& instance,
   for (const aircraft::Part& part : model.mesh.parts) {
     actor.placed.body_from_part.push_back(aircraft::body_from_part(part, turned_at_s));
     actor.placed.part_from_body.push_back(actor.placed.body_from_part.back().inverse());
+    actor.placed.swings.push_back(SwingTable::of(part, instance.time_s, span));
   }
   actor.pixels = pixels_to_search(search, view);
   return actor;

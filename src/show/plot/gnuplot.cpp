@@ -170,7 +170,9 @@ class Script {
             "notitle");
       add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
       if (has_whiskers(series))
-        add("using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '#333333'", "notitle");
+        // gnuplot's yerrorbars have a white gap in the middle.
+        add("using 1:3:(0):($4-$3) with vectors heads size graph 0.006,90 lw 1 lc rgb '#333333'",
+            "notitle");
     }
     // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";
@@ -232,6 +234,19 @@ void run(const fs::path& folder, const fs::path& script) {
                 {script.string()});
 }
 
+// Room for the longest name of the legend and the mark beside it, in letters. Longer names than the
+// most lie over the plot.
+std::size_t legend_letters(const Sheet& sheet) {
+  constexpr std::size_t kMark = 4;
+  constexpr std::size_t kLeast = 26;
+  constexpr std::size_t kMost = 50;
+  std::size_t longest = 0;
+  if (!sheet.plots.empty())
+    for (const Series& series : sheet.plots.front().series)
+      longest = std::max(longest, series.name.size());
+  return std::clamp(longest + kMark, kLeast, kMost);
+}
+
 // A folder that is removed at the end.
 struct TemporaryFolder {
   fs::path path;
@@ -265,7 +280,8 @@ std::string gnuplot_script(const Sheet& sheet, Format format, const std::string&
   if (sheet.legend == Legend::kBeside)
     script.command(
         "set key at screen 0.99, screen 0.98 right top vertical maxrows 60 samplen 2 spacing 0.9\n"
-        "set rmargin 26");
+        "set rmargin " +
+        std::to_string(legend_letters(sheet)));
   if (sheet.legend == Legend::kAbove)
     script.command("set key outside above center horizontal samplen 2");
   const auto rows = (static_cast<int>(sheet.plots.size()) + sheet.columns - 1) / sheet.columns;

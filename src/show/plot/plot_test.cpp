@@ -129,7 +129,7 @@ TEST(Gnuplot, ABarHasItsInterval) {
       if (is_near(picture.at(x, y), {51, 51, 51}) && picture.at(x, y)[0] < 70) return true;
     return false;
   };
-  for (const double value : {0.28, 0.45, 0.6, 0.73}) EXPECT_TRUE(is_dark_at(value)) << value;
+  for (const double value : {0.28, 0.45, 0.5, 0.6, 0.73}) EXPECT_TRUE(is_dark_at(value)) << value;
   for (const double value : {0.2, 0.8}) EXPECT_FALSE(is_dark_at(value)) << value;
 }
 
