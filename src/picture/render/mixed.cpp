@@ -7,10 +7,6 @@
 namespace airtruth::render {
 namespace {
 
-// How many times as many samples are shaded where a surface is translucent as where all are opaque:
-// their colours differ more.
-constexpr int kTranslucentShaded = 2;
-
 // How many samples that are opaque as a whole are traced, for the mean distance.
 constexpr int kTraced = 64;
 
@@ -18,13 +14,21 @@ constexpr int kTraced = 64;
 struct Pool {
   // Of all samples.
   double alpha = 0;
-  // Sums over the traced samples, and over the shaded ones.
+  // Of the samples that only translucent surfaces cover, all of which are traced, as is the depth.
+  double alone_alpha = 0;
+  double alone_depth = 0;
+  // Sums over the traced samples that an opaque surface covers, and over all shaded ones.
   double traced_alpha = 0;
   double depth = 0;
   double shaded_alpha = 0;
   std::array<double, 3> rgb{};
   int shaded = 0;
   int traced = 0;
+
+  // The mean distance where an opaque surface is; of a pool in which a ray met something.
+  double covered_m() const {
+    return traced_alpha > 0 ? depth / traced_alpha : alone_depth / alone_alpha;
+  }
 };
 
 // A sample that is to be traced.
@@ -44,7 +48,8 @@ class MixedPixel {
 
   void add(int sample, bool is_covered, bool is_translucent) {
     Pool& pool = is_translucent ? translucent_ : opaque_;
-    const bool shades = pool.shaded < (is_translucent ? kTranslucentShaded * shaded_ : shaded_);
+    const bool shades =
+        pool.shaded < (is_translucent ? Tracer::kTranslucentShaded * shaded_ : shaded_);
     if (is_covered) pool.alpha += 1;
     if (shades) ++pool.shaded;
     if (is_covered && !shades && pool.traced >= kTraced) return;
@@ -63,7 +68,7 @@ class MixedPixel {
       if (!(pool.alpha > 0)) continue;
       // So close to an edge the outlines and the rays may disagree on all of a few samples.
       const Pool& seen = pool.shaded_alpha > 0 ? pool : kind == &opaque_ ? translucent_ : opaque_;
-      sum.depth += seen.depth / seen.traced_alpha * pool.alpha;
+      sum.depth += pool.alone_depth + seen.covered_m() * (pool.alpha - pool.alone_alpha);
       for (std::size_t c = 0; c < 3; ++c)
         sum.translucent_rgb[c] += seen.rgb[c] / seen.shaded_alpha * pool.alpha;
     }
@@ -89,9 +94,10 @@ class MixedPixel {
 
   void blend(const Asked& asked, const Shot& shot, const std::vector<Fragment>& fragments) {
     Pool& pool = asked.is_translucent ? translucent_ : opaque_;
+    double& depth = asked.is_covered ? pool.depth : pool.alone_depth;
     double through = 1;
     for (const Fragment& fragment : fragments) {
-      pool.depth += through * fragment.alpha * fragment.distance_m;
+      depth += through * fragment.alpha * fragment.distance_m;
       if (asked.shades) {
         const std::array<float, 3> rgb = tracer_.colour(shot, shots_.pixel_rad(), fragment);
         for (std::size_t c = 0; c < 3; ++c) pool.rgb[c] += through * rgb[c];
@@ -100,9 +106,13 @@ class MixedPixel {
       if (through <= 0) break;
     }
     const double alpha = 1 - through;
-    pool.traced_alpha += alpha;
     if (asked.shades) pool.shaded_alpha += alpha;
-    if (!asked.is_covered) pool.alpha += alpha;
+    if (asked.is_covered) {
+      pool.traced_alpha += alpha;
+    } else {
+      pool.alone_alpha += alpha;
+      pool.alpha += alpha;
+    }
   }
 
   const Tracer& tracer_;

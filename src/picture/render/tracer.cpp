@@ -13,9 +13,6 @@ namespace {
 constexpr float kStep = 1e-4f;
 // Footprint of one of the many samples of opacity, as a share of the pixel's side.
 constexpr double kSampleShare = 0.25;
-// How many times as many samples are shaded where the first surface is translucent, as where it is
-// opaque: their colours differ more.
-constexpr int kTranslucentShaded = 2;
 // Largest number of translucent surfaces along one ray.
 constexpr int kMaxLayers = 24;
 

@@ -133,6 +133,9 @@ class Tracer {
                  double pixel_rad,
                  std::span<std::vector<Fragment>> fragments) const;
   static constexpr std::size_t kTogether = 32;
+  // How many times as many samples are shaded where the first surface is translucent as where it is
+  // opaque: their colours differ more.
+  static constexpr int kTranslucentShaded = 2;
 
   // Computes the light and the distance of a pixel from the surfaces that one opaque actor shows
   // there.
