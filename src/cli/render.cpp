@@ -100,7 +100,9 @@ void add_render(CLI::App& app, Context& context) {
       "--out,-o", arguments->out, "Folder in which DIR/<name>/ is made (default: here)");
   command->add_flag(
       "--overwrite", arguments->overwrite, "Replace the output folder where it exists");
-  command->add_option("--threads,-j", arguments->threads, "Threads to use (default: all cores)")
+  command
+      ->add_option(
+          "--threads,-j", arguments->threads, "Threads that make frames (default: all cores)")
       ->check(CLI::Range(1, 1024));
   command->add_option(
       "--gpu", arguments->gpu, "chroma-key's OpenGL device: a number, or none for llvmpipe");

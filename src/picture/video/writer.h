@@ -31,7 +31,8 @@ struct WriterOptions {
   int quality = 18;
   // x264's preset, which trades speed against size.
   std::string preset = "veryfast";
-  // Number of encoder threads; 0: the encoder's default.
+  // Number of encoder threads of FFV1 and MJPEG; 0: one for each core. The bytes do not depend on
+  // it. H.264 has a number of its own, on which its bytes do depend.
   int threads = 0;
   // For mp4.
   Encoder encoder = Encoder::kX264;

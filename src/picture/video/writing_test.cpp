@@ -53,16 +53,14 @@ TEST_F(Video, WriterLeavesNothingUnlessFinished) {
   EXPECT_FALSE(fs::exists(part_path(folder_ / "out.mp4")));
 }
 
-TEST_F(Video, SameFramesGiveTheSameFile) {
-  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.4 -c:v libx264 in.mp4");
+TEST_F(Video, SameFramesGiveTheSameFileOnAnyNumberOfThreads) {
+  ffmpeg("-f lavfi -i testsrc2=s=640x480:r=25:d=2 -c:v libx264 in.mp4");
   for (Format format : {Format::kMp4, Format::kMkv, Format::kAvi}) {
     std::vector<std::string> sums;
     for (int round = 0; round < 2; ++round) {
       Reader reader(folder_ / "in.mp4");
       const fs::path out = folder_ / (std::string("out") + extension(format));
-      Writer writer(out,
-                    reader.info(),
-                    {.format = format, .threads = format == Format::kMkv ? 1 + round : 1});
+      Writer writer(out, reader.info(), {.format = format, .threads = 1 + 2 * round});
       while (const auto frame = reader.next()) writer.write(*frame);
       writer.finish();
       sums.push_back(sha256_of_file(out));

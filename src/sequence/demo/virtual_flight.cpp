@@ -35,8 +35,6 @@ void write_flight(const synthetic::Flight& flight,
   video::WriterOptions writer_options;
   writer_options.format = options.format;
   writer_options.quality = options.quality;
-  writer_options.threads =
-      1;  // the same bytes whatever the number of cores; making a frame takes far longer
   video::Writer writer(out, stream_of(what, flight.frame(0)), writer_options);
   using FramePtr = std::shared_ptr<video::Frame>;
   int next = 0;

@@ -32,7 +32,8 @@ struct Progress {
 
 struct Options {
   bool overwrite = false;
-  // Number of threads; 0 means one per core. The annotation's bytes do not depend on it.
+  // Number of threads that make frames; 0 means one per core. No output's bytes depend on it,
+  // unless hardware encodes the video. libx264 has eight threads of its own beside them.
   int threads = 0;
   bool use_cache = true;
   // Folder of the cache for motion, calibrations and openness; empty: the user's own

@@ -203,28 +203,28 @@ TEST_F(Sequence, TheExactAndTheVisibleBoxMeet) {
   EXPECT_EQ(compared, 18);
 }
 
-std::map<std::string, std::string> annotation_bytes(const fs::path& folder) {
+std::map<std::string, std::string> file_bytes(const fs::path& folder) {
   std::map<std::string, std::string> bytes;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".jsonl" || entry.path().extension() == ".xml")
-      bytes[entry.path().filename()] = read_file(entry.path());
+    bytes[entry.path().filename()] = read_file(entry.path());
   return bytes;
 }
 
-TEST_F(Sequence, OneThreadAndTwoWriteTheSameAnnotation) {
-  const scene::Scene scene =
+TEST_F(Sequence, OneThreadAndThreeWriteTheSameFiles) {
+  scene::Scene scene =
       scene_of("threads",
                crossing("a", "738/738-Ryanair", 120) + crossing("b", "c172/news", 60),
                "",
                "[motion]\nmodel = \"homography\"\n");
+  scene.output.video = scene::OutputVideo::kMp4;
   Options options;
   options.threads = 1;
-  const auto with_one = annotation_bytes(rendered(scene, options).folder);
-  options.threads = 2;
+  const auto with_one = file_bytes(rendered(scene, options).folder);
+  options.threads = 3;
   options.overwrite = true;
-  const auto with_two = annotation_bytes(rendered(scene, options).folder);
-  ASSERT_EQ(with_one.size(), 3u);  // truth.jsonl and an XML for each intruder
-  EXPECT_TRUE(with_one == with_two);
+  const auto with_three = file_bytes(rendered(scene, options).folder);
+  ASSERT_EQ(with_one.size(), 6u);  // video, truth, an XML for each intruder, preview, record
+  for (const auto& [name, bytes] : with_one) EXPECT_TRUE(with_three.at(name) == bytes) << name;
 }
 
 TEST_F(Sequence, AFolderThatExistsIsRefusedAndUntouched) {
