@@ -33,12 +33,13 @@ std::pair<double, double> across_band(const std::array<Pixel, 3>& corner, double
 }  // namespace
 
 RowTriangle MovingTriangle::over_row(int y, double u) const {
-  const auto [p, drift] = now({0, y, u});
+  const Now now = this->now({0, y, u});
+  const std::array<Pixel, 3>& p = now.corner;
   RowTriangle row;
-  const Pixel reach = drift.cwiseAbs();
+  const double spread = now.spread_px();
+  const double reach_y = std::abs(now.drift.y()) + spread + kRowMarginPx;
   const double area = across(p[1] - p[0], p[2] - p[0]);
-  const auto [left, right] =
-      across_band(p, -reach.y() - kRowMarginPx, 1 + reach.y() + kRowMarginPx);
+  const auto [left, right] = across_band(p, -reach_y, 1 + reach_y);
   row.is_outside = area == 0 || left > right;
   if (row.is_outside) return row;
   row.left = left;
@@ -46,19 +47,20 @@ RowTriangle MovingTriangle::over_row(int y, double u) const {
   const auto [top, bottom] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
   row.top = static_cast<float>(top);
   row.bottom = static_cast<float>(bottom);
-  row.drift_x = static_cast<float>(drift.x());
-  row.drift_y = static_cast<float>(drift.y());
+  row.drift_x = static_cast<float>(now.drift.x());
+  row.drift_y = static_cast<float>(now.drift.y());
+  row.spread = static_cast<float>(spread);
   const double sign = area > 0 ? 1 : -1;
   for (std::size_t k = 0; k < 3; ++k) {
     const Pixel inward = sign * inward_of(p[k], p[(k + 1) % 3]);
-    const double drifts = inward.dot(drift);
+    const double drifts = inward.dot(now.drift_of_side(k));
     row.side[k] = {drifts - inward.dot(p[k]),
                    inward.x(),
                    static_cast<float>(inward.y()),
                    static_cast<float>(-2 * drifts)};
   }
   if (!has_depth_) return row;
-  const DepthPlane plane = depth_plane(u, p, drift, area);
+  const DepthPlane plane = depth_plane(u, p, now.drift, area);
   row.nearness = {plane.at_corner,
                   plane.slope.x(),
                   static_cast<float>(plane.slope.y()),
@@ -78,7 +80,7 @@ PixelSides RowTriangle::over(int x, PixelDepth* depth) const {
   PixelSides result;
   for (const Side& of : side)
     if (!add_side(at(of), result)) return result;
-  const double reach = std::abs(static_cast<double>(drift_x));
+  const double reach = std::abs(static_cast<double>(drift_x)) + static_cast<double>(spread);
   result.strips = strips_between(left - reach - x, right + reach - x);
   if (depth != nullptr) *depth = {at(nearness), farthest_depth, nearest_depth};
   return result;
@@ -86,7 +88,8 @@ PixelSides RowTriangle::over(int x, PixelDepth* depth) const {
 
 std::pair<int, int> RowTriangle::columns() const {
   if (is_outside) return {0, 0};
-  const double reach = std::abs(static_cast<double>(drift_x)) + kRowMarginPx;
+  const double reach =
+      std::abs(static_cast<double>(drift_x)) + static_cast<double>(spread) + kRowMarginPx;
   return {static_cast<int>(std::floor(left - reach)), static_cast<int>(std::ceil(right + reach))};
 }
 

@@ -120,13 +120,11 @@ void SortedSamples::fill(const PixelSamples& pixel,
   }
 }
 
-SortedSamples::Cells SortedSamples::cells_between(float low,
-                                                  float high,
-                                                  float drift,
-                                                  const Axis& axis) {
+SortedSamples::Cells SortedSamples::cells_between(
+    float low, float high, float drift, float spread, const Axis& axis) {
   // Covers the rounding of places in single precision, in pixels for each pixel of the cells' span.
   constexpr float kRounding = 1e-5F;
-  const float margin = std::abs(drift - axis.drift) + kRounding * (1 + 2 * axis.reach);
+  const float margin = std::abs(drift - axis.drift) + spread + kRounding * (1 + 2 * axis.reach);
   const auto cell = [&](float place) {
     const float at = (place + axis.reach) * axis.per_px;
     return static_cast<int>(std::clamp(at, 0.0F, static_cast<float>(kCells - 1)));
@@ -142,8 +140,10 @@ void SortedSamples::mark(const RowTriangle& triangle,
   const Cells columns = cells_between(static_cast<float>(triangle.left - x),
                                       static_cast<float>(triangle.right - x),
                                       triangle.drift_x,
+                                      triangle.spread,
                                       x_);
-  const Cells rows = cells_between(triangle.top, triangle.bottom, triangle.drift_y, y_);
+  const Cells rows =
+      cells_between(triangle.top, triangle.bottom, triangle.drift_y, triangle.spread, y_);
   std::array<Run, kCells> runs;
   std::size_t count = 0;
   int done = 0;

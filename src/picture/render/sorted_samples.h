@@ -51,7 +51,7 @@ class SortedSamples {
     int first;
     int last;
   };
-  static Cells cells_between(float low, float high, float drift, const Axis& axis);
+  static Cells cells_between(float low, float high, float drift, float spread, const Axis& axis);
   int start(int column, int row) const {
     return starts_[static_cast<std::size_t>(column * kCells + row)];
   }

@@ -116,14 +116,24 @@ std::optional<MovingTriangle> MovingTriangle::of(const std::vector<Corners>& cor
     const double bend = largest(triangle.corner_[k][2]);
     // The next term of the series, where each is smaller than the one before by one factor.
     const double next = bend * bend / largest(triangle.corner_[k][1]);
-    const double bend_in_exposure = exposure_share * exposure_share * bend;
-    if (bend > most_px && !(bend_in_exposure <= most_px && next <= most_px)) return std::nullopt;
+    // A parabola s^2 t^2, with t from -1 to 1, is at most 2/3 s^2 from its mean.
+    const double left_out_px = 2.0 / 3 * exposure_share * exposure_share * bend;
+    if (bend > most_px && !(left_out_px <= most_px && next <= most_px)) return std::nullopt;
   }
+  // At the end of the exposure a corner is half of the difference from where its side puts it.
   for (std::size_t k = 0; k < 3; ++k)
-    if (exposure_share * largest(triangle.corner_[k][1] - triangle.corner_[(k + 1) % 3][1]) >
+    if (0.5 * exposure_share * largest(triangle.corner_[k][1] - triangle.corner_[(k + 1) % 3][1]) >
         most_px)
       return std::nullopt;
   return triangle;
+}
+
+double MovingTriangle::Now::spread_px() const {
+  // The largest distance of a corner from the middle's motion, along one axis. The lines of two
+  // sides of an acute corner meet up to as far again from it.
+  double most = 0;
+  for (const Pixel& of : drift_of) most = std::max(most, largest(of - drift));
+  return 2 * most;
 }
 
 MovingTriangle::Now MovingTriangle::now(const PixelPlace& pixel) const {
@@ -132,16 +142,20 @@ MovingTriangle::Now MovingTriangle::now(const PixelPlace& pixel) const {
   now.drift = Pixel::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     const Thrice<Pixel>& p = corner_[k];
-    now.corner[k] = p[0] - Pixel(pixel.x, pixel.y) + u * (p[1] + u * p[2]);
-    now.drift += half_ / 3 * (p[1] + 2 * u * p[2]);
+    // The mean of u^2 over an exposure is half_^2 / 3 more than its value in the middle.
+    now.corner[k] =
+        p[0] - Pixel(pixel.x, pixel.y) + u * (p[1] + u * p[2]) + half_ * half_ / 3 * p[2];
+    now.drift_of[k] = half_ * (p[1] + 2 * u * p[2]);
+    now.drift += now.drift_of[k] / 3;
   }
   return now;
 }
 
 PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
   PixelSides result;
-  auto [p, drift] = now(pixel);
-  const Pixel reach = drift.cwiseAbs();
+  const Now now = this->now(pixel);
+  const std::array<Pixel, 3>& p = now.corner;
+  const Pixel reach = now.drift.cwiseAbs() + Pixel::Constant(now.spread_px());
   const Pixel low = p[0].cwiseMin(p[1]).cwiseMin(p[2]);
   const Pixel high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   result.is_outside = (low - reach).maxCoeff() > 1 || (high + reach).minCoeff() < 0;
@@ -152,7 +166,7 @@ PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) cons
   const double sign = area > 0 ? 1 : -1;
   for (std::size_t k = 0; k < 3; ++k) {
     const Pixel inward = sign * inward_of(p[k], p[(k + 1) % 3]);
-    const double drifts = inward.dot(drift);
+    const double drifts = inward.dot(now.drift_of_side(k));
     const Straight side{static_cast<float>(drifts - inward.dot(p[k])),
                         static_cast<float>(inward.x()),
                         static_cast<float>(inward.y()),
@@ -160,13 +174,14 @@ PixelSides MovingTriangle::over(const PixelPlace& pixel, PixelDepth* depth) cons
     if (!add_side(side, result)) return result;
   }
   result.strips = strips_between(low.x() - reach.x(), high.x() + reach.x());
-  if (depth != nullptr) *depth = depth_at(pixel.u, p, drift, area);
+  if (depth != nullptr) *depth = depth_at(pixel.u, p, now.drift, area);
   return result;
 }
 
 PixelDepth MovingTriangle::depth_over(const PixelPlace& pixel) const {
-  const auto [p, drift] = now(pixel);
-  return depth_at(pixel.u, p, drift, across(p[1] - p[0], p[2] - p[0]));
+  const Now now = this->now(pixel);
+  const std::array<Pixel, 3>& p = now.corner;
+  return depth_at(pixel.u, p, now.drift, across(p[1] - p[0], p[2] - p[0]));
 }
 
 MovingTriangle::DepthPlane MovingTriangle::depth_plane(double u,
@@ -210,8 +225,9 @@ PixelDepth MovingTriangle::depth_at(double u,
 
 std::array<float, 2> MovingTriangle::weights_at(const PixelPlace& pixel,
                                                 const std::array<float, 3>& place) const {
-  const auto [corner, drift] = now(pixel);
-  const Pixel here = Pixel(place[0], place[1]) - (2.0 * place[2] - 1) * drift;
+  const Now now = this->now(pixel);
+  const std::array<Pixel, 3>& corner = now.corner;
+  const Pixel here = Pixel(place[0], place[1]) - (2.0 * place[2] - 1) * now.drift;
   const double area = across(corner[1] - corner[0], corner[2] - corner[0]);
   std::array<double, 3> weight;
   double sum = 0;
