@@ -49,10 +49,10 @@ struct Tolerance {
 // For its outline.
 // - An arc of 100 px radius deviates from a chord of 1 px by 1/800 px.
 // - The motion: what is left out is 0 in the mean over the exposure, so that alpha is wrong only
-//   where a side passes a pixel's edge, and there by at most an eighth of this (a deviation that
-//   is uniform between -e and e adds e / 4 to the mean of max(0, place)): 1/200, which is less than
-//   the step between the numbers of 256 samples.
-constexpr Tolerance kStraight{1, 0.02};
+//   where a side passes a pixel's edge, and there by at most a quarter of this (a deviation that is
+//   uniform between -e and e adds e / 4 to the mean of max(0, place)): 1/100, which is what the
+//   samples leave.
+constexpr Tolerance kStraight{1, 0.04};
 // For its depth, and for places on it.
 constexpr Tolerance kNearlyStraight{16, 0.5};
 
