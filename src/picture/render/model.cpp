@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "foundation/base/error.h"
+#include "picture/render/closed.h"
 #include "picture/render/openness.h"
 #include "picture/render/openness_cache.h"
 
@@ -228,13 +229,18 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
       facets.push_back(facet_of(mesh, part.triangles[i], opaque[i] != 0));
   }
   impl_->find_sphere();
-  const OpennessCache kept = openness_cache(cache, mesh, device.name);
-  if (auto openness = cached_openness(kept, mesh)) {
-    impl_->openness = std::move(*openness);
+  impl_->find_openness(openness_cache(cache, mesh, device.name));
+  impl_->outward = outward_normals(mesh, impl_->opaque);
+  leave_open_insides(*impl_, impl_->outward);
+}
+
+void Model::Impl::find_openness(const OpennessCache& cache) {
+  if (auto known = cached_openness(cache, mesh)) {
+    openness = std::move(*known);
     return;
   }
-  impl_->openness = model_openness(*impl_);
-  keep_openness(kept, impl_->openness);
+  openness = model_openness(*this);
+  keep_openness(cache, openness);
 }
 
 void Model::Impl::find_sphere() {

@@ -15,6 +15,8 @@
 // Only this module's sources include Embree.
 namespace airtruth::render {
 
+struct OpennessCache;
+
 struct ReleaseDevice {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
@@ -75,6 +77,8 @@ struct Model::Impl {
   std::vector<std::vector<Facet>> facets;  // [part][triangle]
   // By [part][triangle]; 1 where the whole triangle is opaque.
   std::vector<std::vector<std::uint8_t>> opaque;
+  // By [part][triangle]: of outward_normals() and leave_open_insides() in closed.h.
+  std::vector<std::vector<std::int8_t>> outward;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
   Eigen::Vector3d centre_in_body{0, 0, 0};
   // Radius of a sphere about the centre that contains every part at any angle.
@@ -82,6 +86,7 @@ struct Model::Impl {
 
   // Sets the centre and the radius.
   void find_sphere();
+  void find_openness(const OpennessCache& cache);
 };
 
 // The point where a ray meets a part. `t` is the distance along the ray; u and v are barycentric
