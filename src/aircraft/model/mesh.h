@@ -38,9 +38,10 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-// The opacity from which on a surface counts as opaque: 254 / 255, because files round alpha to 8
-// bits.
-constexpr float kOpaque = 0.996f;
+// The opacity from which on a surface counts as opaque: 250 / 255, because painting and packing
+// leave some code values less than 255 in the alpha of paint that hides all behind it. Panes of
+// aircraft have opacities of 0.5 and less.
+constexpr float kOpaque = 0.98f;
 
 struct Material {
   std::array<float, 3> diffuse = {1, 1, 1};   // linear

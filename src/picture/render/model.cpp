@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "picture/render/closed.h"
+#include "picture/render/opaque.h"
 #include "picture/render/openness.h"
 #include "picture/render/openness_cache.h"
 
@@ -92,78 +93,6 @@ Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, b
   facet.material = triangle.material;
   facet.is_opaque = is_opaque;
   return facet;
-}
-
-// Counts a texture's translucent texels in any rectangle (a summed-area table: Crow 1984).
-class TranslucentTexels {
- public:
-  explicit TranslucentTexels(const aircraft::Texture& texture)
-      : texture_(texture),
-        width_(texture.levels.front().width),
-        height_(texture.levels.front().height) {
-    sums_.assign(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1), 0);
-    for (int y = 0; y < height_; ++y) {
-      std::uint32_t row = 0;
-      for (int x = 0; x < width_; ++x) {
-        row += texture.levels.front()
-                   .texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                           static_cast<std::size_t>(x)][3] < aircraft::kOpaque;
-        sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + row;
-      }
-    }
-  }
-
-  // True where a bilinear look-up within the triangle may read a translucent texel. Where the
-  // texture wraps round, the answer is true without a test.
-  bool any(const std::array<Eigen::Vector2f, 3>& uvs) const {
-    Eigen::Vector2f low = uvs[0].cwiseMin(uvs[1]).cwiseMin(uvs[2]);
-    Eigen::Vector2f high = uvs[0].cwiseMax(uvs[1]).cwiseMax(uvs[2]);
-    if (!low.allFinite() || !high.allFinite()) return true;
-    if (texture_.repeat_u) high.x() -= std::floor(low.x()), low.x() -= std::floor(low.x());
-    if (texture_.repeat_v) high.y() -= std::floor(low.y()), low.y() -= std::floor(low.y());
-    const float x0 = std::floor(low.x() * static_cast<float>(width_) - 0.5f);
-    const float y0 = std::floor(low.y() * static_cast<float>(height_) - 0.5f);
-    const float x1 = std::floor(high.x() * static_cast<float>(width_) - 0.5f) + 2;
-    const float y1 = std::floor(high.y() * static_cast<float>(height_) - 0.5f) + 2;
-    if (!(x0 >= 0 && y0 >= 0 && x1 <= static_cast<float>(width_) &&
-          y1 <= static_cast<float>(height_)))
-      return sums_.back() > 0;
-    const auto [l, b, r, t] = std::array{
-        static_cast<int>(x0), static_cast<int>(y0), static_cast<int>(x1), static_cast<int>(y1)};
-    return sums_[at(r, t)] - sums_[at(l, t)] - sums_[at(r, b)] + sums_[at(l, b)] > 0;
-  }
-
- private:
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) +
-           static_cast<std::size_t>(x);
-  }
-  const aircraft::Texture& texture_;
-  int width_;
-  int height_;
-  std::vector<std::uint32_t> sums_;
-};
-
-// By [part][triangle]: 1 where the whole triangle is opaque. A livery's texture has holes in
-// regions that other triangles use as cut-outs.
-std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& mesh) {
-  std::vector<std::unique_ptr<TranslucentTexels>> tables;
-  for (const aircraft::Texture& texture : mesh.textures)
-    tables.push_back(texture.has_translucency ? std::make_unique<TranslucentTexels>(texture)
-                                              : nullptr);
-  std::vector<std::vector<std::uint8_t>> result;
-  for (const aircraft::Part& part : mesh.parts) {
-    std::vector<std::uint8_t>& flags = result.emplace_back();
-    for (const aircraft::Triangle& triangle : part.triangles) {
-      const aircraft::Material& material = mesh.materials[triangle.material];
-      const auto& [a, b, c] = triangle.vertex;
-      const TranslucentTexels* table =
-          material.texture < 0 ? nullptr : tables[static_cast<std::size_t>(material.texture)].get();
-      const bool holes = table != nullptr && table->any({mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
-      flags.push_back(material.opacity >= aircraft::kOpaque && !holes ? 1 : 0);
-    }
-  }
-  return result;
 }
 
 }  // namespace

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/opaque.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+namespace airtruth::render {
+namespace {
+
+constexpr int kSide = 16;
+
+// A texture of kSide x kSide texels whose columns from 8 on are transparent, and one triangle.
+aircraft::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
+  aircraft::Mesh mesh;
+  aircraft::Texture texture;
+  texture.levels.push_back({kSide, kSide, {}});
+  for (int i = 0; i < kSide * kSide; ++i)
+    texture.levels[0].texels.push_back(i % kSide < 8 ? std::array<float, 4>{1, 1, 1, 1}
+                                                     : std::array<float, 4>{0, 0, 0, 0});
+  texture.has_translucency = true;
+  mesh.textures.push_back(texture);
+  mesh.materials.emplace_back();
+  mesh.materials[0].texture = 0;
+  mesh.parts.push_back({.name = "triangle", .triangles = {{{0, 1, 2}, 0}}});
+  for (const Eigen::Vector2f& at : in_texels) {
+    mesh.positions.emplace_back(0, at.x(), at.y());
+    mesh.normals.emplace_back(1, 0, 0);
+    mesh.uvs.push_back(at / kSide);
+  }
+  return mesh;
+}
+
+bool is_opaque(const std::array<Eigen::Vector2f, 3>& in_texels) {
+  return opaque_triangles(mesh_of(in_texels))[0][0] == 1;
+}
+
+using V = Eigen::Vector2f;
+
+TEST(Opaque, ATriangleUpToTheBorderOfItsRegionIsOpaque) {
+  EXPECT_TRUE(is_opaque({V(1, 1), V(8, 1), V(8, 15)}));
+}
+
+TEST(Opaque, ATransparentTexelWithinATriangleIsSeen) {
+  EXPECT_FALSE(is_opaque({V(1, 1), V(8.6F, 7.5F), V(1, 15)}));
+  EXPECT_TRUE(is_opaque({V(1, 1), V(8.4F, 7.5F), V(1, 15)}));
+}
+
+// The box about the triangle has transparent texels, and the triangle has none.
+TEST(Opaque, TransparentTexelsBesideASlantedTriangleDoNotCount) {
+  EXPECT_TRUE(is_opaque({V(1, 1), V(7, 1), V(8.4F, 15)}));
+  EXPECT_FALSE(is_opaque({V(1, 1), V(7, 1), V(12, 15)}));
+}
+
+TEST(Opaque, ATriangleSmallerThanATexelHasThatOfItsMiddle) {
+  EXPECT_TRUE(is_opaque({V(7.6F, 3.1F), V(7.9F, 3.1F), V(7.9F, 3.3F)}));
+  EXPECT_FALSE(is_opaque({V(8.1F, 3.1F), V(8.3F, 3.1F), V(8.3F, 3.3F)}));
+}
+
+TEST(Opaque, ARepeatedTextureIsTheSameEverywhere) {
+  EXPECT_TRUE(is_opaque({V(33, 17), V(40, 17), V(40, 31)}));
+  EXPECT_FALSE(is_opaque({V(41, 17), V(47, 17), V(47, 31)}));
+  // Across the end of the texture.
+  EXPECT_FALSE(is_opaque({V(15, 1), V(18, 1), V(18, 3)}));
+}
+
+TEST(Opaque, PaintThatPackingLeftAShadeTransparentIsOpaque) {
+  aircraft::Mesh mesh = mesh_of({V(1, 1), V(8, 1), V(8, 15)});
+  mesh.materials[0].opacity = 250.5F / 255;
+  EXPECT_EQ(opaque_triangles(mesh)[0][0], 1);
+  mesh.materials[0].opacity = 0.9F;
+  EXPECT_EQ(opaque_triangles(mesh)[0][0], 0);
+}
+
+}  // namespace
+}  // namespace airtruth::render
