@@ -45,21 +45,25 @@ std::vector<V> directions(int rotors) {
   return result;
 }
 
+// The body, 0.52 long, 0.26 wide and 0.26 high with battery and camera. Folded, without rotors, a
+// DJI Mavic Pro, Mavic 2, Mavic Air 2 and Mini 2 are 0.59 to 0.65 long, 0.25 to 0.38 wide with the
+// arms at their sides and 0.24 to 0.28 high; the centre of a DJI F450 with its battery is about 0.3
+// long and wide and as high.
 void add_shell(MeshBuilder& builder, float size, std::uint32_t shell, std::uint32_t dark) {
   const auto ring = [&](float ahead, float half_width, float half_height) {
     return Ring{V(ahead, 0, 0) * size, half_width * size, half_height * size};
   };
-  const std::array<Ring, 6> rings = {ring(0.225f, 0.045f, 0.030f),
-                                     ring(0.200f, 0.075f, 0.050f),
-                                     ring(0.100f, 0.110f, 0.070f),
-                                     ring(-0.100f, 0.110f, 0.070f),
-                                     ring(-0.190f, 0.080f, 0.055f),
-                                     ring(-0.215f, 0.045f, 0.030f)};
+  const std::array<Ring, 6> rings = {ring(0.260f, 0.060f, 0.035f),
+                                     ring(0.235f, 0.095f, 0.060f),
+                                     ring(0.120f, 0.130f, 0.080f),
+                                     ring(-0.120f, 0.130f, 0.080f),
+                                     ring(-0.225f, 0.100f, 0.065f),
+                                     ring(-0.260f, 0.060f, 0.035f)};
   builder.add_body(rings, V(0, 1, 0), V(0, 0, 1), 12, shell);
   // The battery on top, and the camera with its gimbal below the nose.
-  builder.add_box(V(-0.13f, -0.055f, -0.105f) * size, V(0.08f, 0.055f, -0.055f) * size, dark);
-  builder.add_tube(V(0.15f, 0, 0.05f) * size, V(0.15f, 0, 0.085f) * size, 0.016f * size, 6, dark);
-  builder.add_box(V(0.115f, -0.035f, 0.08f) * size, V(0.195f, 0.035f, 0.135f) * size, dark);
+  builder.add_box(V(-0.16f, -0.070f, -0.115f) * size, V(0.09f, 0.070f, -0.060f) * size, dark);
+  builder.add_tube(V(0.17f, 0, 0.05f) * size, V(0.17f, 0, 0.095f) * size, 0.020f * size, 6, dark);
+  builder.add_box(V(0.125f, -0.050f, 0.085f) * size, V(0.215f, 0.050f, 0.145f) * size, dark);
 }
 
 void add_skids(MeshBuilder& builder, float size, std::uint32_t dark) {

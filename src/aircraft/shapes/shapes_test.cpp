@@ -51,6 +51,34 @@ TEST(Shapes, ABirdHasItsSpanWithStretchedWings) {
   }
 }
 
+// Half of the width of the trunk where it is widest, ahead of the tail.
+float trunk_radius(const Mesh& mesh, double span_m) {
+  float radius = 0;
+  each_point(mesh, mesh.parts[0], 0, [&](const Eigen::Vector3f& p) {
+    if (p.x() > -0.1f * static_cast<float>(span_m)) radius = std::max(radius, p.y());
+  });
+  return radius;
+}
+
+// Frontal areas of 0.00813 m^0.666 m^2 (Pennycuick et al. 1988), of a crow as a passerine 0.0129
+// m^0.614 (Hedenstroem and Rosen 2003), at the masses and spans of their species.
+TEST(Shapes, ABirdIsAsStoutAsItsFrontalAreaSays) {
+  struct Species {
+    Plumage plumage;
+    double mass_kg, span_m, factor, exponent;
+  };
+  for (const Species& one : {Species{Plumage::kGull, 1.0, 1.34, 0.00813, 0.666},
+                             Species{Plumage::kDark, 0.55, 0.93, 0.0129, 0.614},
+                             Species{Plumage::kBrown, 0.9, 1.25, 0.00813, 0.666},
+                             Species{Plumage::kGrey, 0.33, 0.65, 0.00813, 0.666}}) {
+    const double area_m2 = one.factor * std::pow(one.mass_kg, one.exponent);
+    const Mesh mesh = bird({.span_m = one.span_m, .plumage = one.plumage});
+    EXPECT_NEAR(
+        trunk_radius(mesh, one.span_m), std::sqrt(area_m2 / kPi), 0.05 * std::sqrt(area_m2 / kPi))
+        << enum_names(one.plumage)[static_cast<std::size_t>(one.plumage)].name;
+  }
+}
+
 TEST(Shapes, WingsOfABirdHaveTheStatedAspectRatio) {
   const Mesh mesh = bird({.span_m = 1, .aspect_ratio = 8});
   double area_m2 = 0;

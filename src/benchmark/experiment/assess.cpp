@@ -264,13 +264,24 @@ void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
   }
 }
 
-void add_films(std::vector<TruthClip>& truths, const AssessOptions& options) {
+// By name, each tracker's results for each truth.
+using AllResults = std::map<std::string, std::vector<Results>>;
+
+// Videos of sequences without results are not read.
+void add_films(std::vector<TruthClip>& truths,
+               const AllResults& found,
+               const AssessOptions& options) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    if (std::any_of(
+            found.begin(), found.end(), [&](const auto& one) { return !one.second[i].empty(); }))
+      wanted.push_back(i);
   const std::size_t each = std::clamp(
-      kMaxStills / std::max<std::size_t>(1, truths.size()), kMinStillsOfOne, kMaxStillsOfOne);
+      kMaxStills / std::max<std::size_t>(1, wanted.size()), kMinStillsOfOne, kMaxStillsOfOne);
   in_parallel(
-      truths.size(),
+      wanted.size(),
       options.jobs,
-      [&](std::size_t i) { add_film(truths[i], each, options.stop); },
+      [&](std::size_t i) { add_film(truths[wanted[i]], each, options.stop); },
       options.progress,
       options.stop);
 }
@@ -306,14 +317,14 @@ Assessment assess(const fs::path& set,
   assessment.truths = truths_of(dataset::LabelledSet(set), options.warn);
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
   // Results are read first, so that their faults are reported before minutes of video are read.
-  std::map<std::string, std::vector<Results>> found;
+  AllResults found;
   for (const fs::path& folder : results) {
     const std::string name = name_of(folder);
     if (found.contains(name))
       throw Error("is the second folder of results called '" + name + "'", {folder.string()});
     found[name] = results_in(folder, assessment.truths, options);
   }
-  if (options.with_film) add_films(assessment.truths, options);
+  if (options.with_film) add_films(assessment.truths, found, options);
   const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);
   for (const fs::path& folder : results)
     assessment.trackers.push_back(scored(name_of(folder), found[name_of(folder)]));

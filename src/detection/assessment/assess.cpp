@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -59,11 +60,21 @@ std::vector<ScoredDetections> results_in(const fs::path& source,
   return results;
 }
 
-void add_films(std::vector<TruthSequence>& truths, const AssessOptions& options) {
+// By name, each detector's results.
+using AllResults = std::map<std::string, std::vector<ScoredDetections>>;
+
+// Videos of sequences without results are not read.
+void add_films(std::vector<TruthSequence>& truths,
+               const AllResults& found,
+               const AssessOptions& options) {
+  std::set<std::size_t> with_results;
+  for (const auto& [name, results] : found)
+    for (const ScoredDetections& one : results) with_results.insert(one.truth);
+  const std::vector<std::size_t> wanted(with_results.begin(), with_results.end());
   in_parallel(
-      truths.size(),
+      wanted.size(),
       options.jobs,
-      [&](std::size_t i) { measure_contrast(truths[i], options.stop); },
+      [&](std::size_t i) { measure_contrast(truths[wanted[i]], options.stop); },
       options.progress,
       options.stop);
 }
@@ -109,14 +120,14 @@ Assessment assess(const fs::path& set,
   assessment.is_weighted = truth.is_weighted;
   assessment.left_out = std::move(truth.left_out);
   // Results are read first, so that their faults are reported before minutes of video are read.
-  std::map<std::string, std::vector<ScoredDetections>> found;
+  AllResults found;
   for (const fs::path& source : results) {
     const std::string name = name_of(source);
     if (found.contains(name))
       throw Error("is the second set of results called '" + name + "'", {source.string()});
     found[name] = results_in(source, assessment.truths, options.warn);
   }
-  if (options.with_film) add_films(assessment.truths, options);
+  if (options.with_film) add_films(assessment.truths, found, options);
   std::vector<std::string> names;
   for (const auto& [name, sequences] : found) names.push_back(name);
   assessment.detectors.resize(names.size());

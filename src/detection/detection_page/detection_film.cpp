@@ -80,9 +80,13 @@ std::vector<Plan> plans_of(const Assessment& assessment, const FilmOptions& opti
            &film.misses[k][i]});
     }
   }
+  // Sequences without results are not shown.
+  std::set<std::size_t> with_results;
+  for (const DetectorScore& detector : assessment.detectors)
+    for (const ScoredDetections& scored : detector.sequences) with_results.insert(scored.truth);
   const std::size_t of_one = std::clamp<std::size_t>(
-      options.max_stills / std::max<std::size_t>(1, plans.size()), 2, options.max_of_one);
-  for (std::size_t i = 0; i < plans.size(); ++i) {
+      options.max_stills / std::max<std::size_t>(1, with_results.size()), 2, options.max_of_one);
+  for (const std::size_t i : with_results) {
     const std::size_t frames = assessment.truths[i].frames.size();
     const std::size_t spread = std::min(frames, of_one);
     for (std::size_t n = 0; n < spread; ++n)
@@ -123,7 +127,7 @@ class Filming {
 
   void read(std::size_t truth, const Plan& plan, SequenceFilm& film) const {
     const TruthSequence& sequence = assessment_.truths[truth];
-    if (sequence.media.empty() || plan.is_empty()) return;
+    if (sequence.media.empty()) return;
     video::Reader reader(sequence.media, {.threads = 1});
     std::int64_t next = 0;
     for (std::size_t i = 0; i <= plan.last(); ++i) {
@@ -168,11 +172,14 @@ Film film_of(const Assessment& assessment, const FilmOptions& options) {
   Film film;
   film.sequences.resize(assessment.truths.size());
   const std::vector<Plan> plans = plans_of(assessment, options, film);
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    if (!plans[i].is_empty()) wanted.push_back(i);
   const Filming filming(assessment, options);
   in_parallel(
-      plans.size(),
+      wanted.size(),
       options.jobs,
-      [&](std::size_t i) { filming.read(i, plans[i], film.sequences[i]); },
+      [&](std::size_t i) { filming.read(wanted[i], plans[wanted[i]], film.sequences[wanted[i]]); },
       options.progress,
       options.stop);
   return film;

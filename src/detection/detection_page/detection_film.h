@@ -50,9 +50,9 @@ struct FilmOptions {
   std::stop_token stop;
 };
 
-// Reads each video once, as far as its last frame that is shown. Stills are spread over a sequence;
-// the frames of its false alarms and misses are among them while there is room. Throws Error where
-// a video ends before a frame that it should show.
+// Reads the video of each sequence with results once, as far as its last frame that is shown.
+// Stills are spread over a sequence; the frames of its false alarms and misses are among them while
+// there is room. Throws Error where a video ends before a frame that it should show.
 Film film_of(const Assessment& assessment, const FilmOptions& options);
 
 }  // namespace airtruth::detection

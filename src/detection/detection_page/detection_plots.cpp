@@ -123,15 +123,12 @@ std::string name_of(const DetectionBin& bin) {
   return fmt::format(fmt::runtime(bin.from < 0 ? "{} to {}" : "{}–{}"), bin.from, bin.to);
 }
 
-// The colour of weighted bars beside the plain ones: half way to a light grey, which is seen on
-// white and on dark pages.
-plot::Colour pale(const plot::Colour& colour) {
-  constexpr int kLightGrey = 215;
-  plot::Colour result{};
-  std::transform(colour.begin(), colour.end(), result.begin(), [](int value) {
-    return static_cast<std::uint8_t>((value + kLightGrey) / 2);
-  });
-  return result;
+// Every second place is shaded, so that the dots of one place are seen as a group.
+void shade_places(Plot& plot) {
+  constexpr plot::Colour kShade = {244, 246, 248};
+  for (std::size_t place = 1; place < plot.x.names.size(); place += 2)
+    plot.bands.push_back(
+        {static_cast<double>(place) - 0.5, static_cast<double>(place) + 0.5, kShade});
 }
 
 Plot by_plot(const Assessment& assessment, const Quantity& quantity) {
@@ -147,11 +144,12 @@ Plot by_plot(const Assessment& assessment, const Quantity& quantity) {
   Plot plot{.x = {.label = quantity.title},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (const auto& [place, name] : names) plot.x.names.push_back(name);
+  shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    Series plain = series_of(assessment, k, plot::Mark::kBars);
+    Series plain = series_of(assessment, k, plot::Mark::kDots);
     Series weighted = plain;
     weighted.name += ", weighted";
-    weighted.style.colour = pale(plain.style.colour);
+    weighted.is_hollow = true;
     for (const DetectionBin& bin : bins_of(assessment.detectors[k])) {
       const auto place = static_cast<double>(std::distance(names.begin(), names.find(key(bin))));
       add_point(plain, place, bin.detection);
@@ -163,9 +161,10 @@ Plot by_plot(const Assessment& assessment, const Quantity& quantity) {
   return plot;
 }
 
-// Bars over the keys of a map of each detector.
+// Bars or dots over the keys of a map of each detector.
 Plot named_plot(const Assessment& assessment,
                 const std::string& label,
+                plot::Mark mark,
                 const auto& map_of,
                 const auto& add_value) {
   std::set<std::string> names;
@@ -173,8 +172,9 @@ Plot named_plot(const Assessment& assessment,
     for (const auto& [name, value] : map_of(detector)) names.insert(name);
   Plot plot{.y = {.label = label, .min = 0}};
   plot.x.names.assign(names.begin(), names.end());
+  if (mark == plot::Mark::kDots) shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    Series series = series_of(assessment, k, plot::Mark::kBars);
+    Series series = series_of(assessment, k, mark);
     for (const auto& [name, value] : map_of(assessment.detectors[k]))
       add_value(series, static_cast<double>(std::distance(names.begin(), names.find(name))), value);
     keep(plot, std::move(series));
@@ -186,6 +186,7 @@ Plot false_alarms_plot(const Assessment& assessment) {
   return named_plot(
       assessment,
       "false alarms",
+      plot::Mark::kBars,
       [](const DetectorScore& detector) -> const auto& { return detector.false_alarms_by; },
       [](Series& series, double x, std::int64_t count) {
         series.x.push_back(x);
@@ -197,6 +198,7 @@ Plot mistaken_plot(const Assessment& assessment) {
   return named_plot(
       assessment,
       "share of its frames taken for an aircraft",
+      plot::Mark::kDots,
       [](const DetectorScore& detector) -> const auto& { return detector.mistaken_by; },
       [](Series& series, double x, const Share& share) { add_point(series, x, share); });
 }

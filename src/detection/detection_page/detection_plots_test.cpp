@@ -78,8 +78,8 @@ TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
   EXPECT_EQ(by_bearing->x.names, (std::vector<std::string>{"-20 to -10"}));
 }
 
-// Weighted bars stand beside the plain ones of their detector, where there are any.
-TEST(DetectionPlots, WeightedBarsStandBesideThePlainOnes) {
+// Rings of weighted shares stand beside the dots of their detector, where there are any.
+TEST(DetectionPlots, WeightedSharesAreRingsBesideThePlainOnes) {
   Assessment assessment = two_detectors();
   assessment.detectors[0].by["range_m"][1].weighted = share(0.3, 0.2, 0.4);
   const auto plots = detection_plots(assessment);
@@ -89,7 +89,11 @@ TEST(DetectionPlots, WeightedBarsStandBesideThePlainOnes) {
   EXPECT_EQ(plot.series[1].x, (std::vector<double>{2}));
   EXPECT_EQ(plot.series[1].y, (std::vector<double>{0.3}));
   EXPECT_EQ(plot.series[1].low, (std::vector<double>{0.2}));
-  EXPECT_NE(plot.series[1].style.colour, plot.series[0].style.colour);
+  EXPECT_EQ(plot.series[1].style.colour, plot.series[0].style.colour);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(plot.series[k].mark, plot::Mark::kDots);
+    EXPECT_EQ(plot.series[k].is_hollow, k == 1);
+  }
   EXPECT_EQ(plot.series[2].name, "second");
 }
 

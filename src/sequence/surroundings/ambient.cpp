@@ -199,15 +199,30 @@ float smoothstep(float low, float high, float value) {
   return t * t * (3 - 2 * t);
 }
 
-// Blueness: 0 for grey (cloud), 1 for a clear sky. Clipped and dark blocks have no value.
-std::optional<float> blueness(const Rgb& rgb) {
+// How much less red than blue a block is; empty for clipped and dark ones, 0 for clipped white.
+std::optional<float> cast_of(const Rgb& rgb) {
   constexpr float kDarkest = 0.02f;
   constexpr float kBrightest = 0.95f;
-  constexpr float kGrey = 0.12f;
-  constexpr float kBlue = 0.35f;
   if (!(rgb[2] > kDarkest)) return std::nullopt;
   if (rgb[2] >= kBrightest) return rgb[0] < kBrightest ? std::nullopt : std::optional(0.0f);
-  return smoothstep(kGrey, kBlue, 1 - rgb[0] / rgb[2]);
+  return 1 - rgb[0] / rgb[2];
+}
+
+// The cast of what is grey: the greyest tenth of the sky, as the camera's white balance has it. A
+// clear sky has no grey, so it is at most that of an overcast sky of 7500 K under a white balance
+// for 5500 K (CIE's daylight illuminants: linear R/B of 0.81 and 1.34 in sRGB, 1 - 0.81/1.34).
+float cast_of_grey(std::vector<float> casts) {
+  constexpr float kBluestOvercast = 0.4f;
+  const auto tenth = casts.begin() + static_cast<std::ptrdiff_t>(casts.size() / 10);
+  std::nth_element(casts.begin(), tenth, casts.end());
+  return std::clamp(*tenth, 0.0f, kBluestOvercast);
+}
+
+// Blueness: 0 for grey (cloud), 1 for a clear sky.
+float blueness(float cast, float grey) {
+  constexpr float kGrey = 0.12f;
+  constexpr float kBlue = 0.35f;
+  return smoothstep(kGrey, kBlue, 1 - (1 - cast) / (1 - grey));
 }
 
 struct Sums {
@@ -250,7 +265,8 @@ Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
   constexpr std::size_t kFewest = 8;
   Seen seen;
   const float sky = brightness(mean(blocks, 0.5f, 1.01f));
-  std::vector<float> clear;
+  std::vector<const Block*> above;
+  std::vector<float> casts, bright_casts;
   for (const Block& block : blocks) {
     seen.all += block.weight;
     if (block.is_below() && block.brightness < kGroundOverSky * sky) {
@@ -258,12 +274,22 @@ Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
       continue;
     }
     if (block.brightness < 0.25f * sky) continue;  // an aircraft, a tree, a rim: no sky
-    const auto blue = blueness(block.linear);
-    if (!blue) continue;
-    const float cloud = 1 - *blue;
-    seen.blue.add(block.linear, block.weight * *blue, clear_seen(block, skies, *blue));
+    const auto cast = cast_of(block.linear);
+    if (!cast) continue;
+    above.push_back(&block);
+    casts.push_back(*cast);
+    if (block.brightness >= kGroundOverSky * sky) bright_casts.push_back(*cast);
+  }
+  if (bright_casts.empty()) return seen;
+  const float grey = cast_of_grey(std::move(bright_casts));
+  std::vector<float> clear;
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    const Block& block = *above[i];
+    const float blue = blueness(casts[i], grey);
+    const float cloud = 1 - blue;
+    seen.blue.add(block.linear, block.weight * blue, clear_seen(block, skies, blue));
     seen.cloud.add(block.linear, block.weight * cloud, overcast_seen(block, skies, cloud));
-    clear.push_back(*blue);
+    clear.push_back(blue);
   }
   if (clear.size() < kFewest) return seen;
   const auto high = clear.begin() + static_cast<std::ptrdiff_t>(clear.size() * 9 / 10);

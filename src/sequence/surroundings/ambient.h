@@ -17,11 +17,12 @@
 //
 // The picture is read as a grid of small blocks in linear light, without the own aircraft. Blocks
 // below the horizon that are much darker than the brighter half are ground; all others are sky. Sky
-// is blue, cloud, or a mixture. The brightness of the sky gives the exposure, because the luminance
-// of such a sky is known (sky.h). The exposure gives the sun: by day the ratios between the sun,
-// the blue sky and clouds depend on the sun's elevation alone. Where no ground is visible, a level
-// ground under the same light takes its place. Three quantities are measured: the exposure, the
-// clearness of the sky, and the share of cloud in it. A clipped sky makes all results too dark.
+// is blue, cloud, or a mixture; blue is what is bluer than the greyest part, within what a camera's
+// white balance does to an overcast sky. The brightness of the sky gives the exposure, because the
+// luminance of such a sky is known (sky.h). The exposure gives the sun: by day the ratios between
+// the sun, the blue sky and clouds depend on the sun's elevation alone. Where no ground is visible,
+// a level ground under the same light takes its place. Three quantities are measured: the exposure,
+// the clearness of the sky, and the share of cloud in it. A clipped sky makes all results too dark.
 //
 // Blocks near the intruder have four times the weight. The result is smoothed over time. A jump of
 // the camera's exposure or white balance is followed at once; the jump is the median over the

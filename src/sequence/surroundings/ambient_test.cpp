@@ -83,6 +83,44 @@ TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
   }
 }
 
+// A sky of two even halves, linear light.
+image::Picture sky_of(const image::Rgb& left, const image::Rgb& right) {
+  image::Colour colour;
+  colour.chroma = image::Chroma::k444;
+  image::Picture picture = image::make_picture(kSkySize, kSkySize, colour);
+  const image::ColourCode code(colour);
+  for (int x = 0; x < kSkySize; ++x) {
+    image::Rgb coded = x < kSkySize / 2 ? left : right;
+    for (float& value : coded)
+      value = static_cast<float>(image::ToneCurve{}.coded_from_linear(value));
+    const image::Ycc ycc = code.ycc_from_rgb(coded);
+    for (int y = 0; y < kSkySize; ++y) {
+      picture.planes[0].row(y)[x] = to_code(ycc.y);
+      picture.planes[1].row(y)[x] = to_code(ycc.cb);
+      picture.planes[2].row(y)[x] = to_code(ycc.cr);
+    }
+  }
+  return picture;
+}
+
+Ambient light_of(const image::Rgb& left, const image::Rgb& right) {
+  const ClearSky clear(35, 180, 40);
+  return AmbientEstimator(clear.light, {}, nullptr).next(sky_of(left, right), clear.sight, {});
+}
+
+// An overcast sky of 7000 K under a white balance for daylight has R/B of 0.7; no sun shines. The
+// same blue beside grey clouds is a clear sky, and one of R/B below 0.4 is clear by itself.
+TEST(Ambient, ABluishOvercastSkyHasNoSunAndTheSameBlueBesideCloudsHas) {
+  const image::Rgb bluish = {0.42F, 0.48F, 0.60F};
+  const image::Rgb grey = {0.6F, 0.6F, 0.6F};
+  const image::Rgb blue = {0.12F, 0.22F, 0.40F};
+  const Ambient overcast = light_of(bluish, bluish);
+  EXPECT_LT(overcast.sun[1], 0.15F * bluish[1]);
+  EXPECT_LT(overcast.blue[1], 0.05F * overcast.cloud[1]);
+  EXPECT_GT(light_of(bluish, grey).sun[1], 2 * bluish[1]);
+  EXPECT_GT(light_of(blue, blue).sun[1], 2 * blue[1]);
+}
+
 // An even grey sky; code value of its luma.
 image::Picture grey_sky(int luma) {
   image::Picture picture = image::make_picture(96, 72, {});

@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
+#include "show/plot/gnuplot_marks.h"
 
 namespace airtruth::plot {
 namespace {
@@ -40,8 +41,6 @@ std::string quoted_path(const std::string& path) {
   }
   return result + "'";
 }
-
-std::string hex(const Colour& c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]); }
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN";
@@ -101,42 +100,9 @@ std::string tics_of(const char* axis, const Axis& a) {
   return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
 }
 
-bool has_band(const Series& series) {
-  return !series.low.empty() && (series.mark == Mark::kLine || series.mark == Mark::kLineAndPoints);
-}
-
-bool has_whiskers(const Series& series) {
-  return !series.low.empty() && series.mark == Mark::kBars;
-}
-
-std::string drawn_as(const Series& series) {
-  const std::string colour = fmt::format("lc rgb '{}'", hex(series.style.colour));
-  const int dash = series.style.dash == Dash::kSolid ? 1 : series.style.dash == Dash::kLong ? 2 : 3;
-  const std::string line = fmt::format("lw {} dt {} {}", series.style.width, dash, colour);
-  switch (series.mark) {
-    case Mark::kLine:
-      return "using 1:2 with lines " + line;
-    case Mark::kPoints:
-      return "using 1:2 with points pt 7 ps 0.8 " + colour;
-    case Mark::kLineAndPoints:
-      return "using 1:2 with linespoints pt 7 ps 0.6 " + line;
-    case Mark::kBars:
-      return "using 1:2 with boxes " + colour;
-    case Mark::kIntervals:
-      return "using 1:2:3:4 with xerrorbars pt 7 ps 1 " + colour;
-    case Mark::kAbove:
-      return "using 1:2 with points pt 9 ps 1 " + colour;
-    case Mark::kBelow:
-      return "using 1:2 with points pt 11 ps 1 " + colour;
-  }
-  return {};
-}
-
-// Bars of several series stand side by side, each of this width.
+// Bars and dots of several series stand side by side, each of this width.
 double bar_width(const Plot& plot) {
-  const auto bars = std::count_if(plot.series.begin(), plot.series.end(), [](const Series& s) {
-    return s.mark == Mark::kBars;
-  });
+  const auto bars = std::count_if(plot.series.begin(), plot.series.end(), is_beside_others);
   return 0.8 / static_cast<double>(std::max<std::ptrdiff_t>(1, bars));
 }
 
@@ -157,8 +123,8 @@ class Script {
     std::string parts;
     double bar = -0.4 + width / 2;
     for (const Series& series : plot.series) {
-      const double shift = series.mark == Mark::kBars ? bar : 0;
-      if (series.mark == Mark::kBars) bar += width;
+      const double shift = is_beside_others(series) ? bar : 0;
+      if (is_beside_others(series)) bar += width;
       const std::string block = block_of(series, shift);
       const auto add = [&](const std::string& how, const std::string& title) {
         parts += fmt::format("{}{} {} {}", parts.empty() ? "" : ", \\\n     ", block, how, title);
@@ -168,11 +134,11 @@ class Script {
                         "'{}'",
                         hex(series.style.colour)),
             "notitle");
+      // Whiskers lie on bars and below dots.
+      if (has_whiskers(series) && series.mark == Mark::kDots) add(whiskers_of(series), "notitle");
+      if (series.is_hollow) add(white_below_ring(), "notitle");
       add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
-      if (has_whiskers(series))
-        // gnuplot's yerrorbars have a white gap in the middle.
-        add("using 1:3:(0):($4-$3) with vectors heads size graph 0.006,90 lw 1 lc rgb '#333333'",
-            "notitle");
+      if (has_whiskers(series) && series.mark == Mark::kBars) add(whiskers_of(series), "notitle");
     }
     // Axes without data are drawn too.
     commands_ += "plot " + (parts.empty() ? "NaN notitle" : parts) + "\nunset object\n";

@@ -60,6 +60,7 @@ enum class Mark {
   kPoints,
   kLineAndPoints,
   kBars,       // upright, at whole x; several series stand side by side
+  kDots,       // at whole x, side by side as bars are; for shares that have an interval
   kIntervals,  // points with a horizontal interval from `low` to `high`
   kAbove,      // triangles that point up: values above the axis
   kBelow,      // triangles that point down: values below the axis
@@ -73,8 +74,10 @@ struct Series {
   // Equal in length. A y that is not finite is a gap in a line.
   std::vector<double> x, y;
   // Bounds, equal in length to x: of the horizontal interval of kIntervals, of the shaded band
-  // about a line, or of the upright interval on a bar. Empty: none.
+  // about a line, or of the upright interval on a bar or a dot. Empty: none.
   std::vector<double> low = {}, high = {};
+  // Of dots: they are rings.
+  bool is_hollow = false;
 };
 
 struct Axis {

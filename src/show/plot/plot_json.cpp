@@ -18,6 +18,8 @@ const char* name_of(Mark mark) {
       return "line and points";
     case Mark::kBars:
       return "bars";
+    case Mark::kDots:
+      return "dots";
     default:
       return "points";
   }
@@ -51,7 +53,8 @@ Json series_json(const Series& series) {
           {"x", numbers(series.x)},
           {"y", numbers(series.y)},
           {"low", numbers(series.low)},
-          {"high", numbers(series.high)}};
+          {"high", numbers(series.high)},
+          {"hollow", series.is_hollow}};
 }
 
 }  // namespace

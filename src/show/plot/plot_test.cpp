@@ -67,7 +67,7 @@ TEST(Plot, JsonHoldsWhatIsDescribed) {
       R"({"title":"t","x":{"label":"","min":null,"max":null,"names":["a","b"],"logarithmic":false},)"
       R"("y":{"label":"v","min":0.0,"max":null,"names":[],"logarithmic":false},)"
       R"("series":[{"name":"s","mark":"bars","style":{"colour":"ink","dash":[7,3],)"
-      R"("width":2.0},"x":[0.0,1.0],"y":[3.0,null],"low":[],"high":[]}]})");
+      R"("width":2.0},"x":[0.0,1.0],"y":[3.0,null],"low":[],"high":[],"hollow":false}]})");
 }
 
 // Two levels a half of the axis apart lie a half of its height apart in the picture.
@@ -131,6 +131,53 @@ TEST(Gnuplot, ABarHasItsInterval) {
   };
   for (const double value : {0.28, 0.45, 0.5, 0.6, 0.73}) EXPECT_TRUE(is_dark_at(value)) << value;
   for (const double value : {0.2, 0.8}) EXPECT_FALSE(is_dark_at(value)) << value;
+}
+
+// The columns in which a pixel of a row has the colour.
+std::vector<int> columns_of(const image::Rgb8& picture, const Colour& colour, int y) {
+  std::vector<int> columns;
+  for (int x = 0; x < picture.width; ++x)
+    if (is_near(picture.at(x, y), colour)) columns.push_back(x);
+  return columns;
+}
+
+// Four detectors at three places, each with a ring beside its dot: every one stands free, a dot is
+// full and a ring is empty, and whiskers reach from bound to bound.
+TEST(Gnuplot, DotsAndRingsOfManySeriesStandFree) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Plot plot{.x = {.names = {"a", "b", "c"}}, .y = {.min = 0, .max = 1}};
+  for (std::size_t k = 0; k < 8; ++k)
+    plot.series.push_back({.mark = Mark::kDots,
+                           .style = style_of(k / 2),
+                           .x = {0, 1, 2},
+                           .y = {0.5, 0.5, 0.5},
+                           .low = {0.25, 0.25, 0.25},
+                           .high = {0.75, 0.75, 0.75},
+                           .is_hollow = k % 2 == 1});
+  const image::Rgb8 picture = picture_of({.plots = {plot}, .legend = Legend::kNone});
+  const auto border = rows_of(picture, {85, 85, 85}, 900);
+  ASSERT_GE(border.size(), 2U);
+  const double axis = border.back() - border.front();
+  const auto row = [&](double value) { return border.back() - static_cast<int>(value * axis); };
+  for (std::size_t k = 0; k < 4; ++k) {
+    // At each place two whiskers, which do not touch.
+    int whiskers = 0, last = -10;
+    for (const int x : columns_of(picture, kColours[k], row(0.65))) {
+      whiskers += x > last + 5 ? 1 : 0;
+      last = x;
+    }
+    EXPECT_EQ(whiskers, 6) << k;
+    for (const double beyond : {0.2, 0.8})
+      EXPECT_TRUE(columns_of(picture, kColours[k], row(beyond)).empty()) << k;
+    // In the middle of the first place's ring it is white, and its dot is full.
+    const std::vector<int> first = columns_of(picture, kColours[k], row(0.65));
+    const auto is_full = [&](int x) { return is_near(picture.at(x, row(0.5)), kColours[k]); };
+    EXPECT_TRUE(is_full(first.front())) << k;
+    const auto ring =
+        std::find_if(first.begin(), first.end(), [&](int x) { return x > first.front() + 5; });
+    ASSERT_NE(ring, first.end());
+    EXPECT_FALSE(is_full(*ring)) << k;
+  }
 }
 
 TEST(Gnuplot, APlotWithoutDataHasAxes) {

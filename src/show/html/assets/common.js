@@ -27,31 +27,67 @@ const airtruth = (() => {
     title: { display: Boolean(label), text: label },
   });
 
-  // Upright intervals on the bars of a plot.
-  const whiskers = (plot) => ({
-    id: 'whiskers',
-    afterDatasetsDraw: (chart) => {
+  // What stands at a named place beside others.
+  const isBeside = ({ mark }) => mark === 'bars' || mark === 'dots';
+  const paintOf = ({ style }) => (style.colour === 'ink' ? ink : style.colour);
+
+  // Dots and rings in the places of bars, upright intervals on both, and a shade behind every second place of dots.
+  const uprights = (plot) => {
+    const draw = (chart, series, k) => {
       const { ctx } = chart;
-      ctx.save();
-      ctx.strokeStyle = Chart.defaults.color;
-      ctx.lineWidth = 1;
-      plot.series.forEach((series, k) => {
-        if (series.mark !== 'bars' || !series.low.length) return;
-        series.x.forEach((place, i) => {
-          const bar = chart.getDatasetMeta(k).data[place];
-          if (!bar || series.low[i] === null) return;
-          const [low, high] = [series.low[i], series.high[i]].map((value) => chart.scales.y.getPixelForValue(value));
+      const isDots = series.mark === 'dots';
+      series.x.forEach((place, i) => {
+        const bar = chart.getDatasetMeta(k).data[place];
+        if (!bar || series.y[i] === null) return;
+        const at = (value) => chart.scales.y.getPixelForValue(value);
+        ctx.strokeStyle = isDots ? paintOf(series) : Chart.defaults.color;
+        ctx.lineWidth = 1;
+        if (series.low.length && series.low[i] !== null) {
           const cap = Math.min(4, bar.width / 3);
           ctx.beginPath();
-          for (const y of [low, high]) { ctx.moveTo(bar.x - cap, y); ctx.lineTo(bar.x + cap, y); }
-          ctx.moveTo(bar.x, low);
-          ctx.lineTo(bar.x, high);
+          for (const y of [at(series.low[i]), at(series.high[i])]) { ctx.moveTo(bar.x - cap, y); ctx.lineTo(bar.x + cap, y); }
+          ctx.moveTo(bar.x, at(series.low[i]));
+          ctx.lineTo(bar.x, at(series.high[i]));
           ctx.stroke();
-        });
+        }
+        if (!isDots) return;
+        ctx.beginPath();
+        ctx.arc(bar.x, at(series.y[i]), Math.min(4, 0.42 * bar.width), 0, 2 * Math.PI);
+        ctx.fillStyle = series.hollow ? getComputedStyle(chart.canvas.closest('figure')).backgroundColor : paintOf(series);
+        ctx.fill();
+        ctx.lineWidth = 1.5;
+        ctx.stroke();
       });
-      ctx.restore();
-    },
-  });
+    };
+    return {
+      id: 'uprights',
+      beforeDatasetsDraw: ({ ctx, chartArea, scales }) => {
+        if (!plot.series.some((series) => series.mark === 'dots')) return;
+        const step = chartArea.width / plot.x.names.length;
+        ctx.save();
+        ctx.fillStyle = `${ink}0a`;
+        for (let place = 1; place < plot.x.names.length; place += 2)
+          ctx.fillRect(scales.x.getPixelForValue(place) - step / 2, chartArea.top, step, chartArea.height);
+        ctx.restore();
+      },
+      afterDatasetsDraw: (chart) => {
+        chart.ctx.save();
+        plot.series.forEach((series, k) => { if (isBeside(series)) draw(chart, series, k); });
+        chart.ctx.restore();
+      },
+    };
+  };
+
+  // Room for what stands side by side: a figure with many takes the whole row, and is scrolled where that is too narrow.
+  const makeRoom = (canvas, plot) => {
+    const many = plot.x.names.length * plot.series.filter(isBeside).length;
+    if (many <= 40) return;
+    canvas.closest('figure').classList.add('dense');
+    const room = element('div');
+    room.style.minWidth = `${60 + 8 * many}px`;
+    canvas.replaceWith(room);
+    room.append(canvas);
+  };
 
   // Draws a plot that the program describes (show/plot/plot.h).
   const drawPlot = (canvas, plot) => {
@@ -60,22 +96,33 @@ const airtruth = (() => {
       ? names.map((_, place) => (x.includes(place) ? values[x.indexOf(place)] : null))
       : x.map((at, i) => ({ x: at, y: values[i] }));
     const datasets = plot.series.flatMap((series) => {
-      const { colour, dash, width } = series.style;
-      const paint = colour === 'ink' ? ink : colour;
-      const isBars = series.mark === 'bars';
-      const shape = isBars ? {} :
+      const { dash, width } = series.style;
+      const paint = paintOf(series);
+      const beside = isBeside(series);
+      const shape = beside ? { barPercentage: series.mark === 'dots' ? 1 : 0.9 } :
         { type: 'line', borderColor: paint, borderWidth: 1.5 * width, borderDash: dash, showLine: series.mark !== 'points', pointRadius: series.mark === 'line' ? 0 : 2.5 };
-      const own = { label: series.name, data: placed(series.x, series.y), backgroundColor: paint, ...shape };
-      if (isBars || !series.low.length) return [own];
+      const own = { label: series.name, data: placed(series.x, series.y), backgroundColor: series.mark === 'dots' ? 'transparent' : paint, ...shape };
+      if (beside || !series.low.length) return [own];
       const bound = (values, fill) => ({ type: 'line', label: `_${series.name}`, data: placed(series.x, values), pointRadius: 0, borderWidth: 0, backgroundColor: `${paint}26`, fill });
       return [own, bound(series.high, '+1'), bound(series.low, false)];
     });
-    const isBars = plot.series.some((series) => series.mark === 'bars');
+    const areBeside = plot.series.some(isBeside);
+    const areDots = plot.series.some((series) => series.mark === 'dots');
+    const labelColor = ({ datasetIndex }) => {
+      const series = plot.series[datasetIndex];
+      return { borderColor: paintOf(series), backgroundColor: series.hollow ? 'transparent' : paintOf(series) };
+    };
+    if (areBeside) makeRoom(canvas, plot);
     return new Chart(canvas, {
-      type: isBars ? 'bar' : 'line',
+      type: areBeside ? 'bar' : 'line',
       data: { labels: names.length ? names : undefined, datasets },
-      options: { plugins: { legend: { display: false } }, scales: { x: described(plot.x), y: described(plot.y) } },
-      plugins: isBars ? [whiskers(plot)] : [],
+      options: {
+        plugins: { legend: { display: false }, ...(areDots ? { tooltip: { callbacks: { labelColor } } } : {}) },
+        // Dots are small to point at: what is said is said of their whole place.
+        ...(areDots ? { interaction: { mode: 'index', intersect: false } } : {}),
+        scales: { x: described(plot.x), y: described(plot.y) },
+      },
+      plugins: areBeside ? [uprights(plot)] : [],
     });
   };
 
