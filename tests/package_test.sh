@@ -219,7 +219,7 @@ check_network_runner() { # check_network_runner PREFIX: a network is given to th
 
 check_late_libraries() { # check_late_libraries PREFIX: the program starts without what only some commands need, and finds it then
   local needed
-  needed=$(ldd "$1/bin/airtruth" | grep -iE 'osg|libE?GL|opencv_(calib3d|dnn|ml|tracking|video)' || true)
+  needed=$(readelf -d "$1/bin/airtruth" | grep NEEDED | grep -E 'osg|libE?GL|opencv_(calib3d|dnn|ml|tracking|video)' || true)
   [ -z "$needed" ] || fail "the program needs at its start: $needed"
   "$1/bin/airtruth" synth -o "$place/clip.mkv" --width 160 --height 120 --frames 6 --no-own-aircraft >/dev/null
   printf '%s\n' 'name = "late"' '[background]' 'video = "clip.mkv"' '[lens]' 'vertical_fov_deg = 60' '[camera]' \
