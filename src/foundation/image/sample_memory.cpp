@@ -12,8 +12,13 @@ namespace {
 constexpr std::align_val_t kAlignment{64};
 // Smaller blocks are malloc()'s business: it keeps and joins them well.
 constexpr std::size_t kMinKeptBytes = 64 << 10;
-// The planes of some 50 frames of 1920x1080; beyond it memory goes back to malloc().
+// The planes of some 50 frames of 1920x1080; beyond it memory goes back to malloc(). Sanitizers
+// have to see every plane's end.
+#ifdef AIRTRUTH_SANITIZED
+constexpr std::size_t kMaxFreeBytes = 0;
+#else
 constexpr std::size_t kMaxFreeBytes = std::size_t{160} << 20;
+#endif
 
 void release(std::uint8_t* samples) noexcept { ::operator delete[](samples, kAlignment); }
 
