@@ -26,4 +26,4 @@ endif()
 # OpenCV's headers are noisy under C++20; take them as system headers.
 add_library(airtruth_opencv INTERFACE)
 target_include_directories(airtruth_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(airtruth_opencv INTERFACE ${OpenCV_LIBS})
+target_link_libraries(airtruth_opencv INTERFACE opencv_core opencv_imgproc)

@@ -48,6 +48,7 @@ airtruth_library(airtruth airtruth
 include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)
 install(TARGETS airtruth-model-reader airtruth-network-runner RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/airtruth)
+install(TARGETS airtruth-late-opencv airtruth-late-backdrop LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/airtruth)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/examples)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/clients/ DESTINATION ${CMAKE_INSTALL_DATADIR}/airtruth/clients
   PATTERN CMakeLists.txt EXCLUDE PATTERN __pycache__ EXCLUDE)

@@ -67,6 +67,17 @@ function(add_module name)
   endif()
 endfunction()
 
+# add_late_library(NAME SOURCES a.cpp ... LIBRARIES target ...) makes airtruth-late-NAME.so, which stands beside the
+# program and is loaded when it is first needed (src/foundation/helper/late_library.h).
+function(add_late_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(airtruth-late-${name} MODULE ${arg_SOURCES})
+  set_target_properties(airtruth-late-${name} PROPERTIES PREFIX "" BUILD_RPATH ""
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/src/cli)
+  target_link_libraries(airtruth-late-${name} PRIVATE airtruth_options ${arg_LIBRARIES})
+  target_include_directories(airtruth-late-${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+endfunction()
+
 function(add_module_test target label module sources libraries)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE airtruth_${module} ${libraries} GTest::gmock GTest::gtest_main)
@@ -76,7 +87,8 @@ function(add_module_test target label module sources libraries)
   if(AIRTRUTH_PCH)
     target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
   endif()
-  add_dependencies(${target} airtruth-model-reader)  # which reads the model files of tests
+  # The first reads the model files of tests.
+  add_dependencies(${target} airtruth-model-reader airtruth-late-opencv airtruth-late-backdrop)
   add_test(NAME ${target} COMMAND ${target})
   # A limit stops a test that hangs: ten times and more what the longest of its label takes on two quiet cores.
   set(limit_s 600)

@@ -5,6 +5,8 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
+# Where the programs of the build folder find the late libraries.
+set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/src/cli)
 
 add_library(airtruth_options INTERFACE)
 target_compile_features(airtruth_options INTERFACE cxx_std_20)

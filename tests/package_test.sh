@@ -217,6 +217,18 @@ check_network_runner() { # check_network_runner PREFIX: a network is given to th
   grep -q 'cannot be loaded as an ONNX network: it is no ONNX file' "$place/said" || fail "the installed program runs no network: $(cat "$place/said")"
 }
 
+check_late_libraries() { # check_late_libraries PREFIX: the program starts without what only some commands need, and finds it then
+  local needed
+  needed=$(readelf -d "$1/bin/airtruth" | grep NEEDED | grep -E 'osg|libE?GL|opencv_(calib3d|dnn|ml|tracking|video)' || true)
+  [ -z "$needed" ] || fail "the program needs at its start: $needed"
+  "$1/bin/airtruth" synth -o "$place/clip.mkv" --width 160 --height 120 --frames 6 --no-own-aircraft >/dev/null
+  printf '%s\n' 'name = "late"' '[background]' 'video = "clip.mkv"' '[lens]' 'vertical_fov_deg = 60' '[camera]' \
+    'position_ned_m = [0, 0, -150]' '[[intruder]]' 'aircraft = "c172/news"' 'waypoints_ned_m = [[60, -8, -150], [60, 8, -150]]' \
+    'speed_mps = 40' '[composite]' 'method = "chroma-key"' >"$place/late.toml"
+  env -u AIRTRUTH_LATE_OPENCV -u AIRTRUTH_LATE_BACKDROP "$1/bin/airtruth" render "$place/late.toml" --out "$place" --no-cache --gpu none \
+    >"$place/late.log" 2>&1 || fail "the installed program measures no motion or draws no backdrop: $(cat "$place/late.log")"
+}
+
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
 check_headers "$place/usr"
@@ -227,6 +239,7 @@ check_evaluation_alone
 check_examples "$place/usr"
 check_model_reader "$place/usr"
 check_network_runner "$place/usr"
+check_late_libraries "$place/usr"
 check_help_and_pages "$place/usr"
 check_completion "$place/usr"
 check_files "$place/usr"

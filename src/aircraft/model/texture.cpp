@@ -4,16 +4,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/base/huge_pages.h"
+
 namespace airtruth::aircraft {
 namespace {
 
 using Texel = std::array<float, 4>;
 
+// Textures are large: 16 MiB for the first level of 1024x1024 texels.
+void reserve(std::vector<Texel>& texels, std::size_t count) {
+  texels.reserve(count);
+  ask_for_huge_pages(texels.data(), count * sizeof(Texel));
+}
+
 Texture::Level halved(const Texture::Level& level) {
   Texture::Level half;
   half.width = std::max(1, level.width / 2);
   half.height = std::max(1, level.height / 2);
-  half.texels.reserve(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
+  reserve(half.texels,
+          static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
   const auto row_at = [&](int y) {
     return level.texels.data() + static_cast<std::size_t>(std::min(y, level.height - 1)) *
                                      static_cast<std::size_t>(level.width);
@@ -81,12 +90,21 @@ Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_
     alpha[i] = stated < kOpaque ? stated : 1.0f;
   }
   std::vector<Texel> texels;
-  texels.reserve(picture.rgba.size() / 4);
-  for (auto p = picture.rgba.begin(); p != picture.rgba.end(); p += 4) {
-    const float a = alpha[p[3]];
-    texture.has_translucency = texture.has_translucency || a < kOpaque;
-    texels.push_back({a * linear[p[0]], a * linear[p[1]], a * linear[p[2]], a});
+  reserve(texels, picture.rgba.size() / 4);
+  // A row at a time: a vector of this size would be cleared before it is filled.
+  std::vector<Texel> row(static_cast<std::size_t>(picture.width));
+  const std::uint8_t* p = picture.rgba.data();
+  float least = 1;
+  for (int y = 0; y < picture.height; ++y) {
+    for (Texel& texel : row) {
+      const float a = alpha[p[3]];
+      least = std::min(least, a);
+      texel = {a * linear[p[0]], a * linear[p[1]], a * linear[p[2]], a};
+      p += 4;
+    }
+    texels.insert(texels.end(), row.begin(), row.end());
   }
+  texture.has_translucency = least < kOpaque;
   texture.levels.push_back({picture.width, picture.height, std::move(texels)});
   add_mip_chain(texture);
   return texture;

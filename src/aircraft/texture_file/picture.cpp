@@ -5,6 +5,7 @@
 
 #include "aircraft/texture_file/picture_kinds.h"
 #include "foundation/base/error.h"
+#include "foundation/base/huge_pages.h"
 
 namespace airtruth::aircraft {
 
@@ -18,7 +19,10 @@ Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLi
   Picture picture;
   picture.width = static_cast<int>(width);
   picture.height = static_cast<int>(height);
-  picture.rgba.resize(static_cast<std::size_t>(width * height * 4));
+  const auto bytes = static_cast<std::size_t>(width * height * 4);
+  picture.rgba.reserve(bytes);
+  ask_for_huge_pages(picture.rgba.data(), bytes);
+  picture.rgba.resize(bytes);
   return picture;
 }
 

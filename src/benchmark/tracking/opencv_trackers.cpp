@@ -17,6 +17,7 @@
 #include <opencv2/tracking/tracking_legacy.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "camera/late_opencv/late_opencv.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 
@@ -164,8 +165,8 @@ class Legacy : public Tracker {
     window_ = Window(least_px_ > 0 ? whole(box) : box, least_px_, frame_);
     const Box window = least_px_ > 0 ? whole(window_.window()) : window_.window();
     try {
-      broken_ =
-          !tracker_->init(frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
+      broken_ = !late::opencv().init(
+          *tracker_, frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
     } catch (const cv::Exception&) {
       broken_ = true;
     }
@@ -175,7 +176,7 @@ class Legacy : public Tracker {
     const Answer answer = answer_of(
         [&](Box& box) {
           cv::Rect2d found;
-          if (!tracker_->update(frame_, found)) return false;
+          if (!late::opencv().update(*tracker_, frame_, found)) return false;
           box = window_.object_in({found.x, found.y, found.width, found.height});
           return true;
         },
@@ -249,7 +250,8 @@ class WithOwnRand : public Tracker {
 std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed) {
   // A state of 0 would stay 0.
   const std::uint64_t state = seed * 2 + 1;
-  namespace legacy = cv::legacy;
+  if (!name.starts_with("opencv-")) return nullptr;
+  const late::OpenCv& opencv = late::opencv();
   const auto modern = [&](auto make, double least_px = 0) {
     return std::make_unique<Modern>(make, state, least_px);
   };
@@ -259,15 +261,13 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   const auto with_own_rand = [&](std::unique_ptr<Tracker> tracker) {
     return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own
   };
-  if (name == "opencv-mil")
-    return with_own_rand(modern([] { return cv::TrackerMIL::create(); }, kMinHaarPx));
-  if (name == "opencv-kcf") return modern([] { return cv::TrackerKCF::create(); });
-  if (name == "opencv-csrt") return modern([] { return cv::TrackerCSRT::create(); });
-  if (name == "opencv-boosting")
-    return with_own_rand(old([] { return legacy::TrackerBoosting::create(); }, kMinHaarPx));
-  if (name == "opencv-medianflow") return old([] { return legacy::TrackerMedianFlow::create(); });
-  if (name == "opencv-tld") return with_own_rand(old([] { return legacy::TrackerTLD::create(); }));
-  if (name == "opencv-mosse") return old([] { return legacy::TrackerMOSSE::create(); });
+  if (name == "opencv-mil") return with_own_rand(modern(opencv.mil, kMinHaarPx));
+  if (name == "opencv-kcf") return modern(opencv.kcf);
+  if (name == "opencv-csrt") return modern(opencv.csrt);
+  if (name == "opencv-boosting") return with_own_rand(old(opencv.boosting, kMinHaarPx));
+  if (name == "opencv-medianflow") return old(opencv.median_flow);
+  if (name == "opencv-tld") return with_own_rand(old(opencv.tld));
+  if (name == "opencv-mosse") return old(opencv.mosse);
   return nullptr;
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 
 #include "benchmark/tracking/luma_window.h"
+#include "camera/late_opencv/late_opencv.h"
 #include "foundation/base/median.h"
 
 namespace airtruth::tracking {
@@ -77,8 +77,12 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   std::vector<std::uint8_t> returned;
   std::vector<float> unused;
   const cv::Size window(kWindowPx, kWindowPx);
-  cv::calcOpticalFlowPyrLK(before, after, points, there, found, unused, window, 2);
-  cv::calcOpticalFlowPyrLK(after, before, there, back, returned, unused, window, 2);
+  // The search for a point ends after 30 rounds, or once it moves by less than 0.01 px; the last
+  // number is the least eigenvalue of the normal matrix. All are OpenCV's defaults.
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01);
+  const auto flow = late::opencv().calc_optical_flow_pyr_lk;
+  flow(before, after, points, there, found, unused, window, 2, enough, 0, 1e-4);
+  flow(after, before, there, back, returned, unused, window, 2, enough, 0, 1e-4);
   std::vector<float> off;
   for (std::size_t i = 0; i < points.size(); ++i)
     off.push_back(found[i] != 0 && returned[i] != 0
@@ -88,13 +92,13 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   std::erase(sorted, INFINITY);
   if (sorted.empty()) return {};
   const float most = std::min(kMaxReturnPx, median(std::move(sorted)));
-  Flow flow;
+  Flow result;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (off[i] <= most) {
-      flow.from.push_back(points[i]);
-      flow.to.push_back(there[i]);
+      result.from.push_back(points[i]);
+      result.to.push_back(there[i]);
     }
-  return flow;
+  return result;
 }
 
 // Median over pairs of points of the ratio of their distances.

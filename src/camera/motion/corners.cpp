@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
+#include <opencv2/video/tracking.hpp>  // constants alone
+
+#include "camera/late_opencv/late_opencv.h"
 
 namespace airtruth::motion {
 namespace {
@@ -36,7 +38,14 @@ cv::Mat luma_of(const image::Picture& picture) {
 
 Pyramid pyramid_of(const cv::Mat& grey) {
   Pyramid pyramid;
-  cv::buildOpticalFlowPyramid(grey, pyramid, cv::Size(kWindowPx, kWindowPx), kPyramidLevels, true);
+  late::opencv().build_optical_flow_pyramid(grey,
+                                            pyramid,
+                                            cv::Size(kWindowPx, kWindowPx),
+                                            kPyramidLevels,
+                                            true,
+                                            cv::BORDER_REFLECT_101,
+                                            cv::BORDER_CONSTANT,
+                                            true);
   return pyramid;
 }
 
@@ -131,17 +140,17 @@ std::vector<unsigned char> tracked(const Pyramid& from,
   constexpr double kMinEigenvalue = 1e-4;
   std::vector<unsigned char> found;
   std::vector<float> unused;
-  cv::calcOpticalFlowPyrLK(from,
-                           to,
-                           corners,
-                           moved,
-                           found,
-                           unused,
-                           {kWindowPx, kWindowPx},
-                           levels,
-                           enough,
-                           guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
-                           kMinEigenvalue);
+  late::opencv().calc_optical_flow_pyr_lk(from,
+                                          to,
+                                          corners,
+                                          moved,
+                                          found,
+                                          unused,
+                                          {kWindowPx, kWindowPx},
+                                          levels,
+                                          enough,
+                                          guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
+                                          kMinEigenvalue);
   return found;
 }
 

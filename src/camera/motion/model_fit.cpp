@@ -3,8 +3,10 @@
 
 #include <cmath>
 
-#include <opencv2/calib3d.hpp>
+#include <opencv2/calib3d.hpp>  // constants alone
 #include <opencv2/imgproc.hpp>
+
+#include "camera/late_opencv/late_opencv.h"
 
 namespace airtruth::motion {
 namespace {
@@ -84,11 +86,12 @@ std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
                                    const Options& options,
                                    double limit_px) {
   cv::Mat mask;
-  cv::Mat h = cv::findHomography(key, moved, cv::RANSAC, limit_px, mask, 1000, 0.999);
+  cv::Mat h = late::opencv().find_homography(key, moved, cv::RANSAC, limit_px, mask, 1000, 0.999);
   const bool use_homography = !h.empty() && span_of(chosen(key, mask), image) >= kMinSpan &&
                               plausible(eigen_from(h), image);
   if (!use_homography) {
-    h = cv::estimateAffinePartial2D(key, moved, mask, cv::RANSAC, 1.5 * limit_px, 1000, 0.999, 10);
+    h = late::opencv().estimate_affine_partial_2d(
+        key, moved, mask, cv::RANSAC, 1.5 * limit_px, 1000, 0.999, 10);
     if (h.empty() || !plausible(eigen_from(h), image)) return std::nullopt;
   }
   ModelFit fit;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/huge_pages.h"
 #include "foundation/base/line_of.h"
 #include "foundation/base/median.h"
 #include "foundation/base/pattern.h"
@@ -158,6 +162,38 @@ TEST(Median, IsTheUpperOfTwoMiddleValues) {
 
 TEST(PartPath, HidesAndKeepsTheExtension) {
   EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
+}
+
+// Whether the kernel notes for the mapping of an address that huge pages are asked for.
+bool is_asked_for(const void* address) {
+  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+  std::ifstream maps("/proc/self/smaps");
+  bool within = false;
+  for (std::string line; std::getline(maps, line);) {
+    std::uintptr_t from = 0, to = 0;
+    char dash = 0;
+    if (std::istringstream words(line); words >> std::hex >> from >> dash >> to && dash == '-')
+      within = from <= wanted && wanted < to;
+    if (within && line.starts_with("VmFlags:")) return line.find(" hg") != std::string::npos;
+  }
+  return false;
+}
+
+TEST(HugePages, AreAskedForWhereWholeOnesLie) {
+  if (::access("/sys/kernel/mm/transparent_hugepage/enabled", R_OK) != 0)
+    GTEST_SKIP() << "this kernel has no huge pages";
+  constexpr std::size_t kHuge = 2 << 20;
+  constexpr std::size_t kBytes = 8 * kHuge;
+  void* const memory =
+      ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  char* const begin = static_cast<char*>(memory) + 1000;
+  ask_for_huge_pages(begin, kHuge - 1);  // holds no whole page
+  EXPECT_FALSE(is_asked_for(begin + kHuge / 2));
+  ask_for_huge_pages(begin, kBytes - 2000);
+  EXPECT_TRUE(is_asked_for(begin + kBytes / 2));
+  EXPECT_FALSE(is_asked_for(memory)) << "outside the asked part";
+  ::munmap(memory, kBytes);
 }
 
 }  // namespace

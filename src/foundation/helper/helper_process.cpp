@@ -7,7 +7,6 @@
 #include <cstring>
 #include <utility>
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -17,6 +16,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/helper/places.h"
 
 extern "C" char** environ;
 
@@ -94,18 +94,6 @@ class SpawnSetup {
   posix_spawnattr_t attributes_{};
 };
 
-// The path of the helper where a shared library holds this code, in PREFIX/lib or, as on Debian, in
-// PREFIX/lib/x86_64-linux-gnu. It is empty in a program, whose name need not be a path.
-std::vector<fs::path> beside_library(const char* name) {
-  Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&path_of), &info) == 0) return {};
-  const fs::path library = info.dli_fname;
-  if (!library.is_absolute()) return {};
-  const fs::path folder = library.parent_path().lexically_normal();
-  const fs::path place = fs::path("libexec") / "airtruth" / name;
-  return {folder.parent_path() / place, folder.parent_path().parent_path() / place};
-}
-
 bool is_program(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
@@ -119,14 +107,7 @@ fs::path path_of(const HelperProgram& program) {
       throw Error(std::string("is what ") + program.variable + " names, but no program", {stated});
     return stated;
   }
-  std::error_code ignored;
-  const fs::path own = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  std::vector<fs::path> candidates = beside_library(program.name);
-  candidates.insert(
-      candidates.begin(),
-      {own / program.name, own.parent_path() / "libexec" / "airtruth" / program.name});
-  candidates.push_back(fs::path(AIRTRUTH_LIBEXEC_FOLDER) / program.name);
-  for (const fs::path& candidate : candidates)
+  for (const fs::path& candidate : places_of(program.name))
     if (is_program(candidate)) return candidate;
   throw Error(std::string("the program ") + program.name + ", " + program.what +
               ", is not installed; install airtruth whole, or set " + program.variable + " to it");

@@ -21,9 +21,8 @@ struct HelperProgram {
   const char* what;      // "the reader of 3D models", for messages
 };
 
-// The path of the program: the variable's value, else NAME beside this program, in
-// ../libexec/airtruth from it, in PREFIX/libexec/airtruth for a libairtruth.so in PREFIX/lib, or in
-// the configured place of installation. Throws Error where none of these exists.
+// The path of the program: the variable's value, else the first of its places (places.h). Throws
+// Error where none of these exists.
 std::filesystem::path path_of(const HelperProgram& program);
 
 // The child and the parent's end of the socket. The destructor ends the child and waits for it. The

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -16,6 +17,7 @@
 #include "foundation/base/error.h"
 #include "foundation/helper/confine.h"
 #include "foundation/helper/helper_process.h"
+#include "foundation/helper/late_library.h"
 #include "foundation/helper/wire.h"
 
 namespace airtruth::helper {
@@ -127,6 +129,30 @@ TEST(HelperProcess, EndsInWords) {
   EXPECT_EQ(end_in_words(SIGSEGV), std::string("its reader broke on it (Segmentation fault)"));
   EXPECT_EQ(end_in_words(SIGKILL), "its reader took too much time or memory and was ended");
   EXPECT_EQ(end_in_words(3 << 8), "its reader ended with code 3");
+}
+
+std::string reason_of(const LateLibrary& library, const char* symbol) {
+  try {
+    symbol_of(library, symbol);
+    return {};
+  } catch (const Error& error) {
+    return error.message();
+  }
+}
+
+// The C library's mathematics stand for a library of ours, in the place that the variable names.
+TEST(LateLibrary, GivesTheAddressOfASymbol) {
+  const LateLibrary library{"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"};
+  ::setenv("AIRTRUTH_TEST_LATE", "libm.so.6", 1);
+  EXPECT_EQ(reinterpret_cast<double (*)(double)>(symbol_of(library, "fabs"))(-3), 3);
+  EXPECT_THAT(reason_of(library, "no_such_function"), testing::HasSubstr("no_such_function"));
+  ::unsetenv("AIRTRUTH_TEST_LATE");
+}
+
+TEST(LateLibrary, IsNamedWhereItIsNotThere) {
+  EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, "fabs"),
+              testing::AllOf(testing::HasSubstr("no-such.so, the tested part, cannot be loaded"),
+                             testing::HasSubstr("set AIRTRUTH_TEST_LATE to it")));
 }
 
 }  // namespace

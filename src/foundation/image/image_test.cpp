@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "foundation/image/colour.h"
 #include "foundation/image/picture.h"
+#include "foundation/image/sample_memory.h"
 
 namespace airtruth::image {
 namespace {
@@ -217,6 +219,26 @@ TEST(Paste, LeavesOutWhatLiesBeyondThePicture) {
   EXPECT_EQ(picture.luma().row(13)[3], part.luma().row(1)[7]);
   EXPECT_EQ(picture.planes[1].row(7)[1], part.planes[1].row(1)[3]);
   EXPECT_EQ(picture.luma().row(13)[4], before.luma().row(13)[4]);
+}
+
+// A block goes from the thread that gave it back to the next that takes one of its size.
+TEST(SampleMemory, IsTakenAgainByAnyThread) {
+  constexpr std::size_t kBytes = 1'234'567;  // of no other test
+  const std::size_t free_before = free_sample_bytes();
+  const std::uint8_t* first = nullptr;
+  std::thread([&] { first = take_samples(kBytes).get(); }).join();
+  EXPECT_EQ(free_sample_bytes(), free_before + kBytes);
+  const SampleMemory again = take_samples(kBytes);
+  EXPECT_EQ(again.get(), first);
+  EXPECT_EQ(free_sample_bytes(), free_before);
+  EXPECT_NE(take_samples(kBytes).get(), first);
+}
+
+TEST(SampleMemory, KeepsNeitherSmallBlocksNorMoreThanItsLimit) {
+  const std::size_t free_before = free_sample_bytes();
+  take_samples(1000).reset();
+  take_samples(std::size_t{200} << 20).reset();
+  EXPECT_EQ(free_sample_bytes(), free_before);
 }
 
 }  // namespace

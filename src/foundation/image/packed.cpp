@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures as packed sRGB and back. Samples are copied to blocks of floats, which the compiler
 // converts by vectors.
+#include "foundation/image/packed.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -63,6 +65,48 @@ void spread(const Plane& plane, int x, int y, int shift, std::size_t count, Code
 }
 
 }  // namespace
+
+namespace {
+
+AIRTRUTH_FOR_VECTORS void take_every_third(const std::uint8_t* source,
+                                           int count,
+                                           std::uint8_t* target) {
+  for (int x = 0; x < count; ++x) target[x] = source[3 * x];
+}
+
+AIRTRUTH_FOR_VECTORS void take_every_fourth(const std::uint8_t* source,
+                                            int count,
+                                            std::uint8_t* target) {
+  for (int x = 0; x < count; ++x) target[x] = source[4 * x];
+}
+
+AIRTRUTH_FOR_VECTORS void mark_light_by_vectors(const std::uint8_t* red,
+                                                const std::uint8_t* green,
+                                                const std::uint8_t* blue,
+                                                int least,
+                                                int count,
+                                                std::uint8_t* target) {
+  for (int x = 0; x < count; ++x)
+    target[x] = (red[x] + 2 * green[x] + blue[x]) / 4 >= least ? 255 : 0;
+}
+
+}  // namespace
+
+void take_every(const std::uint8_t* source, int step, int count, std::uint8_t* target) {
+  if (step == 3) return take_every_third(source, count, target);
+  if (step == 4) return take_every_fourth(source, count, target);
+  for (int x = 0; x < count; ++x) target[x] = source[x * step];
+}
+
+// Functions with several variants are private: GCC exports their names whatever their visibility.
+void mark_light(const std::uint8_t* red,
+                const std::uint8_t* green,
+                const std::uint8_t* blue,
+                int least,
+                int count,
+                std::uint8_t* target) {
+  mark_light_by_vectors(red, green, blue, least, count, target);
+}
 
 Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int height) {
   constexpr std::uint8_t kNoChroma = 128;

@@ -14,8 +14,8 @@ Plane make_plane(int width, int height) {
   plane.width = width;
   plane.height = height;
   plane.stride = (width + 31) / 32 * 32;  // rows begin at multiples of 32 bytes for AVX2
-  plane.samples = std::make_unique_for_overwrite<std::uint8_t[]>(
-      static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(height));
+  plane.samples =
+      take_samples(static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(height));
   return plane;
 }
 

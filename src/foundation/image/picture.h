@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "foundation/geometry/box.h"
+#include "foundation/image/sample_memory.h"
 
 namespace airtruth::image {
 
@@ -33,7 +34,7 @@ struct Plane {
   int width = 0;
   int height = 0;
   int stride = 0;
-  std::unique_ptr<std::uint8_t[]> samples;
+  SampleMemory samples;
 
   std::uint8_t* row(int y) { return samples.get() + static_cast<std::ptrdiff_t>(y) * stride; }
   const std::uint8_t* row(int y) const {

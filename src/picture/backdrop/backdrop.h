@@ -44,34 +44,40 @@ struct Options {
 // it must outlive the Backdrop unchanged.
 class Backdrop {
  public:
-  // Throws Error where no EGL device can be opened.
-  Backdrop(int width, int height, const Options& options);
-  ~Backdrop();
+  Backdrop() = default;
+  virtual ~Backdrop() = default;
+  Backdrop(const Backdrop&) = delete;
+  Backdrop& operator=(const Backdrop&) = delete;
 
   // The virtual image: sRGB over pure green. Focal length and principal point are in airtruth's
   // pixels.
-  image::Rgb8 render(const Pixel& focal_px,
-                     const Pixel& principal_point_px,
-                     const Rigid& cam_from_world,
-                     const HemisphereLight& light,
-                     const std::vector<Instance>& instances);
+  virtual image::Rgb8 render(const Pixel& focal_px,
+                             const Pixel& principal_point_px,
+                             const Rigid& cam_from_world,
+                             const HemisphereLight& light,
+                             const std::vector<Instance>& instances) = 0;
 
   // The same picture, drawn `supersampling` times larger in each direction over transparent black
   // and averaged: linear premultiplied colour and alpha. It is the independent result with which
   // tests compare render's layer.
-  std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
-                                                 const Pixel& principal_point_px,
-                                                 const Rigid& cam_from_world,
-                                                 const HemisphereLight& light,
-                                                 const std::vector<Instance>& instances,
-                                                 int supersampling);
+  virtual std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
+                                                         const Pixel& principal_point_px,
+                                                         const Rigid& cam_from_world,
+                                                         const HemisphereLight& light,
+                                                         const std::vector<Instance>& instances,
+                                                         int supersampling) = 0;
 
   // For example "llvmpipe (LLVM 15.0.6, 256 bits)", or the GPU's name.
-  std::string device_name() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual std::string device_name() const = 0;
 };
+
+// OpenSceneGraph and OpenGL are in a library that is loaded at the first call
+// (foundation/helper/late_library.h). Throws Error where it is not installed, and where no EGL
+// device can be opened.
+std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& options);
+
+// The library holds a BackdropOpener of this name.
+using BackdropOpener = std::unique_ptr<Backdrop> (*)(int width, int height, const Options& options);
+constexpr const char* kBackdropSymbol = "airtruth_open_backdrop";
 
 }  // namespace airtruth::backdrop

@@ -80,13 +80,13 @@ Comparison compare(const aircraft::Mesh& mesh,
                    const HemisphereLight& light,
                    const Precision& precision = {}) {
   const image::Layer layer = traced(mesh, world_from_body, light, precision.quality);
-  backdrop::Backdrop gl(kWidth, kHeight, software());
-  const auto drawn = gl.render_alpha(kFocal,
-                                     kMiddle,
-                                     cam_from_world(),
-                                     {light.to_sun_in_world, light.sun, light.sky, light.ground},
-                                     {{&mesh, world_from_body, kTime}},
-                                     precision.supersampling);
+  const auto gl = backdrop::open_backdrop(kWidth, kHeight, software());
+  const auto drawn = gl->render_alpha(kFocal,
+                                      kMiddle,
+                                      cam_from_world(),
+                                      {light.to_sun_in_world, light.sun, light.sky, light.ground},
+                                      {{&mesh, world_from_body, kTime}},
+                                      precision.supersampling);
   Comparison result;
   double difference = 0;
   double total = 0;

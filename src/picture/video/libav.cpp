@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/image/packed.h"
 
 namespace airtruth::video {
 namespace {
@@ -43,7 +44,7 @@ void copy_component(const AVFrame& frame,
     if (!wide && c.step == 1) {
       std::memcpy(target, source, static_cast<std::size_t>(plane.width));
     } else if (!wide) {
-      for (int x = 0; x < plane.width; ++x) target[x] = source[x * c.step];
+      image::take_every(source, c.step, plane.width, target);
     } else {
       for (int x = 0; x < plane.width; ++x) {
         std::uint16_t value = 0;

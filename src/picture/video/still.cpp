@@ -2,14 +2,17 @@
 #include "picture/video/still.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/packed.h"
 #include "picture/video/libav.h"
 #include "picture/video/reader.h"
 
@@ -216,28 +219,24 @@ void write_still(const fs::path& path, const image::Picture& picture, Flush flus
 
 namespace {
 
-// 255 where a pixel of a mask's picture is light, else 0.
-std::uint8_t free_at(int red, int green, int blue) {
-  return (red + 2 * green + blue) / 4 >= 128 ? 255 : 0;
-}
+// A pixel of a mask's picture is free from this luma on.
+constexpr int kLight = 128;
 
-// R'G'B' is read where it lies: its planes are G, B and R.
+// R'G'B' is read where it lies: its planes are G, B and R. Other pictures are converted.
 void fill_mask(const image::Picture& picture, image::Mask& mask) {
   const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
   const image::Rgb8 packed = is_rgb ? image::Rgb8{} : image::rgb8_from_picture(picture);
   const auto width = static_cast<std::size_t>(picture.width);
+  std::array<std::vector<std::uint8_t>, 3> components;  // of a row
+  for (auto& component : components) component.resize(is_rgb ? 0 : width);
   for (int y = 0; y < picture.height; ++y) {
     auto* row = &mask.free[static_cast<std::size_t>(y) * width];
-    if (is_rgb) {
-      const std::uint8_t* green = picture.planes[0].row(y);
-      const std::uint8_t* blue = picture.planes[1].row(y);
-      const std::uint8_t* red = picture.planes[2].row(y);
-      for (std::size_t x = 0; x < width; ++x) row[x] = free_at(red[x], green[x], blue[x]);
-    } else {
-      const std::uint8_t* rgb = packed.at(0, y);
-      for (std::size_t x = 0; x < width; ++x)
-        row[x] = free_at(rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]);
-    }
+    const std::uint8_t* green = is_rgb ? picture.planes[0].row(y) : components[1].data();
+    const std::uint8_t* blue = is_rgb ? picture.planes[1].row(y) : components[2].data();
+    const std::uint8_t* red = is_rgb ? picture.planes[2].row(y) : components[0].data();
+    for (std::size_t c = 0; c < 3 && !is_rgb; ++c)
+      image::take_every(packed.at(0, y) + c, 3, picture.width, components[c].data());
+    image::mark_light(red, green, blue, kLight, picture.width, row);
   }
 }
 

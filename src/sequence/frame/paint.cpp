@@ -80,7 +80,7 @@ class ChromaKey : public Painter {
     gl.gpu = options.gpu;
     gl.software = options.software_gl;
     const lens::ImageSize size = world.lens.size();
-    backdrop_ = std::make_unique<backdrop::Backdrop>(size.width, size.height, gl);
+    backdrop_ = backdrop::open_backdrop(size.width, size.height, gl);
   }
 
   void compose(image::Picture& picture,

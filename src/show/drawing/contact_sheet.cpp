@@ -157,7 +157,8 @@ image::Rgb8 small_copy(const image::Picture& picture, int width, int height) {
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
   const double scale = static_cast<double>(kTileWidthPx) / picture.width;
   const int height = std::max(1, static_cast<int>(picture.height * scale));
-  cv::Mat tile(height + kCaptionPx, kTileWidthPx, CV_8UC3, kDarkPaper);
+  image::Rgb8 paper = dark_paper(kTileWidthPx, height + kCaptionPx);
+  cv::Mat tile = view(paper);
   image::Rgb8 small = small_copy(picture, kTileWidthPx, height);
   cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
   view(small).copyTo(canvas);
@@ -172,7 +173,7 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
        height + kCaptionPx - 7,
        kTileTextPx,
        boxes.empty() ? kGrey : kWhite);
-  return from_mat(tile);
+  return paper;
 }
 
 // The arrangement of `count` tiles in a rectangle: at most kColumns side by side, and the largest
@@ -212,10 +213,9 @@ image::Rgb8 ContactSheet::sheet() const {
   const Layout layout = layout_of(static_cast<int>(chosen_.size()));
   const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
   const int rows = std::max(1, layout.tiles / layout.columns);
-  cv::Mat canvas(kHeaderPx + rows * (tile_height + kGapPx),
-                 kGapPx + layout.columns * (kTileWidthPx + kGapPx),
-                 CV_8UC3,
-                 kDarkPaper);
+  image::Rgb8 paper = dark_paper(kGapPx + layout.columns * (kTileWidthPx + kGapPx),
+                                 kHeaderPx + rows * (tile_height + kGapPx));
+  cv::Mat canvas = view(paper);
   text(canvas, fitted(title_, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
   for (int i = 0; i < layout.tiles; ++i) {
     // The tiles are spread evenly over all chosen frames, including the first and the last.
@@ -231,7 +231,7 @@ image::Rgb8 ContactSheet::sheet() const {
                                   tile.height)));
   }
   if (chosen_.empty()) text(canvas, "no frames", kGapPx, kHeaderPx + 40, 16, kGrey);
-  return from_mat(canvas);
+  return paper;
 }
 
 }  // namespace airtruth::drawing

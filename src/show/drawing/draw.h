@@ -25,6 +25,9 @@ const cv::Scalar kDarkPaper(28, 28, 30);
 // colours repeat from the ninth intruder on.
 cv::Scalar intruder_colour(std::size_t index);
 
+// A picture of kDarkPaper alone.
+image::Rgb8 dark_paper(int width, int height);
+
 // Shares the samples with the picture.
 cv::Mat view(image::Rgb8& picture);
 // Copies the samples.

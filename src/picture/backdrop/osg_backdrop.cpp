@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/backdrop/backdrop.h"
+#include "picture/backdrop/osg_backdrop.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,10 +71,9 @@ std::array<float, 4> block_mean(
   return mean;
 }
 
-}  // namespace
-
-struct Backdrop::Impl {
-  Impl(int frame_width, int frame_height, const Options& given)
+// The scene graph with its context.
+struct Graph {
+  Graph(int frame_width, int frame_height, const Options& given)
       : width(frame_width), height(frame_height), options(given), egl(given.gpu, given.software) {
     // Suppresses all messages.
     osg::setNotifyLevel(osg::ALWAYS);
@@ -95,7 +94,7 @@ struct Backdrop::Impl {
     gl = osg::GLExtensions::Get(window->getState()->getContextID(), true);
   }
 
-  ~Impl() {
+  ~Graph() {
     const EglContext::Current current(egl);
     green.reset();
     tile.reset();
@@ -138,7 +137,7 @@ struct Backdrop::Impl {
   std::unique_ptr<FrameBuffer> tile;
 };
 
-OsgMesh& Backdrop::Impl::instance_of(const aircraft::Mesh& mesh, std::size_t nth) {
+OsgMesh& Graph::instance_of(const aircraft::Mesh& mesh, std::size_t nth) {
   const auto [place, is_new] = aircraft.try_emplace(&mesh);
   OnDevice& on_device = place->second;
   if (is_new) on_device.textures = osg_textures(mesh, options.anisotropy);
@@ -147,9 +146,9 @@ OsgMesh& Backdrop::Impl::instance_of(const aircraft::Mesh& mesh, std::size_t nth
   return *on_device.instances[nth];
 }
 
-std::vector<Box> Backdrop::Impl::stage(const PinholeView& view,
-                                       const HemisphereLight& light,
-                                       const std::vector<Instance>& instances) {
+std::vector<Box> Graph::stage(const PinholeView& view,
+                              const HemisphereLight& light,
+                              const std::vector<Instance>& instances) {
   root->removeChildren(0, root->getNumChildren());
   shading.set_light(light, view.cam_from_world);
   std::vector<Box> boxes;
@@ -175,10 +174,10 @@ std::vector<Box> Backdrop::Impl::stage(const PinholeView& view,
   return boxes;
 }
 
-void Backdrop::Impl::draw(FrameBuffer& target,
-                          const PinholeView& view,
-                          const Box& in_frame,
-                          const osg::Vec4& clear_colour) {
+void Graph::draw(FrameBuffer& target,
+                 const PinholeView& view,
+                 const Box& in_frame,
+                 const osg::Vec4& clear_colour) {
   osg::Camera& camera = *viewer->getCamera();
   camera.setClearColor(clear_colour);
   camera.setViewport(0, 0, target.width(), target.height());
@@ -190,62 +189,74 @@ void Backdrop::Impl::draw(FrameBuffer& target,
   viewer->frame(0);
 }
 
-Backdrop::Backdrop(int width, int height, const Options& options) {
-  check(width > 0 && height > 0, "the virtual image has a size");
-  impl_ = std::make_unique<Impl>(width, height, options);
-}
+class OsgBackdrop final : public Backdrop {
+ public:
+  OsgBackdrop(int width, int height, const Options& options) : graph_(width, height, options) {}
 
-Backdrop::~Backdrop() = default;
+  image::Rgb8 render(const Pixel& focal_px,
+                     const Pixel& principal_point_px,
+                     const Rigid& cam_from_world,
+                     const HemisphereLight& light,
+                     const std::vector<Instance>& instances) override;
+  std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
+                                                 const Pixel& principal_point_px,
+                                                 const Rigid& cam_from_world,
+                                                 const HemisphereLight& light,
+                                                 const std::vector<Instance>& instances,
+                                                 int supersampling) override;
+  std::string device_name() const override { return graph_.device; }
 
-image::Rgb8 Backdrop::render(const Pixel& focal_px,
-                             const Pixel& principal_point_px,
-                             const Rigid& cam_from_world,
-                             const HemisphereLight& light,
-                             const std::vector<Instance>& instances) {
-  Impl& impl = *impl_;
+ private:
+  Graph graph_;
+};
+
+image::Rgb8 OsgBackdrop::render(const Pixel& focal_px,
+                                const Pixel& principal_point_px,
+                                const Rigid& cam_from_world,
+                                const HemisphereLight& light,
+                                const std::vector<Instance>& instances) {
   const PinholeView view{focal_px, principal_point_px, cam_from_world};
-  const EglContext::Current current(impl.egl);
-  impl.shading.set_encoding(Encoding::kSrgb);
-  impl.stage(view, light, instances);
-  if (!impl.green)
-    impl.green = std::make_unique<FrameBuffer>(
-        *impl.gl, impl.width, impl.height, GL_RGBA8, impl.options.samples);
-  const Box frame{0, 0, static_cast<double>(impl.width), static_cast<double>(impl.height)};
-  impl.draw(*impl.green, view, frame, {0, 1, 0, 1});
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(impl.width);
-  std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(impl.height));
-  impl.green->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
-  image::Rgb8 result = image::make_rgb8(impl.width, impl.height);
-  for (int y = 0; y < impl.height; ++y)
+  const EglContext::Current current(graph_.egl);
+  graph_.shading.set_encoding(Encoding::kSrgb);
+  graph_.stage(view, light, instances);
+  if (!graph_.green)
+    graph_.green = std::make_unique<FrameBuffer>(
+        *graph_.gl, graph_.width, graph_.height, GL_RGBA8, graph_.options.samples);
+  const Box frame{0, 0, static_cast<double>(graph_.width), static_cast<double>(graph_.height)};
+  graph_.draw(*graph_.green, view, frame, {0, 1, 0, 1});
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(graph_.width);
+  std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(graph_.height));
+  graph_.green->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+  image::Rgb8 result = image::make_rgb8(graph_.width, graph_.height);
+  for (int y = 0; y < graph_.height; ++y)
     std::memcpy(result.at(0, y),
-                upside_down.data() + row_bytes * static_cast<std::size_t>(impl.height - 1 - y),
+                upside_down.data() + row_bytes * static_cast<std::size_t>(graph_.height - 1 - y),
                 row_bytes);
   return result;
 }
 
-std::vector<std::array<float, 4>> Backdrop::render_alpha(const Pixel& focal_px,
-                                                         const Pixel& principal_point_px,
-                                                         const Rigid& cam_from_world,
-                                                         const HemisphereLight& light,
-                                                         const std::vector<Instance>& instances,
-                                                         int supersampling) {
+std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const Pixel& focal_px,
+                                                            const Pixel& principal_point_px,
+                                                            const Rigid& cam_from_world,
+                                                            const HemisphereLight& light,
+                                                            const std::vector<Instance>& instances,
+                                                            int supersampling) {
   check(supersampling >= 1 && supersampling <= kTilePx, "supersampling is 1 to 1024");
-  Impl& impl = *impl_;
   const PinholeView view{focal_px, principal_point_px, cam_from_world};
-  const EglContext::Current current(impl.egl);
-  impl.shading.set_encoding(Encoding::kLinear);
-  const std::vector<Box> boxes = impl.stage(view, light, instances);
+  const EglContext::Current current(graph_.egl);
+  graph_.shading.set_encoding(Encoding::kLinear);
+  const std::vector<Box> boxes = graph_.stage(view, light, instances);
   // Side of a tile, in pixels of the frame.
   const int tile_px = kTilePx / supersampling;
   const int size = tile_px * supersampling;
-  if (!impl.tile || impl.tile->width() != size)
-    impl.tile = std::make_unique<FrameBuffer>(*impl.gl, size, size, GL_RGBA32F_ARB, 1);
-  std::vector<std::array<float, 4>> result(static_cast<std::size_t>(impl.width) *
-                                           static_cast<std::size_t>(impl.height));
+  if (!graph_.tile || graph_.tile->width() != size)
+    graph_.tile = std::make_unique<FrameBuffer>(*graph_.gl, size, size, GL_RGBA32F_ARB, 1);
+  std::vector<std::array<float, 4>> result(static_cast<std::size_t>(graph_.width) *
+                                           static_cast<std::size_t>(graph_.height));
   std::vector<std::array<float, 4>> samples(static_cast<std::size_t>(size) *
                                             static_cast<std::size_t>(size));
-  for (int y0 = 0; y0 < impl.height; y0 += tile_px) {
-    for (int x0 = 0; x0 < impl.width; x0 += tile_px) {
+  for (int y0 = 0; y0 < graph_.height; y0 += tile_px) {
+    for (int x0 = 0; x0 < graph_.width; x0 += tile_px) {
       const Box in_frame{static_cast<double>(x0),
                          static_cast<double>(y0),
                          static_cast<double>(tile_px),
@@ -253,11 +264,11 @@ std::vector<std::array<float, 4>> Backdrop::render_alpha(const Pixel& focal_px,
       if (std::none_of(
               boxes.begin(), boxes.end(), [&](const Box& box) { return overlap(box, in_frame); }))
         continue;
-      impl.draw(*impl.tile, view, in_frame, {0, 0, 0, 0});
-      impl.tile->read(GL_RGBA, GL_FLOAT, samples.data());
-      for (int y = y0; y < std::min(y0 + tile_px, impl.height); ++y) {
-        for (int x = x0; x < std::min(x0 + tile_px, impl.width); ++x)
-          result[static_cast<std::size_t>(y) * static_cast<std::size_t>(impl.width) +
+      graph_.draw(*graph_.tile, view, in_frame, {0, 0, 0, 0});
+      graph_.tile->read(GL_RGBA, GL_FLOAT, samples.data());
+      for (int y = y0; y < std::min(y0 + tile_px, graph_.height); ++y) {
+        for (int x = x0; x < std::min(x0 + tile_px, graph_.width); ++x)
+          result[static_cast<std::size_t>(y) * static_cast<std::size_t>(graph_.width) +
                  static_cast<std::size_t>(x)] =
               block_mean(samples, size, x - x0, y - y0, supersampling);
       }
@@ -266,6 +277,11 @@ std::vector<std::array<float, 4>> Backdrop::render_alpha(const Pixel& focal_px,
   return result;
 }
 
-std::string Backdrop::device_name() const { return impl_->device; }
+}  // namespace
+
+std::unique_ptr<Backdrop> make_osg_backdrop(int width, int height, const Options& options) {
+  check(width > 0 && height > 0, "the virtual image has a size");
+  return std::make_unique<OsgBackdrop>(width, height, options);
+}
 
 }  // namespace airtruth::backdrop

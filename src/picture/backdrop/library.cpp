@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library itself, airtruth-late-backdrop.so.
+#include "picture/backdrop/osg_backdrop.h"
+
+extern "C" {
+extern __attribute__((visibility("default")))
+const airtruth::backdrop::BackdropOpener airtruth_open_backdrop;
+const airtruth::backdrop::BackdropOpener airtruth_open_backdrop =
+    &airtruth::backdrop::make_osg_backdrop;
+}
