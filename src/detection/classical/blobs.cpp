@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "detection/classical/parts.h"
 #include "detection/classical/region.h"
 #include "detection/classical/surroundings.h"
 
@@ -19,6 +20,8 @@ constexpr int kMostAcross = kElement + 2;
 // What belongs to the object differs by this share of its contrast: low enough for wings thinner
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
+// What surely does.
+constexpr double kCoreShare = 0.5;
 // Where the noise allows it and the object stays bounded, by this share: a wing in shade has a
 // tenth of the contrast of a sunlit fuselage.
 constexpr double kFaintShare = 0.1;
@@ -29,9 +32,6 @@ constexpr double kBoxNoise = 3;
 // What belongs to an object that responds, which is not bounded on a finer level: half of the
 // response is left at a smoothed edge.
 constexpr double kResponseShare = 0.5;
-// Closing and opening have noise of their own, which adds to that of the sample: its largest
-// responses are as of this many times the noise (classical_test.cpp).
-constexpr double kResponseNoise = 1.2;
 // The samples of a level `finer` times coarser that the smoothing lets an object reach.
 cv::Rect coarser(const cv::Rect& samples, int finer) {
   const cv::Point low{samples.x / finer - 1, samples.y / finer - 1};
@@ -63,48 +63,63 @@ cv::Point strongest_in_block(const Level& level, int bx, int by) {
   return {bx * kBlock + at.x, by * kBlock + at.y};
 }
 
-// The object at a sample of a level against the ring around it: exact where that is a plane with
-// noise. Empty where its samples reach too far.
-std::optional<Blob> against_ring(const std::vector<Level>& levels,
-                                 std::size_t number,
-                                 const cv::Point& sample) {
-  const Level& level = levels[number];
-  auto around = surroundings_of(level, sample, {}, 2);
-  if (!around) return std::nullopt;
-  const double contrast = level.picture.at<short>(sample) - around->middle;
-  const double sign = contrast < 0 ? -1 : 1;
-  const bool has_finer = number > 0;
-  const Level& fine = has_finer ? levels[number - 1] : level;
-  const cv::Point seed = has_finer ? strongest_under(fine, sample, sign) : sample;
-  const double scale = has_finer ? 0.5 : 1;
-  const auto excess = [&](const cv::Point& p) {
-    const double x = scale * p.x - sample.x, y = scale * p.y - sample.y;
-    return std::abs(fine.picture.at<short>(p) - around->at(x, y));
-  };
-  const int finer = has_finer ? 2 : 1;
-  const auto bounded = [&](double least) {
+// A sample of a level against the plane of the ring around it. The object's samples are those of
+// the next finer level, where there is one.
+struct AgainstRing {
+  const Level& level;
+  const Level& fine;
+  int finer;  // samples of `fine` along one of `level`
+  cv::Point sample, seed;
+  Surroundings around;
+  double contrast;
+
+  // The connected samples whose excess is at least so much; empty where they reach too far.
+  std::optional<Region> bounded(double least) const {
+    const auto excess = [&](const cv::Point& p) {
+      const double x = double(p.x) / finer - sample.x, y = double(p.y) / finer - sample.y;
+      return std::abs(fine.picture.at<short>(p) - around.at(x, y));
+    };
     auto region = region_around(fine, seed, finer * kReach, excess, least);
     if (region && std::min(region->samples.width, region->samples.height) > finer * kMostAcross)
       region.reset();
     return region;
-  };
-  const double usual = std::max(kBoxShare * std::abs(contrast),
-                                std::min(0.5 * std::abs(contrast), kBoxNoise * around->noise));
-  const double faint = std::max(kFaintShare * std::abs(contrast),
-                                kFaintNoise * std::max(around->noise, fine.noise_at(seed)));
-  auto region = faint < usual ? bounded(faint) : std::nullopt;
-  if (!region) region = bounded(usual);
-  if (!region) return std::nullopt;
+  }
+  double share(double of_contrast) const { return of_contrast * std::abs(contrast); }
+  double usual() const {
+    return std::max(share(kBoxShare), std::min(share(kCoreShare), kBoxNoise * around.noise));
+  }
+  double faint() const {
+    return std::max(share(kFaintShare), kFaintNoise * std::max(around.noise, fine.noise_at(seed)));
+  }
+};
+
+std::optional<AgainstRing> against_ring(const std::vector<Level>& levels,
+                                        std::size_t number,
+                                        const cv::Point& sample) {
+  const Level& level = levels[number];
+  const auto around = surroundings_of(level, sample, {}, 2);
+  if (!around) return std::nullopt;
+  const double contrast = level.picture.at<short>(sample) - around->middle;
+  if (number == 0) return AgainstRing{level, level, 1, sample, sample, *around, contrast};
+  const Level& fine = levels[number - 1];
+  const cv::Point seed = strongest_under(fine, sample, contrast < 0 ? -1 : 1);
+  return AgainstRing{level, fine, 2, sample, seed, *around, contrast};
+}
+
+// The object against the ring: exact where that is a plane with noise.
+std::optional<Blob> blob_of(const AgainstRing& ring, const Region& region, std::size_t number) {
+  const Level& level = ring.level;
   // Wings that reach across the ring are neither noise nor surroundings.
-  around = surroundings_of(level, sample, coarser(region->samples, finer), 1);
+  const auto around = surroundings_of(level, ring.sample, coarser(region.samples, ring.finer), 1);
   if (!around) return std::nullopt;
   Blob blob;
-  blob.box_px = box_of(*region, fine);
-  blob.against_ring = std::abs(level.picture.at<short>(sample) - around->middle) / around->noise;
+  blob.box_px = box_of(region, ring.fine);
+  blob.against_ring =
+      std::abs(level.picture.at<short>(ring.sample) - around->middle) / around->noise;
   blob.contrast_to_noise = blob.against_ring;
-  blob.is_dark = sign < 0;
+  blob.is_dark = ring.contrast < 0;
   blob.level = number;
-  blob.sample = sample;
+  blob.sample = ring.sample;
   return blob;
 }
 
@@ -129,7 +144,7 @@ std::optional<Region> responding_region(const Level& level, const cv::Point& sam
 
 double response_to_noise(const Level& level, const cv::Point& sample, double noise) {
   const double contrast = level.response.at<short>(sample) - Level::kMeanResponse * noise;
-  return contrast / std::hypot(kResponseNoise * noise, level.clutter_at(sample));
+  return contrast / std::hypot(Level::kLargestResponses * noise, level.clutter_at(sample));
 }
 
 // The object at a sample of a level against what closing or opening makes of its place, which
@@ -157,19 +172,60 @@ std::optional<Blob> against_response(const Level& level,
   return blob;
 }
 
+// The object by its parts, within the one of its bounds that holds them best. Those by the ring are
+// at hand; what is bounded without having parts of its own is left to the other measures.
+std::optional<Blob> by_parts(const std::vector<Level>& levels,
+                             std::size_t number,
+                             const cv::Point& sample,
+                             const AgainstRing* ring,
+                             const std::vector<Region>& by_ring) {
+  const Level& level = levels[number];
+  std::vector<Box> boxes;
+  for (const Region& region : by_ring) boxes.push_back(box_of(region, ring->fine));
+  const auto is_short = [](const Box& box) {
+    return std::max(box.width, box.height) <= kLongElement;
+  };
+  if (!boxes.empty() && std::all_of(boxes.begin(), boxes.end(), is_short)) return std::nullopt;
+  if (const auto core = ring ? ring->bounded(ring->share(kCoreShare)) : std::nullopt)
+    boxes.push_back(box_of(*core, ring->fine));
+  if (const auto region = responding_region(level, sample, level.noise_at(sample)))
+    boxes.push_back(box_of(*region, level));
+  const auto whole = whole_of_parts(levels, number, boxes);
+  if (!whole) return std::nullopt;
+  Blob blob;
+  blob.box_px = whole->box_px;
+  blob.contrast_to_noise = blob.against_ring = whole->to_noise;
+  blob.is_dark = level.is_dark.at<std::uint8_t>(sample) != 0;
+  blob.level = number;
+  blob.sample = sample;
+  return blob;
+}
+
 }  // namespace
 
 std::optional<Blob> blob_at(const std::vector<Level>& levels,
                             std::size_t number,
                             const cv::Point& sample) {
+  const Level& level = levels[number];
   const auto ring = against_ring(levels, number, sample);
-  const double least = ring ? ring->contrast_to_noise : 0;
-  const auto response = against_response(levels[number], number, sample, least);
-  if (!ring || !response) return ring ? ring : response;
-  // The ring's box follows the finer level.
-  Blob blob = *ring;
-  blob.contrast_to_noise = response->contrast_to_noise;
-  return blob;
+  // The widest bounds first.
+  std::vector<Region> bounds;
+  const auto bound = [&](double least_excess) {
+    if (auto region = ring->bounded(least_excess)) bounds.push_back(*region);
+  };
+  if (ring && ring->faint() < ring->usual()) bound(ring->faint());
+  if (ring && (bounds.empty() || number >= kPartOctaves)) bound(ring->usual());
+  std::optional<Blob> blob;
+  if (!bounds.empty()) blob = blob_of(*ring, bounds.front(), number);
+  const double least = blob ? blob->contrast_to_noise : 0;
+  if (const auto response = against_response(level, number, sample, least)) {
+    // The ring's box follows the finer level.
+    if (!blob) blob = response;
+    blob->contrast_to_noise = response->contrast_to_noise;
+  }
+  if (number < kPartOctaves) return blob;
+  const auto whole = by_parts(levels, number, sample, ring ? &*ring : nullptr, bounds);
+  return whole && whole->contrast_to_noise > (blob ? blob->contrast_to_noise : 0) ? whole : blob;
 }
 
 bool is_same_object(const Box& a, const Box& b) {

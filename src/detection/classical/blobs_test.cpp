@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "detection/classical/kinds.h"
+#include "detection/classical/parts.h"
 #include "detection/classical/region.h"
 #include "detection/classical/scale_space.h"
 #include "detection/classical/surroundings.h"
@@ -101,6 +102,48 @@ TEST(Surroundings, NoiseFollowsFromItsResponses) {
     EXPECT_GT(ratio, 0.95) << number;
     EXPECT_LT(ratio, number == 0 ? 1.3 : 2.2) << number;
   }
+}
+
+// An independent estimate of what white noise makes of the largest response of a block, and what a
+// box of noise says of parts: what its ring says.
+TEST(Parts, NoiseIsAsStated) {
+  const double noise = 6;
+  std::mt19937 random(8);
+  const auto levels = scale_space(sky({}, noise, random, 640, 480));
+  const Level& level = levels.front();
+  double squares = 0;
+  for (int by = 3; by < level.largest.rows - 3; ++by)
+    for (int bx = 3; bx < level.largest.cols - 3; ++bx)
+      squares += std::pow(level.largest.at<short>(by, bx) / double(kGreyScale), 2);
+  const double rms = std::sqrt(squares / ((level.largest.rows - 6) * (level.largest.cols - 6)));
+  EXPECT_NEAR(rms / (kNoiseShare * noise), kLargestOfBlock, 0.05 * kLargestOfBlock);
+  double most = 0;
+  for (int y = 40; y < 380; y += 20)
+    for (int x = 40; x < 500; x += 20)
+      for (const double side : {30.0, 80.0})
+        most =
+            std::max(most, parts_within(level, {double(x), double(y), side, side / 2})->to_noise);
+  EXPECT_LT(most, kLeastContrastToNoise);
+}
+
+// Blocks whose responses are so many times those around say so, and the box that holds them and
+// little else is the likeliest.
+TEST(Parts, WholeIsTheBoxThatHoldsThemAll) {
+  std::mt19937 random(8);
+  std::vector<Target> parts;
+  for (int x = 200; x <= 260; x += 12)
+    parts.push_back({{x + 0.5, 150.5}, x % 24 == 8 ? 40.0 : -40.0});
+  const auto levels = scale_space(sky(parts, 2, random, 640, 480));
+  const Box all{196, 146, 69, 9};
+  const auto whole = whole_of_parts(
+      levels, 4, {{226, 146, 39, 9}, {100, 80, 300, 160}, all, {180, 120, 100, 60}, {0, 0, 9, 9}});
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->box_px.x, all.x);
+  EXPECT_EQ(whole->box_px.width, all.width);
+  EXPECT_GT(whole->to_noise, 20);
+  // A tenth of the blocks makes a third of it.
+  const auto diluted = whole_of_parts(levels, 4, {{100, 80, 300, 160}});
+  EXPECT_TRUE(!diluted || diluted->to_noise < 0.5 * whole->to_noise);
 }
 
 // What stands elsewhere is no noise of an object's ring.

@@ -130,6 +130,67 @@ TEST(CloseMinusOpen, ALargeObjectIsNotItsOwnClutter) {
   }
 }
 
+// A sky of soft clouds, of a third to all of a large aircraft's length.
+image::Picture cloudy_sky(std::mt19937& random) {
+  image::Picture picture = sky({}, 1, random, 640, 480);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const double cloud = 5 * std::sin(0.11 * x + 0.02 * y) * std::sin(0.13 * y) +
+                           7 * std::sin(0.045 * x - 0.03 * y) * std::cos(0.06 * y + 0.01 * x);
+      std::uint8_t& sample = picture.planes[0].row(y)[x];
+      sample = static_cast<std::uint8_t>(std::lround(sample + cloud));
+    }
+  return picture;
+}
+
+// An aircraft from the side: a sunlit fuselage with a row of dark windows, a wing in shade that
+// slants below it, two engines and a fin. In the mean it differs from the sky by a fraction of what
+// its parts do.
+Box put_aircraft(image::Picture& picture, int length) {
+  const int left = 240, top = 200, unit = length / 24;
+  fill(picture, {left, top, length, 2 * unit}, 225);
+  for (int window = 2; window < 22; window += 3)
+    fill(picture, {left + window * unit, top + unit / 2, unit, unit}, 40);
+  for (int down = 0; down < 2 * unit; ++down)
+    fill(picture, {left + 9 * unit + 2 * down, top + 2 * unit + down, 5 * unit, 1}, 50);
+  for (const int engine : {7, 15})
+    fill(picture, {left + engine * unit, top + 2 * unit, 2 * unit, unit}, 30);
+  for (int up = 0; up < 3 * unit; ++up)
+    fill(picture, {left + length - 3 * unit + up / 2, top - 1 - up, 2 * unit, 1}, 60);
+  return {double(left), double(top - 3 * unit), double(length), double(7 * unit)};
+}
+
+TEST(CloseMinusOpen, FindsLargeAircraftInACloudySky) {
+  const auto detector = make_classical("cmo");
+  for (const int length : {70, 100, 150}) {
+    std::mt19937 random(6);
+    image::Picture picture = cloudy_sky(random);
+    const Box box = put_aircraft(picture, length);
+    detector->begin(sequence_of(640, 480));
+    const auto found = detector->detect({0, 0, &picture, true, {}});
+    ASSERT_FALSE(found.empty()) << length;
+    const Detection& first = found.front();
+    // A score at which no other detection of the picture is near.
+    EXPECT_GT(first.score, 30) << length;
+    EXPECT_GT(evaluation::overlap(first.box_px, box), 0.5)
+        << length << ": " << first.box_px.x << "," << first.box_px.y << " " << first.box_px.width
+        << "x" << first.box_px.height;
+    for (std::size_t other = 1; other < found.size(); ++other)
+      EXPECT_LT(found[other].score, 0.5 * first.score) << length;
+  }
+}
+
+// A mast before the same sky ends nowhere, and a box that holds a part of it has more of it around.
+TEST(CloseMinusOpen, AMastBeforeCloudsIsNoAircraft) {
+  const auto detector = make_classical("cmo");
+  std::mt19937 random(6);
+  image::Picture picture = cloudy_sky(random);
+  fill(picture, {300, 0, 5, 480}, 60);
+  detector->begin(sequence_of(640, 480));
+  for (const Detection& one : detector->detect({0, 0, &picture, true, {}}))
+    EXPECT_LT(one.score, 15) << one.box_px.x << "," << one.box_px.y;
+}
+
 // A slanting antenna on a roof responds, and is part of the house: an object must end.
 TEST(CloseMinusOpen, AnAntennaIsPartOfItsHouse) {
   const auto detector = make_classical("cmo");

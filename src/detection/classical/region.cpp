@@ -37,16 +37,10 @@ class Grower {
       low = {std::min(low.x, at.x), std::min(low.y, at.y)};
       high = {std::max(high.x, at.x), std::max(high.y, at.y)};
       bound(at);
-      for (int dy = -kGap; dy <= kGap; ++dy)
-        for (int dx = -kGap; dx <= kGap; ++dx) {
-          const cv::Point next{at.x + dx, at.y + dy};
-          if (!is_inside(next)) continue;
-          // Each sample is looked at once.
-          if (is_within_reach(next) && !mark(next)) continue;
-          if (excess_(next) < least_) continue;
-          if (!is_within_reach(next)) return std::nullopt;
-          open.push_back(next);
-        }
+      if (is_all_within(at))
+        take_all_around(at, open);
+      else if (!take_around(at, open))
+        return std::nullopt;
     }
     region_.samples = cv::Rect(low, high + cv::Point(1, 1));
     region_.share = most_ > least_ ? least_ / most_ : 1;
@@ -54,6 +48,37 @@ class Grower {
   }
 
  private:
+  // Takes what belongs to the region of the samples around one. False where that is out of reach.
+  bool take_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+    for (int dy = -kGap; dy <= kGap; ++dy)
+      for (int dx = -kGap; dx <= kGap; ++dx) {
+        const cv::Point next{at.x + dx, at.y + dy};
+        if (!is_inside(next)) continue;
+        // Each sample is looked at once.
+        if (is_within_reach(next) && !mark(next)) continue;
+        if (excess_(next) < least_) continue;
+        if (!is_within_reach(next)) return false;
+        open.push_back(next);
+      }
+    return true;
+  }
+  // The same where all samples around are in reach and in the picture, which is most of the work.
+  void take_all_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+    for (int dy = -kGap; dy <= kGap; ++dy) {
+      char* seen = &cell({at.x - kGap, at.y + dy});
+      for (int dx = -kGap; dx <= kGap; ++dx, ++seen) {
+        if (*seen != 0) continue;
+        *seen = 1;
+        const cv::Point next{at.x + dx, at.y + dy};
+        if (excess_(next) >= least_ && !(hides_ && level_.hides(next))) open.push_back(next);
+      }
+    }
+  }
+  bool is_all_within(const cv::Point& p) const {
+    return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) + kGap <= reach_ &&
+           p.x >= kGap && p.y >= kGap && p.x + kGap < level_.picture.cols &&
+           p.y + kGap < level_.picture.rows;
+  }
   bool is_inside(const cv::Point& p) const {
     return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
            !(hides_ && level_.hides(p));
@@ -63,12 +88,15 @@ class Grower {
   }
   // False where it was marked.
   bool mark(const cv::Point& p) const {
-    char& cell =
-        seen_[static_cast<std::size_t>(p.y - seed_.y + reach_) * static_cast<std::size_t>(side_) +
-              static_cast<std::size_t>(p.x - seed_.x + reach_)];
-    const bool is_new = cell == 0;
-    cell = 1;
+    char& seen = cell(p);
+    const bool is_new = seen == 0;
+    seen = 1;
     return is_new;
+  }
+  char& cell(const cv::Point& p) const {
+    return seen_[static_cast<std::size_t>(p.y - seed_.y + reach_) *
+                     static_cast<std::size_t>(side_) +
+                 static_cast<std::size_t>(p.x - seed_.x + reach_)];
   }
 
   // The bounds reach as far as the excess does between this sample and its neighbours.

@@ -193,6 +193,9 @@ Level level_of(cv::Mat picture, int step, const cv::Mat& hidden) {
   if (!hidden.empty()) without_hidden(hidden, mean);
   level.typical = typical_of(mean);
   level.clutter = clutter_of(level);
+  cv::Mat squares;
+  cv::multiply(level.largest, level.largest, squares, 1, CV_64F);
+  cv::integral(squares, level.largest_squares, CV_64F);
   return level;
 }
 

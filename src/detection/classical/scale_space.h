@@ -51,12 +51,17 @@ struct Level {
   // response of those that hold an isolated object, as trees in a field, waves or small clouds do;
   // 0 in noise and in a clear sky. The block's own object does not count.
   cv::Mat clutter;
+  // CV_64F, for each corner of a block: the sum of the squares of `largest` above and to the left.
+  cv::Mat largest_squares;
   // CV_8U, 255 where a sample shows the own aircraft, and does not respond; empty: none does.
   cv::Mat hidden;
 
   // Mean response over the standard deviation of white noise in the smoothed picture, from a
   // simulation (classical_test.cpp repeats it).
   static constexpr double kMeanResponse = 0.8;
+  // Closing and opening have noise of their own, which adds to that of the sample: the largest
+  // responses are as of this many times the noise (classical_test.cpp).
+  static constexpr double kLargestResponses = 1.2;
   // The least value that `typical` has, that of a sky without noise.
   static double quietest();
   // Where the centre of a sample lies in the picture, and the sample that is nearest to a position.
