@@ -9,13 +9,12 @@ with a name that wants to be markup, finds nothing.
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 
 from numbered_clip import READ_NUMBER, box_of, write_otb
-from report_page_test import looked_at
+from report_page_test import browser_or_skip, looked_at
 
 CLIP = "b \"numbered\" 100% '<script>alert(1)<script>"
 BLIND = "<img src=x onerror=alert(1)>"
@@ -102,10 +101,7 @@ def write_results(folder, lines):
 
 def main():
     airtruth = os.path.abspath(sys.argv[1])
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if not browser:
-        print("detectors_page_test: skipped: no chromium")
-        sys.exit(77)
+    browser = browser_or_skip("detectors_page_test")
     with tempfile.TemporaryDirectory(prefix="airtruth_detection_") as root:
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=root)
         write_otb(root + "/otb", [CLIP], FRAMES)

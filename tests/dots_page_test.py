@@ -6,13 +6,12 @@ every dot is full and every ring is empty, each stands free of its neighbour, an
 """
 
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 
 from numbered_clip import box_of, write_otb
-from report_page_test import looked_at
+from report_page_test import browser_or_skip, looked_at
 
 LEAST_APART_PX = 5
 
@@ -65,10 +64,7 @@ const made = (data) => {
 
 def main():
     airtruth = os.path.abspath(sys.argv[1])
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if not browser:
-        print("dots_page_test: skipped: no chromium")
-        sys.exit(77)
+    browser = browser_or_skip("dots_page_test")
     with tempfile.TemporaryDirectory(prefix="airtruth_dots_") as root:
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=root)
         write_otb(root + "/otb", ["clip"], 5)

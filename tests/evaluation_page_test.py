@@ -11,14 +11,13 @@ import json
 import math
 import os
 import re
-import shutil
 import struct
 import subprocess
 import sys
 import tempfile
 
 from numbered_clip import READ_NUMBER, box_of, write_otb
-from report_page_test import looked_at
+from report_page_test import browser_or_skip, looked_at
 
 CATALOGUE = """
 name = "<script><b onclick=x>set"
@@ -227,10 +226,7 @@ def png_size(path):
 
 def main():
     airtruth = os.path.abspath(sys.argv[1])
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if not browser:
-        print("evaluation_page_test: skipped: no chromium")
-        sys.exit(77)
+    browser = browser_or_skip("evaluation_page_test")
     with tempfile.TemporaryDirectory(prefix="airtruth_evaluation_") as root:
         numbered(airtruth, browser, root)
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, cwd=root)

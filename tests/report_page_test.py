@@ -278,12 +278,18 @@ def looked_at(browser, folder, size, look=LOOK):
     return json.loads(html.unescape(match.group(1)))
 
 
-def main():
-    airtruth = os.path.abspath(sys.argv[1])
+def browser_or_skip(test):
+    """The browser's path. Without one the test ends as skipped."""
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if not browser:
-        print("report_page_test: skipped: no chromium")
+        print(f"{test}: skipped: no chromium")
         sys.exit(77)
+    return browser
+
+
+def main():
+    airtruth = os.path.abspath(sys.argv[1])
+    browser = browser_or_skip("report_page_test")
     with tempfile.TemporaryDirectory(prefix="airtruth_report_") as root:
         catalogue = os.path.join(root, "c.toml")
         with open(catalogue, "w", encoding="utf-8") as file:

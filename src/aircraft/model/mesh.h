@@ -39,8 +39,7 @@ struct Texture {
 };
 
 // The opacity from which on a surface counts as opaque: 250 / 255, because painting and packing
-// leave some code values less than 255 in the alpha of paint that hides all behind it. Panes of
-// aircraft have opacities of 0.5 and less.
+// leave some code values less than 255 in the alpha of paint that hides all behind it.
 constexpr float kOpaque = 0.98f;
 
 struct Material {

@@ -42,6 +42,8 @@ Silhouette::Silhouette(const TracedIntruder& actor,
     : patch_(patch), grid_(grid), actor_(actor), sees_(sees) {
   const std::vector<Eye> eyes = eyes_of(actor, view, grid);
   std::vector<Reach> reaches;
+  // Memory that grows by doubling is copied, and its pages are cleared, for each frame anew.
+  if (!actor.moves) still_.reserve(actor.placed.model->mesh.triangle_count());
   for (std::size_t part = 0; part < actor.placed.model->mesh.parts.size(); ++part)
     add_part(actor, part, eyes, reaches);
   sort_by_pixel(reaches);
@@ -136,8 +138,6 @@ void Silhouette::add_part(const TracedIntruder& actor,
   const double exposure_share = actor.moves ? grid_.exposure_s() / (span.end_s - span.begin_s) : 0;
   Vertices vertices(actor, {actor.placed.body_from_part[part]}, eyes);
   const std::optional<FacingAway> faces_away = facing_away(actor, part, eyes);
-  // Memory that grows by doubling is copied, and its pages are cleared, for each frame anew.
-  if (!actor.moves) still_.reserve(still_.size() + mesh_part.triangles.size());
   for (std::size_t i = 0; i < mesh_part.triangles.size(); ++i) {
     if (faces_away && (*faces_away)(i)) continue;
     const std::vector<Corners>& corners = vertices.look_at(mesh_part.triangles[i]);
