@@ -51,40 +51,71 @@ std::optional<StillTriangle> StillTriangle::of(const Corners& corners,
   triangle.right_ = std::max({a.x(), b.x(), c.x()});
   const double area = across(b - a, c - a);
   // A triangle that is seen edge-on is outside everywhere.
-  if (area == 0) triangle.opposite_[0] = {kNowhere, 0, 0};
+  if (area == 0) triangle.lines_.at_origin[0] = kNowhere;
   if (area == 0) return triangle;
   const double sign = area > 0 ? 1 : -1;
   for (std::size_t k = 0; k < 3; ++k) {
     const Pixel from = corners[(k + 1) % 3]->pixel;
     const Pixel inward = sign * inward_of(from, corners[(k + 2) % 3]->pixel);
-    triangle.opposite_[k] = {-inward.dot(from), inward.x(), inward.y()};
+    Lines& lines = triangle.lines_;
+    lines.at_origin[k] = -inward.dot(from);
+    lines.per_x[k] = inward.x();
+    lines.per_y[k] = inward.y();
     const double share = corners[k]->nearness / std::abs(area);
     triangle.nearness_[k] = static_cast<float>(corners[k]->nearness);
-    triangle.depth_.at_origin += share * triangle.opposite_[k].at_origin;
-    triangle.depth_.per_x += share * triangle.opposite_[k].per_x;
-    triangle.depth_.per_y += share * triangle.opposite_[k].per_y;
+    lines.at_origin[kDepth] += share * lines.at_origin[k];
+    lines.per_x[kDepth] += share * lines.per_x[k];
+    lines.per_y[kDepth] += share * lines.per_y[k];
   }
   return triangle;
 }
 
+Straight StillTriangle::over(std::size_t line, const PixelPlace& pixel) const {
+  return {static_cast<float>(lines_.at_origin[line] + lines_.per_x[line] * pixel.x +
+                             lines_.per_y[line] * pixel.y),
+          static_cast<float>(lines_.per_x[line]),
+          static_cast<float>(lines_.per_y[line]),
+          0};
+}
+
 PixelSides StillTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
+  const double x = pixel.x;
+  const double y = pixel.y;
+  // Of each line, over the pixel: at its corner, its slopes, and the largest and the smallest
+  // value.
+  std::array<float, 4> at;
+  std::array<float, 4> per_x;
+  std::array<float, 4> per_y;
+  std::array<float, 4> highest;
+  std::array<float, 4> lowest;
+  for (std::size_t k = 0; k < 4; ++k) {
+    at[k] = static_cast<float>(lines_.at_origin[k] + lines_.per_x[k] * x + lines_.per_y[k] * y);
+    per_x[k] = static_cast<float>(lines_.per_x[k]);
+    per_y[k] = static_cast<float>(lines_.per_y[k]);
+    highest[k] = at[k] + (std::max(0.0F, per_x[k]) + std::max(0.0F, per_y[k]));
+    lowest[k] = at[k] + (std::min(0.0F, per_x[k]) + std::min(0.0F, per_y[k]));
+  }
   PixelSides result;
-  for (const Line& line : opposite_)
-    if (!add_side(line.over(pixel), result)) return result;
-  result.strips = strips_between(left_ - pixel.x, right_ - pixel.x);
-  if (depth != nullptr) *depth = depth_over(pixel);
+  result.is_outside = (highest[0] < 0) | (highest[1] < 0) | (highest[2] < 0);
+  if (result.is_outside) return result;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (lowest[k] < 0)
+      result.side[static_cast<std::size_t>(result.crossing++)] = {at[k], per_x[k], per_y[k], 0};
+  result.strips = strips_between(left_ - x, right_ - x);
+  if (depth != nullptr)
+    *depth = {{at[kDepth], per_x[kDepth], per_y[kDepth], 0}, farthest(), nearest()};
   return result;
 }
 
 PixelDepth StillTriangle::depth_over(const PixelPlace& pixel) const {
-  return {depth_.over(pixel), farthest(), nearest()};
+  return {over(kDepth, pixel), farthest(), nearest()};
 }
 
 std::array<float, 2> StillTriangle::weights_at(const PixelPlace& pixel,
                                                const std::array<float, 3>& place) const {
   std::array<float, 3> weight;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Straight side = opposite_[k].over(pixel);
+    const Straight side = over(k, pixel);
     // Equal steps in the picture are not equal steps on the surface.
     weight[k] = std::max(0.0F, side.a + side.b * place[0] + side.c * place[1]) * nearness_[k];
   }
