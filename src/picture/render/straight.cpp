@@ -96,7 +96,7 @@ PixelSides StillTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const
     lowest[k] = at[k] + (std::min(0.0F, per_x[k]) + std::min(0.0F, per_y[k]));
   }
   PixelSides result;
-  result.is_outside = (highest[0] < 0) | (highest[1] < 0) | (highest[2] < 0);
+  result.is_outside = highest[0] < 0 || highest[1] < 0 || highest[2] < 0;
   if (result.is_outside) return result;
   for (std::size_t k = 0; k < 3; ++k)
     if (lowest[k] < 0)
