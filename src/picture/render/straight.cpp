@@ -54,10 +54,10 @@ std::optional<StillTriangle> StillTriangle::of(const Corners& corners,
   if (area == 0) triangle.lines_.at_origin[0] = kNowhere;
   if (area == 0) return triangle;
   const double sign = area > 0 ? 1 : -1;
+  Lines& lines = triangle.lines_;
   for (std::size_t k = 0; k < 3; ++k) {
     const Pixel from = corners[(k + 1) % 3]->pixel;
     const Pixel inward = sign * inward_of(from, corners[(k + 2) % 3]->pixel);
-    Lines& lines = triangle.lines_;
     lines.at_origin[k] = -inward.dot(from);
     lines.per_x[k] = inward.x();
     lines.per_y[k] = inward.y();
@@ -70,52 +70,37 @@ std::optional<StillTriangle> StillTriangle::of(const Corners& corners,
   return triangle;
 }
 
-Straight StillTriangle::over(std::size_t line, const PixelPlace& pixel) const {
-  return {static_cast<float>(lines_.at_origin[line] + lines_.per_x[line] * pixel.x +
-                             lines_.per_y[line] * pixel.y),
-          static_cast<float>(lines_.per_x[line]),
-          static_cast<float>(lines_.per_y[line]),
-          0};
-}
-
 PixelSides StillTriangle::over(const PixelPlace& pixel, PixelDepth* depth) const {
-  const double x = pixel.x;
-  const double y = pixel.y;
-  // Of each line, over the pixel: at its corner, its slopes, and the largest and the smallest
-  // value.
-  std::array<float, 4> at;
-  std::array<float, 4> per_x;
-  std::array<float, 4> per_y;
+  const PixelLines lines = lines_.over(pixel);
+  // The tests of add_side(), for all lines at once.
   std::array<float, 4> highest;
   std::array<float, 4> lowest;
   for (std::size_t k = 0; k < 4; ++k) {
-    at[k] = static_cast<float>(lines_.at_origin[k] + lines_.per_x[k] * x + lines_.per_y[k] * y);
-    per_x[k] = static_cast<float>(lines_.per_x[k]);
-    per_y[k] = static_cast<float>(lines_.per_y[k]);
-    highest[k] = at[k] + (std::max(0.0F, per_x[k]) + std::max(0.0F, per_y[k]));
-    lowest[k] = at[k] + (std::min(0.0F, per_x[k]) + std::min(0.0F, per_y[k]));
+    const float per_x = lines.per_x[k];
+    const float per_y = lines.per_y[k];
+    highest[k] = lines.at_corner[k] + (std::max(0.0F, per_x) + std::max(0.0F, per_y));
+    lowest[k] = lines.at_corner[k] + (std::min(0.0F, per_x) + std::min(0.0F, per_y));
   }
   PixelSides result;
   result.is_outside = highest[0] < 0 || highest[1] < 0 || highest[2] < 0;
   if (result.is_outside) return result;
   for (std::size_t k = 0; k < 3; ++k)
-    if (lowest[k] < 0)
-      result.side[static_cast<std::size_t>(result.crossing++)] = {at[k], per_x[k], per_y[k], 0};
-  result.strips = strips_between(left_ - x, right_ - x);
-  if (depth != nullptr)
-    *depth = {{at[kDepth], per_x[kDepth], per_y[kDepth], 0}, farthest(), nearest()};
+    if (lowest[k] < 0) result.side[static_cast<std::size_t>(result.crossing++)] = lines.line(k);
+  result.strips = strips_between(left_ - pixel.x, right_ - pixel.x);
+  if (depth != nullptr) *depth = depth_of(lines);
   return result;
 }
 
 PixelDepth StillTriangle::depth_over(const PixelPlace& pixel) const {
-  return {over(kDepth, pixel), farthest(), nearest()};
+  return depth_of(lines_.over(pixel));
 }
 
 std::array<float, 2> StillTriangle::weights_at(const PixelPlace& pixel,
                                                const std::array<float, 3>& place) const {
+  const PixelLines lines = lines_.over(pixel);
   std::array<float, 3> weight;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Straight side = over(k, pixel);
+    const Straight side = lines.line(k);
     // Equal steps in the picture are not equal steps on the surface.
     weight[k] = std::max(0.0F, side.a + side.b * place[0] + side.c * place[1]) * nearness_[k];
   }

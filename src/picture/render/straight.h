@@ -81,17 +81,36 @@ class StillTriangle {
                                   const std::array<float, 3>& place_and_time) const;
 
  private:
-  // Four linear functions of the place in the frame, side by side, so that one vector instruction
-  // computes several of them.
+  // Four linear functions of the place in a pixel.
+  struct PixelLines {
+    std::array<float, 4> at_corner;
+    std::array<float, 4> per_x;
+    std::array<float, 4> per_y;
+    Straight line(std::size_t k) const { return {at_corner[k], per_x[k], per_y[k], 0}; }
+  };
+  // The same of the place in the frame, side by side, so that one vector instruction computes
+  // several of them.
   struct Lines {
     std::array<double, 4> at_origin{};
     std::array<double, 4> per_x{};
     std::array<double, 4> per_y{};
+    PixelLines over(const PixelPlace& pixel) const {
+      const double x = pixel.x;
+      const double y = pixel.y;
+      PixelLines result;
+      for (std::size_t k = 0; k < 4; ++k) {
+        result.at_corner[k] = static_cast<float>(at_origin[k] + per_x[k] * x + per_y[k] * y);
+        result.per_x[k] = static_cast<float>(per_x[k]);
+        result.per_y[k] = static_cast<float>(per_y[k]);
+      }
+      return result;
+    }
   };
   static constexpr std::size_t kDepth = 3;
   StillTriangle() = default;
-  // One of the lines, from a pixel's corner.
-  Straight over(std::size_t line, const PixelPlace& pixel) const;
+  PixelDepth depth_of(const PixelLines& lines) const {
+    return {lines.line(kDepth), farthest(), nearest()};
+  }
 
   // The first three: the value of the side opposite to a corner, in pixels times the side's length,
   // positive inside. kDepth: the nearness.
