@@ -6,10 +6,10 @@
 #include <cstring>
 
 #include "foundation/base/error.h"
-#include "picture/render/closed.h"
 #include "picture/render/opaque.h"
 #include "picture/render/openness.h"
 #include "picture/render/openness_cache.h"
+#include "picture/render/outer_sides.h"
 
 namespace airtruth::render {
 namespace {
@@ -159,8 +159,7 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
   }
   impl_->find_sphere();
   impl_->find_openness(openness_cache(cache, mesh, device.name));
-  impl_->outward = outward_normals(mesh, impl_->opaque);
-  leave_open_insides(*impl_, impl_->outward);
+  impl_->outer_sides = outer_sides(*impl_);
 }
 
 void Model::Impl::find_openness(const OpennessCache& cache) {

@@ -16,6 +16,7 @@
 namespace airtruth::render {
 
 struct OpennessCache;
+enum OuterSides : std::uint8_t;
 
 struct ReleaseDevice {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -77,9 +78,8 @@ struct Model::Impl {
   std::vector<std::vector<Facet>> facets;  // [part][triangle]
   // By [part][triangle]; 1 where the whole triangle is opaque.
   std::vector<std::vector<std::uint8_t>> opaque;
-  // By [part][triangle]: of outward_normals() and leave_open_insides() in closed.h.
-  std::vector<std::vector<std::int8_t>> outward;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
+  std::vector<std::vector<OuterSides>> outer_sides;     // [part][triangle]: of outer_sides.h
   Eigen::Vector3d centre_in_body{0, 0, 0};
   // Radius of a sphere about the centre that contains every part at any angle.
   double radius_m = 0;

@@ -47,7 +47,7 @@ void Pieces::divide(int samples, int blocks, const Pixel& motion_px) {
   for (std::size_t g = 0; g < groups_; ++g) {
     Group& group = group_[g];
     const bool is_large = group.samples * kLargeShare >= samples;
-    const int still = is_large ? blocks : std::max(1, blocks / 2);
+    const int still = is_large ? blocks : std::max(1, blocks / 4);
     group.columns = still == 1 ? 1 : over(still, motion_px.x());
     group.rows = still == 1 ? 1 : over(still, motion_px.y());
     if (count_ + static_cast<std::size_t>(group.columns * group.rows) + groups_ > block_.size())

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "picture/render/closed.h"
+#include "picture/render/outer_sides.h"
 
 namespace airtruth::render {
 namespace {
@@ -20,16 +20,16 @@ constexpr std::size_t kMaxTriangles = 1024;
 constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 25;
 
 // Empty where the eye may be inside the aircraft.
-std::optional<FacingAway> facing_away(const TracedIntruder& actor,
-                                      std::size_t part,
-                                      const std::vector<Eye>& eyes) {
+std::optional<HiddenTriangles> hidden_triangles(const TracedIntruder& actor,
+                                                std::size_t part,
+                                                const std::vector<Eye>& eyes) {
   if (!(actor.start_m > 0)) return std::nullopt;
   const Model::Impl& model = *actor.placed.model;
   const Eigen::Affine3d part_from_body = actor.placed.part_from_body[part].cast<double>();
   std::vector<Vector3> eye_in_part;
   for (const Eye& eye : eyes) eye_in_part.push_back(part_from_body * eye.eye_in_body);
-  return FacingAway(
-      model.mesh, model.mesh.parts[part], model.outward[part], std::move(eye_in_part));
+  return HiddenTriangles(
+      model.mesh, model.mesh.parts[part], model.outer_sides[part], std::move(eye_in_part));
 }
 
 }  // namespace
@@ -137,9 +137,9 @@ void Silhouette::add_part(const TracedIntruder& actor,
   const Span& span = grid_.span();
   const double exposure_share = actor.moves ? grid_.exposure_s() / (span.end_s - span.begin_s) : 0;
   Vertices vertices(actor, {actor.placed.body_from_part[part]}, eyes);
-  const std::optional<FacingAway> faces_away = facing_away(actor, part, eyes);
+  const std::optional<HiddenTriangles> is_hidden = hidden_triangles(actor, part, eyes);
   for (std::size_t i = 0; i < mesh_part.triangles.size(); ++i) {
-    if (faces_away && (*faces_away)(i)) continue;
+    if (is_hidden && (*is_hidden)(i)) continue;
     const std::vector<Corners>& corners = vertices.look_at(mesh_part.triangles[i]);
     const Reach reach = eyes.size() > 1 ? reach_over_time(patch_, corners, eyes)
                                         : reach_of(patch_, corners[0], eyes[0]);

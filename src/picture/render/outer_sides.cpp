@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/outer_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "picture/render/closed.h"
+#include "picture/render/surfaces.h"
+
+namespace airtruth::render {
+namespace {
+
+OuterSides both_of(OuterSides a, OuterSides b) { return static_cast<OuterSides>(a | b); }
+
+OuterSides turned(OuterSides sides) {
+  if (sides == kFrontSide) return kBackSide;
+  return sides == kBackSide ? kFrontSide : sides;
+}
+
+bool sees_open(const SideOpenness& side) {
+  return std::any_of(side.corner.begin(), side.corner.end(), [](const Openness& corner) {
+    return corner.share > 0;
+  });
+}
+
+// The sides of a triangle from which a ray leaves the aircraft.
+OuterSides open_sides(const TriangleOpenness& openness) {
+  return both_of(sees_open(openness.front) ? kFrontSide : kNoSide,
+                 sees_open(openness.back) ? kBackSide : kNoSide);
+}
+
+// By surface: the sides from which a ray leaves the aircraft at any of its triangles. The front is
+// that of a triangle whose sign in `surfaces` is 1. A surface that has one side only has both.
+std::vector<OuterSides> open_sides_of(const Surfaces& surfaces,
+                                      const std::vector<TriangleOpenness>& openness) {
+  std::vector<OuterSides> open(surfaces.count, kNoSide);
+  for (std::size_t t = 0; t < surfaces.of.size(); ++t) {
+    if (surfaces.of[t] == kNoSurface) continue;
+    const OuterSides own = open_sides(openness[t]);
+    OuterSides& all = open[surfaces.of[t]];
+    all = both_of(all, surfaces.sign[t] > 0 ? own : turned(own));
+  }
+  for_each_side(surfaces.sides, [&](auto first, auto last) {
+    if (last - first != 2) return;
+    const int a = first[0].direction * surfaces.sign[first[0].triangle];
+    const int b = first[1].direction * surfaces.sign[first[1].triangle];
+    if (a == b) open[surfaces.of[first[0].triangle]] = kBothSides;
+  });
+  return open;
+}
+
+std::vector<OuterSides> outer_of(const Surfaces& surfaces,
+                                 const std::vector<std::int8_t>& outward,
+                                 const std::vector<TriangleOpenness>& openness,
+                                 bool is_opaque) {
+  const std::vector<OuterSides> of_surface = open_sides_of(surfaces, openness);
+  std::vector<OuterSides> outer(surfaces.of.size(), kBothSides);
+  for (std::size_t t = 0; t < outer.size(); ++t) {
+    if (surfaces.of[t] == kNoSurface) continue;
+    // The openness does not say what is seen through a pane.
+    OuterSides possible = is_opaque ? of_surface[surfaces.of[t]] : kBothSides;
+    if (surfaces.sign[t] < 0) possible = turned(possible);
+    if (outward[t] == 0) {
+      outer[t] = possible;
+    } else {
+      const OuterSides out = outward[t] > 0 ? kFrontSide : kBackSide;
+      outer[t] = both_of(static_cast<OuterSides>(out & possible), open_sides(openness[t]));
+    }
+  }
+  return outer;
+}
+
+}  // namespace
+
+std::vector<std::vector<OuterSides>> outer_sides(const Model::Impl& model) {
+  const std::vector<Surfaces> surfaces = surfaces_of(model.mesh);
+  const auto outward = outward_normals(model.mesh, surfaces, model.opaque);
+  const bool is_opaque =
+      std::all_of(model.opaque.begin(), model.opaque.end(), [](const auto& of_part) {
+        return std::find(of_part.begin(), of_part.end(), 0) == of_part.end();
+      });
+  std::vector<std::vector<OuterSides>> outer;
+  for (std::size_t p = 0; p < surfaces.size(); ++p)
+    outer.push_back(outer_of(surfaces[p], outward[p], model.openness[p], is_opaque));
+  return outer;
+}
+
+HiddenTriangles::HiddenTriangles(const aircraft::Mesh& mesh,
+                                 const aircraft::Part& part,
+                                 const std::vector<OuterSides>& outer,
+                                 std::vector<Vector3> eye_in_part)
+    : mesh_(mesh), part_(part), outer_(outer), eye_in_part_(std::move(eye_in_part)) {}
+
+bool HiddenTriangles::operator()(std::size_t triangle) const {
+  // Sine of the angle between a line of sight and a triangle's plane below which rounding decides
+  // which side is seen.
+  constexpr double kEdgeOn = 1e-6;
+  if (outer_[triangle] == kBothSides) return false;
+  if (outer_[triangle] == kNoSide) return true;
+  const auto& [a, b, c] = part_.triangles[triangle].vertex;
+  const Vector3 p = mesh_.positions[a].cast<double>();
+  const Vector3 normal =
+      (outer_[triangle] == kFrontSide ? 1 : -1) *
+      (mesh_.positions[b].cast<double>() - p).cross(mesh_.positions[c].cast<double>() - p);
+  std::array<double, 3> height{};
+  double most = -std::numeric_limits<double>::infinity();
+  double reach = 0;
+  for (std::size_t k = 0; k < eye_in_part_.size(); ++k) {
+    const Vector3 to_eye = eye_in_part_[k] - p;
+    height[k] = normal.dot(to_eye);
+    most = std::max(most, height[k]);
+    reach = std::max(reach, to_eye.norm());
+  }
+  // A parabola goes at most an eighth of the second difference beyond its values.
+  if (eye_in_part_.size() > 1) most += std::abs(height[0] - 2 * height[1] + height[2]) / 8;
+  return most < -kEdgeOn * normal.norm() * reach;
+}
+
+}  // namespace airtruth::render

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/render/outer_sides.h"
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "aircraft/fleet/fleet.h"
+#include "picture/render/cube_test_mesh.h"
+#include "picture/render/model.h"
+
+namespace airtruth::render {
+namespace {
+
+using Outer = std::vector<OuterSides>;
+
+void add_triangle(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 3>& corners) {
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+  mesh.normals.resize(mesh.positions.size(), Eigen::Vector3f(1, 0, 0));
+  mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f(0, 0));
+  mesh.parts[0].triangles.push_back({{base, base + 1, base + 2}, 0});
+}
+
+// Two triangles between four corners, which are given along the outline.
+void add_quad(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corners) {
+  add_triangle(mesh, {corners[0], corners[1], corners[2]});
+  add_triangle(mesh, {corners[0], corners[2], corners[3]});
+}
+
+// A square plate at right angles to x, with sides of `size`; its front looks towards +x.
+void add_plate(aircraft::Mesh& mesh, float x, float size) {
+  const float h = size / 2;
+  add_quad(mesh, {{{x, -h, -h}, {x, h, -h}, {x, h, h}, {x, -h, h}}});
+}
+
+// A strip that is turned by half a turn on its way round (Moebius 1858), 1 m across.
+void add_strip_of_one_side(aircraft::Mesh& mesh) {
+  constexpr int kSteps = 12;
+  const auto rim = [](int step, float side) -> Eigen::Vector3f {
+    // The end joins the beginning with its rims exchanged, by the same numbers.
+    const bool is_end = step == kSteps;
+    const float round =
+        is_end ? 0.0F : 2 * static_cast<float>(kPi) * static_cast<float>(step) / kSteps;
+    const float r = 0.4F + 0.1F * (is_end ? -side : side) * std::cos(round / 2);
+    return {r * std::cos(round),
+            r * std::sin(round),
+            0.1F * (is_end ? -side : side) * std::sin(round / 2)};
+  };
+  for (int k = 0; k < kSteps; ++k)
+    add_quad(mesh, {{rim(k, -1), rim(k, 1), rim(k + 1, 1), rim(k + 1, -1)}});
+}
+
+// The cube without its side x = -1.
+aircraft::Mesh open_cube() {
+  aircraft::Mesh mesh = cube();
+  auto& triangles = mesh.parts[0].triangles;
+  triangles.erase(triangles.begin(), triangles.begin() + 2);
+  return mesh;
+}
+
+Outer outer_of(const aircraft::Mesh& mesh) { return Model(mesh).impl().outer_sides[0]; }
+
+Outer from(const Outer& outer, std::size_t first) {
+  return {outer.begin() + static_cast<std::ptrdiff_t>(first), outer.end()};
+}
+
+TEST(OuterSides, AreTheOuterOnesOfAClosedSurface) {
+  EXPECT_EQ(outer_of(cube()), Outer(12, kFrontSide));
+  aircraft::Mesh turned = cube();
+  turn(turned.parts[0].triangles[4]);
+  Outer expected(12, kFrontSide);
+  expected[4] = kBackSide;
+  EXPECT_EQ(outer_of(turned), expected);
+}
+
+TEST(OuterSides, AreBothWhereASurfaceIsOpen) {
+  EXPECT_EQ(outer_of(open_cube()), Outer(10, kBothSides));
+}
+
+// A plate closes the cube, though no vertex of it is one of the cube's.
+TEST(OuterSides, AreTheOuterOnesWhereAnOpenSurfaceIsCovered) {
+  aircraft::Mesh mesh = open_cube();
+  add_plate(mesh, -1, 2.2F);
+  Outer expected(12, kFrontSide);
+  expected[10] = expected[11] = kBackSide;
+  EXPECT_EQ(outer_of(mesh), expected);
+  // A smaller one leaves a gap. Rays leave through it from within the cube, but none from the inner
+  // side of the plate.
+  aircraft::Mesh with_gap = open_cube();
+  add_plate(with_gap, -1, 1.8F);
+  Outer seen_through_gap(12, kBothSides);
+  seen_through_gap[10] = seen_through_gap[11] = kBackSide;
+  EXPECT_EQ(outer_of(with_gap), seen_through_gap);
+}
+
+TEST(OuterSides, AreNoneWithinAClosedSurface) {
+  aircraft::Mesh mesh = cube();
+  add_plate(mesh, 0, 1);
+  EXPECT_EQ(from(outer_of(mesh), 12), Outer(2, kNoSide));
+  // A closed surface within another.
+  const aircraft::Mesh inner = cube();
+  aircraft::Mesh nested = cube();
+  for (const aircraft::Triangle& triangle : inner.parts[0].triangles) {
+    const auto& [a, b, c] = triangle.vertex;
+    add_triangle(nested,
+                 {0.5F * inner.positions[a], 0.5F * inner.positions[b], 0.5F * inner.positions[c]});
+  }
+  Outer expected(24, kFrontSide);
+  for (std::size_t t = 12; t < 24; ++t) expected[t] = kNoSide;
+  EXPECT_EQ(outer_of(nested), expected);
+}
+
+TEST(OuterSides, AreBothBehindAPane) {
+  aircraft::Mesh mesh = open_cube();
+  mesh.materials.emplace_back().opacity = 0.5F;
+  add_plate(mesh, -1, 2.2F);
+  for (std::size_t t = 10; t < 12; ++t) mesh.parts[0].triangles[t].material = 1;
+  EXPECT_EQ(outer_of(mesh), Outer(12, kBothSides));
+}
+
+TEST(OuterSides, AreBothOfASurfaceWithOneSideOnly) {
+  aircraft::Mesh mesh = cube();
+  add_strip_of_one_side(mesh);
+  EXPECT_EQ(from(outer_of(mesh), 12), Outer(24, kBothSides));
+}
+
+TEST(HiddenTriangles, OfACubeAreThoseThatFaceAway) {
+  const aircraft::Mesh mesh = cube();
+  const Outer outer(12, kFrontSide);
+  // The eye is before the side x = 1 and above none of the others.
+  const HiddenTriangles from_front(mesh, mesh.parts[0], outer, {Vector3(5, 0.5, -0.5)});
+  for (std::size_t t = 0; t < 12; ++t) EXPECT_EQ(from_front(t), t / 2 != 1) << t;
+  // It moves from before the side x = 1 to before the side y = 1: both are left at all times.
+  const HiddenTriangles around(
+      mesh, mesh.parts[0], outer, {Vector3(5, 0, 0), Vector3(4, 4, 0), Vector3(0, 5, 0)});
+  for (std::size_t t = 0; t < 12; ++t) EXPECT_EQ(around(t), t / 2 != 1 && t / 2 != 3) << t;
+}
+
+TEST(HiddenTriangles, AreAllWithoutAnOuterSideAndNoneWithBoth) {
+  const aircraft::Mesh mesh = cube();
+  const Outer without(12, kNoSide);
+  const Outer with_both(12, kBothSides);
+  const HiddenTriangles all(mesh, mesh.parts[0], without, {Vector3(5, 0, 0)});
+  const HiddenTriangles none(mesh, mesh.parts[0], with_both, {Vector3(5, 0, 0)});
+  for (std::size_t t = 0; t < 12; ++t) {
+    EXPECT_TRUE(all(t)) << t;
+    EXPECT_FALSE(none(t)) << t;
+  }
+}
+
+// Embree's nearest hit of rays from all around never is a triangle that is left out.
+TEST(HiddenTriangles, AreNotMetByRaysFromOutside) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (const char* name :
+       {"738/738-Ryanair", "733/733-AirBaltic", "A300/A300-ACT-Cargo", "c172/news"}) {
+    const Model model(aircraft::load_aircraft(name).mesh);
+    const Model::Impl& impl = model.impl();
+    int hits = 0, of_one_side = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const auto direction = [&] {
+        return Vector3(normal(random), normal(random), normal(random)).normalized();
+      };
+      const Vector3 eye = impl.centre_in_body + 3 * impl.radius_m * direction();
+      const Vector3 aim = impl.centre_in_body + 0.5 * impl.radius_m * direction();
+      const auto hit = nearest_blocker(
+          impl, eye.cast<float>(), (aim - eye).normalized().cast<float>(), INFINITY);
+      if (!hit) continue;
+      const auto part = static_cast<std::size_t>(hit->part);
+      const HiddenTriangles is_hidden(
+          impl.mesh, impl.mesh.parts[part], impl.outer_sides[part], {eye});
+      EXPECT_FALSE(is_hidden(hit->triangle)) << name << ", triangle " << hit->triangle;
+      ++hits;
+      of_one_side += impl.outer_sides[part][hit->triangle] != kBothSides;
+    }
+    EXPECT_GT(hits, 500) << name;
+    EXPECT_GT(of_one_side, 100) << name;
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::render
