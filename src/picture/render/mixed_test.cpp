@@ -57,6 +57,32 @@ constexpr std::array<float, 3> kPaneColour = {0.1f, 0.5f, 0.3f};
 constexpr double kPlateM = 100;
 constexpr double kPaneM = 90;
 
+const lens::Lens& pinhole() {
+  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kSide / 2.0, kSide / 2.0}},
+                               {kSide, kSide});
+  return lens;
+}
+
+// exposes: a long exposure of a scene at rest, which is the scene at an instant, but takes the
+// other code.
+image::Layer layer_of(const aircraft::Mesh& mesh, bool exposes) {
+  const Model model(mesh);
+  View view{&pinhole(),
+            Rigid{cam_from_body().conjugate(), Vector3::Zero()},
+            Homography::Identity(),
+            kSide,
+            kSide};
+  if (exposes) view.shutter = {0.01, 0.01, Readout::kDown};
+  const Instance instance{&model, {Quaternion::Identity(), Vector3::Zero()}};
+  return render(view, kLight, {instance}, {kAll});
+}
+
+double total_alpha(const image::Layer& layer) {
+  double alpha = 0;
+  for (const image::LayerPixel& pixel : layer.pixels) alpha += static_cast<double>(pixel.alpha);
+  return alpha;
+}
+
 class PaneBeforePlate : public testing::TestWithParam<int> {};
 
 TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
@@ -66,22 +92,10 @@ TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
   aircraft::Mesh mesh;
   add(mesh, plate, kPlateM, 1, kPlateColour);
   add(mesh, pane, kPaneM, kOpacity, kPaneColour);
-  const Model model(mesh);
-  const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kSide / 2.0, kSide / 2.0}},
-                        {kSide, kSide});
-  View view{&lens,
-            Rigid{cam_from_body().conjugate(), Vector3::Zero()},
-            Homography::Identity(),
-            kSide,
-            kSide};
-  // A long exposure of a scene at rest is the scene at an instant, but takes the other code.
-  if (GetParam() > 0) view.shutter = {0.01, 0.01, Readout::kDown};
-  const Instance instance{&model, {Quaternion::Identity(), Vector3::Zero()}};
-  const image::Layer layer = render(view, kLight, {instance}, {kAll});
-  double alpha = 0;
+  const image::Layer layer = layer_of(mesh, GetParam() > 0);
+  const double alpha = total_alpha(layer);
   std::array<double, 3> rgb{};
   for (const image::LayerPixel& pixel : layer.pixels) {
-    alpha += static_cast<double>(pixel.alpha);
     rgb[0] += static_cast<double>(pixel.red);
     rgb[1] += static_cast<double>(pixel.green);
     rgb[2] += static_cast<double>(pixel.blue);
@@ -109,6 +123,50 @@ TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AtAnInstantAndDuringAnExposure, PaneBeforePlate, testing::Values(0, 1));
+
+class Panes : public testing::TestWithParam<int> {};
+
+// Before nothing but the sky; the samples of a pixel are covered by one of them, or by both.
+TEST_P(Panes, OfTwoThatOverlapEachStopsItsShareOfWhatTheOtherLeaves) {
+  const Rectangle a{20.3, 18.7, 14.6, 21.9};
+  const Rectangle b{28.15, 24.4, 17.2, 9.35};
+  const double both = (a.x + a.width - b.x) * b.height;
+  aircraft::Mesh mesh;
+  add(mesh, a, kPlateM, 0.7F, kPlateColour);
+  add(mesh, b, kPaneM, 0.4F, kPaneColour);
+  const image::Layer layer = layer_of(mesh, GetParam() > 0);
+  EXPECT_NEAR(total_alpha(layer), 0.7 * a.area() + 0.4 * b.area() - 0.7 * 0.4 * both, 0.2);
+  const std::size_t in_both = layer.index(31, 29);
+  EXPECT_NEAR(static_cast<double>(layer.pixels[in_both].alpha), 1 - 0.3 * 0.6, 1e-5);
+  EXPECT_NEAR(static_cast<double>(layer.depth_m[in_both]),
+              (0.4 * kPaneM + 0.6 * 0.7 * kPlateM) / (1 - 0.3 * 0.6),
+              0.05);
+}
+
+// Its texture is opaque on one side of a line across a pixel, and transparent on the other.
+TEST_P(Panes, OfDifferentOpacityInAPixelHaveTheirMean) {
+  constexpr int kTexels = 64;
+  const Rectangle pane{10, 10, 20, 30};
+  aircraft::Mesh mesh;
+  add(mesh, pane, kPaneM, 1, kPaneColour);
+  aircraft::Texture texture;
+  texture.repeat_u = texture.repeat_v = false;
+  texture.has_translucency = true;
+  texture.levels.push_back({kTexels, kTexels, {}});
+  for (int i = 0; i < kTexels * kTexels; ++i) {
+    const float alpha = i % kTexels < 24 ? 1.0F : 0.0F;
+    texture.levels[0].texels.push_back({alpha, alpha, alpha, alpha});
+  }
+  mesh.textures.push_back(texture);
+  mesh.materials[0].texture = 0;
+  mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const image::Layer layer = layer_of(mesh, GetParam() > 0);
+  EXPECT_NEAR(total_alpha(layer), pane.area() * 24 / kTexels, 1);
+  // The line is at x = 10 + 20 * 24 / 64 = 17.5.
+  EXPECT_NEAR(static_cast<double>(layer.pixels[layer.index(17, 20)].alpha), 0.5, 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(AtAnInstantAndDuringAnExposure, Panes, testing::Values(0, 1));
 
 }  // namespace
 }  // namespace airtruth::render

@@ -150,6 +150,7 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
   const Device device = new_device();
   impl_->device.reset(device.device);
   impl_->opaque = opaque_triangles(mesh);
+  impl_->even = even_triangles(mesh, impl_->opaque);
   for (const aircraft::Part& part : mesh.parts) {
     impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
     std::vector<Facet>& facets = impl_->facets.emplace_back();

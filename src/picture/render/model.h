@@ -78,6 +78,8 @@ struct Model::Impl {
   std::vector<std::vector<Facet>> facets;  // [part][triangle]
   // By [part][triangle]; 1 where the whole triangle is opaque.
   std::vector<std::vector<std::uint8_t>> opaque;
+  // By [part][triangle]; 1 where the opacity is the same all over the triangle.
+  std::vector<std::vector<std::uint8_t>> even;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
   std::vector<std::vector<OuterSides>> outer_sides;     // [part][triangle]: of outer_sides.h
   Eigen::Vector3d centre_in_body{0, 0, 0};

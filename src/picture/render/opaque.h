@@ -14,4 +14,10 @@ namespace airtruth::render {
 // painted regions; a look-up at a triangle's side may mix in some of those, which are not meant.
 std::vector<std::vector<std::uint8_t>> opaque_triangles(const aircraft::Mesh& mesh);
 
+// By [part][triangle]: 1 where the opacity is the same all over the triangle: it has no texture
+// with translucent texels, or the opacities of the texels within it differ by less than 1/100. And
+// 1 for an opaque triangle. opaque: of opaque_triangles().
+std::vector<std::vector<std::uint8_t>> even_triangles(
+    const aircraft::Mesh& mesh, const std::vector<std::vector<std::uint8_t>>& opaque);
+
 }  // namespace airtruth::render

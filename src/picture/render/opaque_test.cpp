@@ -72,5 +72,30 @@ TEST(Opaque, PaintThatPackingLeftAShadeTransparentIsOpaque) {
   EXPECT_EQ(opaque_triangles(mesh)[0][0], 0);
 }
 
+// Columns up to 7 are opaque and the others transparent.
+bool is_even(const std::array<Eigen::Vector2f, 3>& in_texels, float opacity) {
+  aircraft::Mesh mesh = mesh_of(in_texels);
+  mesh.materials[0].opacity = opacity;
+  return even_triangles(mesh, {{0}})[0][0] == 1;
+}
+
+TEST(Even, IsATriangleWhoseTexelsAreAlike) {
+  EXPECT_TRUE(is_even({V(1, 1), V(8, 1), V(8, 15)}, 0.5F));
+  EXPECT_TRUE(is_even({V(9, 1), V(15, 1), V(15, 15)}, 0.5F));
+  EXPECT_FALSE(is_even({V(1, 1), V(12, 1), V(12, 15)}, 0.5F));
+  // The material leaves less than 1/100 of the difference.
+  EXPECT_TRUE(is_even({V(1, 1), V(12, 1), V(12, 15)}, 0.009F));
+  // The texture wraps round within the triangle.
+  EXPECT_FALSE(is_even({V(15, 1), V(18, 1), V(18, 3)}, 0.5F));
+}
+
+TEST(Even, IsATriangleWithoutATranslucentTexture) {
+  aircraft::Mesh mesh = mesh_of({V(1, 1), V(12, 1), V(12, 15)});
+  mesh.textures[0].has_translucency = false;
+  EXPECT_EQ(even_triangles(mesh, {{0}})[0][0], 1);
+  mesh.materials[0].texture = -1;
+  EXPECT_EQ(even_triangles(mesh, {{0}})[0][0], 1);
+}
+
 }  // namespace
 }  // namespace airtruth::render

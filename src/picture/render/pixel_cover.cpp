@@ -48,24 +48,44 @@ class Silhouette::PixelCover {
     std::fill_n(nearest_.triangle.begin(), samples, -1);
   }
 
-  // only_opaque: looks at triangles of that kind alone; empty: at all.
-  void look(std::optional<bool> only_opaque = {}) {
+  void look(bool only_opaque = false) {
     if (!silhouette_.is_known(pixel_.x, pixel_.y)) return;
     for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
-      const std::uint32_t i = entry.triangle;
-      const Triangle& triangle = silhouette_.triangles_[i];
-      if (only_opaque && triangle.opaque != *only_opaque) continue;
+      const Triangle& triangle = silhouette_.triangles_[entry.triangle];
+      if (only_opaque && !triangle.opaque) continue;
       // All others are hidden too.
       if (open_ == 0 && (side_ == 0 || triangle.nearest < hidden_)) break;
-      if (triangle.planes != kNone)
-        add_planes(triangle, i);
-      else if (entry.in_row != kNone)
-        add(i, silhouette_.in_row_[entry.in_row], pixel_.x);
-      else if (silhouette_.actor_.moves)
-        add(i, silhouette_.moving_[triangle.picture], pixel_);
-      else
-        add(i, silhouette_.still_[triangle.picture], pixel_);
+      add(entry);
     }
+  }
+
+  // Covers the samples by the translucent triangles, one after the other.
+  void cover_by_translucent(int samples, Cover& result) {
+    const auto n = static_cast<std::size_t>(samples);
+    result.marks.assign(n, 0);
+    result.triangles.assign(n, 0);
+    result.order.clear();
+    if (!silhouette_.is_known(pixel_.x, pixel_.y)) return;
+    thread_local Cover one;
+    for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {
+      const Triangle& triangle = silhouette_.triangles_[entry.triangle];
+      if (triangle.opaque) continue;
+      cover(samples, one);
+      is_dense_ = is_full_ = false;
+      add(entry);
+      finish(one);
+      if (one.covered == 0) continue;
+      // A sum of such numbers tells the sets of a pixel's few triangles apart (multiplicative
+      // hashing: Knuth 1973, "The art of computer programming", volume 3, 6.4).
+      const std::uint32_t name = (entry.triangle + 1) * 2654435769U << 1;
+      const std::uint32_t differs = triangle.even ? 0 : 1;
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto mark = static_cast<std::uint32_t>(one.marks[i]);
+        result.marks[i] |= one.marks[i];
+        result.triangles[i] = (result.triangles[i] + (name & mark)) | (differs & mark);
+      }
+    }
+    result.covered = -std::accumulate(result.marks.begin(), result.marks.end(), 0);
   }
 
   // Counts the samples.
@@ -94,6 +114,19 @@ class Silhouette::PixelCover {
   }
 
  private:
+  void add(const Entry& entry) {
+    const std::uint32_t i = entry.triangle;
+    const Triangle& triangle = silhouette_.triangles_[i];
+    if (triangle.planes != kNone)
+      add_planes(triangle, i);
+    else if (entry.in_row != kNone)
+      add(i, silhouette_.in_row_[entry.in_row], pixel_.x);
+    else if (silhouette_.actor_.moves)
+      add(i, silhouette_.moving_[triangle.picture], pixel_);
+    else
+      add(i, silhouette_.still_[triangle.picture], pixel_);
+  }
+
   // picture, place: a StillTriangle, a MovingTriangle or a RowTriangle, and what its over() takes.
   template <typename Picture, typename Place>
   void add(std::uint32_t i, const Picture& picture, const Place& place) {
@@ -275,13 +308,11 @@ void Silhouette::cover(int x, int y, int samples, Cover& result) const {
 }
 
 void Silhouette::cover_mixed(int x, int y, int samples, Cover& opaque, Cover& translucent) const {
-  for (const bool is_opaque : {true, false}) {
-    Cover& result = is_opaque ? opaque : translucent;
-    PixelCover pixel(*this, x, y);
-    pixel.cover(samples, result);
-    pixel.look(is_opaque);
-    pixel.finish(result);
-  }
+  PixelCover by_opaque(*this, x, y);
+  by_opaque.cover(samples, opaque);
+  by_opaque.look(true);
+  by_opaque.finish(opaque);
+  PixelCover(*this, x, y).cover_by_translucent(samples, translucent);
 }
 
 int Silhouette::cover_and_see(

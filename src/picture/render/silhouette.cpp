@@ -146,6 +146,7 @@ void Silhouette::add_part(const TracedIntruder& actor,
     if (reach.empty()) continue;
     Triangle triangle{static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(i)};
     triangle.opaque = model.opaque[part][i] != 0;
+    triangle.even = model.even[part][i] != 0;
     if (!place(corners, eyes, exposure_share, kStraight, triangle)) {
       const auto planes = planes_of(vertices, mesh_part.triangles[i]);
       if (!planes) continue;

@@ -58,7 +58,7 @@ class Silhouette {
   void cover(int x, int y, int samples, Cover& result) const;
 
   // Covers the samples of a pixel of the kind kMixed by its opaque triangles and by its translucent
-  // ones.
+  // ones; of the latter Cover::triangles is known, too.
   void cover_mixed(int x, int y, int samples, Cover& opaque, Cover& translucent) const;
 
   // Finds the visible surfaces of a pixel of the kind kOpaque by a depth buffer over some of its
@@ -87,6 +87,8 @@ class Silhouette {
     // No later triangle is nearer.
     float nearest = std::numeric_limits<float>::infinity();
     bool opaque = true;
+    // As in Model::Impl.
+    bool even = true;
     // A part that spins, of which only its reach is known.
     bool is_disc = false;
     bool has_depth = false;
