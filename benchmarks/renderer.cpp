@@ -23,6 +23,7 @@
 #include <tbb/global_control.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "truth/projection/exact_box.h"
 
@@ -223,14 +224,7 @@ std::string errors_of(const std::vector<Scene>& scenes) {
                      errors.distance_m);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  // As airtruth does: memory is kept from one frame to the next.
-  mallopt(M_MMAP_THRESHOLD, 64 << 20);
-  mallopt(M_TRIM_THRESHOLD, 512 << 20);
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  std::vector<std::string> names(argv + 1, argv + argc);
+void print_table(std::vector<std::string> names) {
   const bool with_errors = std::erase(names, "--error") > 0;
   const bool only_still = std::erase(names, "--still") > 0;
   const bool only_exposure = std::erase(names, "--exposure") > 0;
@@ -260,5 +254,26 @@ int main(int argc, char** argv) {
                    with_errors ? errors_of(scenes) : "");
       }
     }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // As airtruth does: memory is kept from one frame to the next.
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (std::find(arguments.begin(), arguments.end(), "--help") != arguments.end()) {
+    fmt::print(
+        "./dev bench renderer [--error] [--still | --exposure] [SIZE_PX...] [AIRCRAFT...]\n");
+    return 0;
+  }
+  try {
+    print_table(arguments);
+  } catch (const Error& error) {
+    fmt::print(stderr, "renderer_bench: {}\n", error.what());
+    return 2;
   }
 }
