@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace airtruth::image {
@@ -66,8 +67,10 @@ Pool& pool() {
 
 }  // namespace
 
-void GiveBack::operator()(std::uint8_t* samples) const noexcept {
-  if (bytes_ < kMinKeptBytes) {
+void GiveBack::operator()(std::uint8_t* samples) noexcept {
+  if (lender_ != nullptr) {
+    lender_.reset();
+  } else if (bytes_ < kMinKeptBytes) {
     release(samples);
   } else {
     pool().give_back(samples, bytes_);
@@ -78,6 +81,10 @@ SampleMemory take_samples(std::size_t bytes) {
   std::uint8_t* samples = bytes < kMinKeptBytes ? nullptr : pool().take(bytes);
   if (samples == nullptr) samples = static_cast<std::uint8_t*>(::operator new[](bytes, kAlignment));
   return SampleMemory(samples, GiveBack(bytes));
+}
+
+SampleMemory lent_samples(std::uint8_t* samples, std::shared_ptr<void> lender) {
+  return SampleMemory(samples, GiveBack(std::move(lender)));
 }
 
 std::size_t free_sample_bytes() { return pool().free_bytes(); }

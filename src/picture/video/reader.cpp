@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
+#include <new>
 #include <span>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "foundation/base/error.h"
@@ -35,6 +38,25 @@ image::Siting siting_of(AVChromaLocation location) {
     default:
       return image::Siting::kLeft;
   }
+}
+
+// How many more frames a decoder returns before it rarely refers to a frame any more: 97 of 100
+// with libx264's default of three reference frames, and 99 of 100 of those of cameras, which have
+// fewer.
+constexpr std::size_t kReferredFrames = 3;
+
+// A frame whose picture may lie in memory to which the decoder still refers.
+struct Decoded {
+  Frame frame;
+  // Null where the picture has its own memory.
+  std::shared_ptr<AVFrame> lender;
+};
+
+// The frame in memory of its own.
+Frame owned(Decoded decoded) {
+  if (decoded.lender && av_frame_is_writable(decoded.lender.get()) == 0)
+    decoded.frame.picture = decoded.frame.picture.clone();
+  return std::move(decoded.frame);
 }
 
 // libav names its readers of a single picture png_pipe, bmp_pipe and so on. Their stream is there
@@ -74,8 +96,8 @@ struct Reader::State {
   std::int64_t pts_step = 1;
   std::optional<std::int64_t> first_pts;
   // Decoded frames that are not yet handed out: the constructor decodes the first one, and with
-  // cuts the queue also holds the frames after the next.
-  std::deque<Frame> ahead;
+  // cuts, or without copies, the queue also holds the frames after the next.
+  std::deque<Decoded> ahead;
   image::Differences difference;
   // Differences between each frame and the one before it, from the frame `first_difference` on.
   std::deque<double> differences;
@@ -95,7 +117,8 @@ struct Reader::State {
   int read_packet();
   // Fills `frame`; false at the end.
   bool decode_one();
-  std::optional<Frame> next();
+  std::optional<Decoded> next();
+  Decoded with_picture(Frame result);
   // Decodes one more frame; false at the end.
   bool look_ahead();
   bool begins_shot(std::int64_t index);
@@ -314,7 +337,22 @@ void Reader::State::make_plain() {
   frame = in_format(*frame, plain);
 }
 
-std::optional<Frame> Reader::State::next() {
+Decoded Reader::State::with_picture(Frame result) {
+  if (options.avoids_copies && !orientation.mirrored && orientation.clockwise_deg == 0) {
+    const std::shared_ptr<AVFrame> lender(av_frame_alloc(), FreeFrame());
+    if (!lender) throw std::bad_alloc();
+    av_frame_move_ref(lender.get(), frame.get());
+    if (auto lent = lent_picture(lender, layout, coded_colour)) {
+      result.picture = std::move(*lent);
+      return {std::move(result), lender};
+    }
+    av_frame_move_ref(frame.get(), lender.get());
+  }
+  result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
+  return {std::move(result), nullptr};
+}
+
+std::optional<Decoded> Reader::State::next() {
   if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
   for (;;) {
     if (!decode_one()) {
@@ -335,8 +373,7 @@ std::optional<Frame> Reader::State::next() {
     if (!first_pts) first_pts = result.pts;
     result.index = handed++;
     result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
-    result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
-    return result;
+    return with_picture(std::move(result));
   }
 }
 
@@ -361,7 +398,7 @@ bool Reader::State::look_ahead() {
   auto one = next();
   if (!one) return false;
   if (options.with_cuts)
-    if (const auto d = difference.add(one->picture)) differences.push_back(*d);
+    if (const auto d = difference.add(one->frame.picture)) differences.push_back(*d);
   ahead.push_back(std::move(*one));
   return true;
 }
@@ -402,11 +439,12 @@ const StreamInfo& Reader::info() const { return state_->info; }
 
 std::optional<Frame> Reader::next() {
   State& state = *state_;
-  const std::size_t wanted = state.options.with_cuts ? 1 + std::size_t{image::kCutNeighbours} : 1;
-  while (state.ahead.size() < wanted && state.look_ahead()) {
+  std::size_t held_back = state.options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
+  if (state.options.avoids_copies) held_back = std::max(held_back, kReferredFrames);
+  while (state.ahead.size() < 1 + held_back && state.look_ahead()) {
   }
   if (state.ahead.empty()) return std::nullopt;
-  Frame frame = std::move(state.ahead.front());
+  Frame frame = owned(std::move(state.ahead.front()));
   state.ahead.pop_front();
   if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
   return frame;
@@ -421,9 +459,9 @@ std::optional<Frame> Reader::at(double time_s) {
   if (!state.seek(wanted)) return std::nullopt;
   // The frame that is shown at a time is the last one that does not begin after it.
   std::optional<Frame> shown;
-  while (auto frame = state.next()) {
-    if (shown && frame->pts > wanted) break;
-    shown = std::move(frame);
+  while (auto decoded = state.next()) {
+    if (shown && decoded->frame.pts > wanted) break;
+    shown = owned(std::move(*decoded));
     if (shown->pts >= wanted) break;
   }
   if (shown)

@@ -65,6 +65,7 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
   reader_options.frame_count = scene.background.frame_count;
   reader_options.threads = options.threads;
   reader_options.with_cuts = true;
+  reader_options.avoids_copies = true;
   return video::Reader(scene.background.video, reader_options, options.warn);
 }
 
