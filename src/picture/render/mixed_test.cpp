@@ -19,7 +19,7 @@ const Box kAll{0, 0, kSide, kSide};
 // A rectangle across the line of sight, in pixels of the picture.
 struct Rectangle {
   double x, y, width, height;
-  double area() const { return width * height; }
+  constexpr double area() const { return width * height; }
 };
 
 void add(aircraft::Mesh& mesh,
@@ -56,6 +56,10 @@ constexpr std::array<float, 3> kPlateColour = {0.6f, 0.1f, 0.2f};
 constexpr std::array<float, 3> kPaneColour = {0.1f, 0.5f, 0.3f};
 constexpr double kPlateM = 100;
 constexpr double kPaneM = 90;
+// Each crosses pixels, and they overlap at one side of the plate.
+constexpr Rectangle kPlate{20.3, 18.7, 14.6, 21.9};
+constexpr Rectangle kPane{28.15, 24.4, 17.2, 9.35};
+constexpr double kBothArea = (kPlate.x + kPlate.width - kPane.x) * kPane.height;
 
 const lens::Lens& pinhole() {
   static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kSide / 2.0, kSide / 2.0}},
@@ -83,15 +87,12 @@ double total_alpha(const image::Layer& layer) {
   return alpha;
 }
 
-class PaneBeforePlate : public testing::TestWithParam<int> {};
+class Panes : public testing::TestWithParam<int> {};
 
-TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
-  const Rectangle plate{20.3, 18.7, 14.6, 21.9};
-  const Rectangle pane{28.15, 24.4, 17.2, 9.35};
-  const double both = (plate.x + plate.width - pane.x) * pane.height;
+TEST_P(Panes, BeforeAPlateHaveTheAlphaTheColourAndTheDistanceOfBoth) {
   aircraft::Mesh mesh;
-  add(mesh, plate, kPlateM, 1, kPlateColour);
-  add(mesh, pane, kPaneM, kOpacity, kPaneColour);
+  add(mesh, kPlate, kPlateM, 1, kPlateColour);
+  add(mesh, kPane, kPaneM, kOpacity, kPaneColour);
   const image::Layer layer = layer_of(mesh, GetParam() > 0);
   const double alpha = total_alpha(layer);
   std::array<double, 3> rgb{};
@@ -101,12 +102,12 @@ TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
     rgb[2] += static_cast<double>(pixel.blue);
   }
   const auto opacity = static_cast<double>(kOpacity);
-  EXPECT_NEAR(alpha, plate.area() + opacity * (pane.area() - both), 0.2);
+  EXPECT_NEAR(alpha, kPlate.area() + opacity * (kPane.area() - kBothArea), 0.2);
   EXPECT_NEAR(layer.area_seen_px[0], alpha, 1e-3);
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(rgb[c],
-                static_cast<double>(kPlateColour[c]) * (plate.area() - opacity * both) +
-                    static_cast<double>(kPaneColour[c]) * opacity * pane.area(),
+                static_cast<double>(kPlateColour[c]) * (kPlate.area() - opacity * kBothArea) +
+                    static_cast<double>(kPaneColour[c]) * opacity * kPane.area(),
                 0.5)
         << c;
   const auto at = [&](int x, int y) { return layer.index(x, y); };
@@ -122,20 +123,14 @@ TEST_P(PaneBeforePlate, HasTheAlphaTheColourAndTheDistanceOfBoth) {
   EXPECT_NEAR(static_cast<double>(layer.depth_m[at(40, 29)]), kPaneM, 0.15);
 }
 
-INSTANTIATE_TEST_SUITE_P(AtAnInstantAndDuringAnExposure, PaneBeforePlate, testing::Values(0, 1));
-
-class Panes : public testing::TestWithParam<int> {};
-
 // Before nothing but the sky; the samples of a pixel are covered by one of them, or by both.
 TEST_P(Panes, OfTwoThatOverlapEachStopsItsShareOfWhatTheOtherLeaves) {
-  const Rectangle a{20.3, 18.7, 14.6, 21.9};
-  const Rectangle b{28.15, 24.4, 17.2, 9.35};
-  const double both = (a.x + a.width - b.x) * b.height;
   aircraft::Mesh mesh;
-  add(mesh, a, kPlateM, 0.7F, kPlateColour);
-  add(mesh, b, kPaneM, 0.4F, kPaneColour);
+  add(mesh, kPlate, kPlateM, 0.7F, kPlateColour);
+  add(mesh, kPane, kPaneM, 0.4F, kPaneColour);
   const image::Layer layer = layer_of(mesh, GetParam() > 0);
-  EXPECT_NEAR(total_alpha(layer), 0.7 * a.area() + 0.4 * b.area() - 0.7 * 0.4 * both, 0.2);
+  EXPECT_NEAR(
+      total_alpha(layer), 0.7 * kPlate.area() + 0.4 * kPane.area() - 0.7 * 0.4 * kBothArea, 0.2);
   const std::size_t in_both = layer.index(31, 29);
   EXPECT_NEAR(static_cast<double>(layer.pixels[in_both].alpha), 1 - 0.3 * 0.6, 1e-5);
   EXPECT_NEAR(static_cast<double>(layer.depth_m[in_both]),

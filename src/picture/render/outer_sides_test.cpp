@@ -17,14 +17,6 @@ namespace {
 
 using Outer = std::vector<OuterSides>;
 
-void add_triangle(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 3>& corners) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
-  mesh.normals.resize(mesh.positions.size(), Eigen::Vector3f(1, 0, 0));
-  mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f(0, 0));
-  mesh.parts[0].triangles.push_back({{base, base + 1, base + 2}, 0});
-}
-
 // Two triangles between four corners, which are given along the outline.
 void add_quad(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corners) {
   add_triangle(mesh, {corners[0], corners[1], corners[2]});

@@ -65,6 +65,7 @@ class Silhouette::PixelCover {
     result.marks.assign(n, 0);
     result.triangles.assign(n, 0);
     result.order.clear();
+    result.covered = 0;
     if (!silhouette_.is_known(pixel_.x, pixel_.y)) return;
     thread_local Cover one;
     for (const Entry& entry : silhouette_.triangles_of(pixel_.x, pixel_.y)) {

@@ -339,14 +339,14 @@ void Reader::State::make_plain() {
 
 Decoded Reader::State::with_picture(Frame result) {
   if (options.avoids_copies && !orientation.mirrored && orientation.clockwise_deg == 0) {
-    const std::shared_ptr<AVFrame> lender(av_frame_alloc(), FreeFrame());
+    const std::shared_ptr<AVFrame> lender(av_frame_clone(frame.get()), FreeFrame());
     if (!lender) throw std::bad_alloc();
-    av_frame_move_ref(lender.get(), frame.get());
     if (auto lent = lent_picture(lender, layout, coded_colour)) {
+      // The reader itself must not refer to the frame any more.
+      av_frame_unref(frame.get());
       result.picture = std::move(*lent);
       return {std::move(result), lender};
     }
-    av_frame_move_ref(frame.get(), lender.get());
   }
   result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
   return {std::move(result), nullptr};
