@@ -106,11 +106,10 @@ class TranslucentTexels {
   }
 
   // True where a texel within the triangle is translucent. Where the texture wraps round within
-  // it, all texels count.
+  // it, all texels count, and a texture with this table has translucent ones.
   bool any(const std::array<Eigen::Vector2f, 3>& uvs) const {
-    if (!uvs[0].allFinite() || !uvs[1].allFinite() || !uvs[2].allFinite()) return true;
     const auto corners = corners_in(texture_, uvs);
-    if (!corners) return sums_.back() > 0;
+    if (!corners) return true;
     return any_run(
         level_, *corners, [&](int y, int from, int to) { return count(from, y, to, y + 1) > 0; });
   }
