@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-
-#include "foundation/base/vectors.h"
 
 namespace airtruth::motion {
 namespace {
@@ -39,142 +36,100 @@ constexpr double kLooselySettledPx = 0.5;
 // The longest way from the guess, in samples.
 constexpr double kMaxWayPx = 5;
 
-// The sums over a patch of its luma in code values, of its slopes as in Patch, and of their
-// products with the slopes without weight.
-struct PatchSums {
-  int luma = 0, squares = 0;
-  int slope_x = 0, slope_y = 0;
-  int xx = 0, xy = 0, yy = 0;
-};
-
-// All factors have 16 bits: compilers multiply and add eight or more pairs in one instruction.
-// `first`: the first sample of the patch.
-AIRTRUTH_FOR_VECTORS
-PatchSums prepare(const std::uint8_t* first,
-                  std::ptrdiff_t stride,
-                  std::int16_t* __restrict luma_in_steps,
-                  std::int16_t* __restrict slope_x,
-                  std::int16_t* __restrict slope_y) {
-  constexpr int kSamples = kPatchPx * kPatchPx;
-  std::int16_t x_difference[kSamples], y_difference[kSamples], luma[kSamples];
-  for (int row = 0; row < kPatchPx; ++row) {
-    const std::uint8_t* here = first + row * stride;
-    const std::uint8_t* above = here - stride;
-    const std::uint8_t* below = here + stride;
-    const int to = row * kPatchPx;
-    for (int i = 0; i < kPatchPx; ++i) {
-      luma[to + i] = here[i];
-      x_difference[to + i] = static_cast<std::int16_t>(here[i + 1] - here[i - 1]);
-      y_difference[to + i] = static_cast<std::int16_t>(below[i] - above[i]);
-    }
-  }
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    luma_in_steps[i] = static_cast<std::int16_t>(luma[i] * kLumaSteps);
-    slope_x[i] = static_cast<std::int16_t>(x_difference[i] * kWeight[i]);
-    slope_y[i] = static_cast<std::int16_t>(y_difference[i] * kWeight[i]);
-  }
-  PatchSums sums;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    sums.luma += luma[i];
-    sums.squares += luma[i] * luma[i];
-    sums.slope_x += slope_x[i];
-    sums.slope_y += slope_y[i];
-    sums.xx += slope_x[i] * x_difference[i];
-    sums.xy += slope_x[i] * y_difference[i];
-    sums.yy += slope_y[i] * y_difference[i];
-  }
-  return sums;
-}
-
 }  // namespace
 
 std::optional<Patch> Patch::at(const cv::Mat& grey, int x, int y) {
   if (x < 1 || y < 1 || x + kPatchPx >= grey.cols || y + kPatchPx >= grey.rows) return std::nullopt;
   Patch patch;
-  const PatchSums sums = prepare(grey.ptr<std::uint8_t>(y) + x,
-                                 static_cast<std::ptrdiff_t>(grey.step),
-                                 patch.luma_.data(),
-                                 patch.slope_x_.data(),
-                                 patch.slope_y_.data());
-  patch.mean_slope_x_ = double(sums.slope_x) / kWeightOfAll;
-  patch.mean_slope_y_ = double(sums.slope_y) / kWeightOfAll;
+  std::int16_t x_difference[kSamples], y_difference[kSamples], luma[kSamples];
+  for (int row = 0; row < kPatchPx; ++row) {
+    const std::uint8_t* above = grey.ptr<std::uint8_t>(y + row - 1) + x;
+    const std::uint8_t* here = grey.ptr<std::uint8_t>(y + row) + x;
+    const std::uint8_t* below = grey.ptr<std::uint8_t>(y + row + 1) + x;
+    const int first = row * kPatchPx;
+    for (int i = 0; i < kPatchPx; ++i) {
+      luma[first + i] = here[i];
+      x_difference[first + i] = static_cast<std::int16_t>(here[i + 1] - here[i - 1]);
+      y_difference[first + i] = static_cast<std::int16_t>(below[i] - above[i]);
+    }
+  }
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    patch.luma_[i] = static_cast<std::int16_t>(luma[i] * kLumaSteps);
+    patch.slope_x_[i] = static_cast<std::int16_t>(x_difference[i] * kWeight[i]);
+    patch.slope_y_[i] = static_cast<std::int16_t>(y_difference[i] * kWeight[i]);
+  }
+  // All factors have 16 bits: compilers multiply and add eight pairs in one instruction.
+  int sum = 0, squares = 0, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    sum += luma[i];
+    squares += luma[i] * luma[i];
+    sum_x += patch.slope_x_[i];
+    sum_y += patch.slope_y_[i];
+    xx += patch.slope_x_[i] * x_difference[i];
+    xy += patch.slope_x_[i] * y_difference[i];
+    yy += patch.slope_y_[i] * y_difference[i];
+  }
+  patch.mean_slope_x_ = double(sum_x) / kWeightOfAll;
+  patch.mean_slope_y_ = double(sum_y) / kWeightOfAll;
   // Per sample, of the slopes about their mean; a slope is half the difference of the neighbours.
   const auto moment = [](int sum_of_products, double mean_1, double mean_2) {
     return (double(sum_of_products) / kWeightOfAll - mean_1 * mean_2) / 4;
   };
-  const double a = moment(sums.xx, patch.mean_slope_x_, patch.mean_slope_x_);
-  const double b = moment(sums.xy, patch.mean_slope_x_, patch.mean_slope_y_);
-  const double c = moment(sums.yy, patch.mean_slope_y_, patch.mean_slope_y_);
+  const double a = moment(xx, patch.mean_slope_x_, patch.mean_slope_x_);
+  const double b = moment(xy, patch.mean_slope_x_, patch.mean_slope_y_);
+  const double c = moment(yy, patch.mean_slope_y_, patch.mean_slope_y_);
   if ((a + c) / 2 - std::sqrt((a - c) * (a - c) / 4 + b * b) < kMinEigenvalue) return std::nullopt;
   const double determinant = a * c - b * b;
   patch.inverse_xx_ = c / determinant;
   patch.inverse_xy_ = -b / determinant;
   patch.inverse_yy_ = a / determinant;
-  const double mean = double(sums.luma) / kSamples;
-  patch.contrast_ = std::sqrt(std::max(0.0, double(sums.squares) / kSamples - mean * mean));
+  const double mean = double(sum) / kSamples;
+  patch.contrast_ = std::sqrt(std::max(0.0, double(squares) / kSamples - mean * mean));
   return patch;
 }
 
-namespace {
-
 // The sums over a patch of what a picture has more than the patch, in kLumaSteps a code value. They
 // keep within 32 bits: the largest is 255 x 2,040 x kWeightOfAll = 1.4e9.
-struct Difference {
+struct Patch::Difference {
   int times_slope_x = 0, times_slope_y = 0;
   int weighted = 0;
   int sum = 0, squares = 0;
 };
 
-// What a picture has more than a patch, by sample. `first`: the sample of the picture at or before
-// the first of the patch. right, down: from there to the first of the patch, in kPositionSteps.
-[[gnu::always_inline]] inline void subtract(const std::uint8_t* first,
-                                            std::ptrdiff_t stride,
-                                            int right,
-                                            int down,
-                                            const std::int16_t* luma,
-                                            std::int16_t* __restrict more) {
+Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th) const {
+  const int x = x_16th / kPositionSteps, y = y_16th / kPositionSteps;
+  const int right = x_16th % kPositionSteps, down = y_16th % kPositionSteps;
   const auto weight = [](int a, int b) { return static_cast<std::uint16_t>(a * b); };
   const std::uint16_t w00 = weight(kPositionSteps - right, kPositionSteps - down);
   const std::uint16_t w01 = weight(right, kPositionSteps - down);
   const std::uint16_t w10 = weight(kPositionSteps - right, down);
   const std::uint16_t w11 = weight(right, down);
+  std::int16_t more[kSamples];
   for (int row = 0; row < kPatchPx; ++row) {
-    const std::uint8_t* upper = first + row * stride;
-    const std::uint8_t* lower = upper + stride;
-    const std::int16_t* luma_of_row = luma + row * kPatchPx;
-    std::int16_t* more_of_row = more + row * kPatchPx;
+    const std::uint8_t* upper = grey.ptr<std::uint8_t>(y + row) + x;
+    const std::uint8_t* lower = grey.ptr<std::uint8_t>(y + row + 1) + x;
+    const std::int16_t* luma = &luma_[static_cast<std::size_t>(row * kPatchPx)];
+    std::int16_t* row_of_more = &more[row * kPatchPx];
     for (int i = 0; i < kPatchPx; ++i) {
       const auto sample = static_cast<std::uint16_t>(upper[i] * w00 + upper[i + 1] * w01 +
                                                      lower[i] * w10 + lower[i + 1] * w11);
       constexpr int kShift = 5;
       static_assert(kWeightSum >> kShift == kLumaSteps);
-      more_of_row[i] = static_cast<std::int16_t>((sample >> kShift) - luma_of_row[i]);
+      row_of_more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
     }
   }
+  Difference all;  // factors of 16 bits, as in at()
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    all.times_slope_x += more[i] * slope_x_[i];
+    all.times_slope_y += more[i] * slope_y_[i];
+    all.weighted += more[i] * kWeight[i];
+    all.sum += more[i];
+    all.squares += more[i] * more[i];
+  }
+  return all;
 }
 
-// first, stride, right, down, luma: as in subtract().
-AIRTRUTH_FOR_VECTORS
-Difference sum_difference(const std::uint8_t* first,
-                          std::ptrdiff_t stride,
-                          int right,
-                          int down,
-                          const std::int16_t* luma,
-                          const std::int16_t* slope_x,
-                          const std::int16_t* slope_y) {
-  constexpr int kSamples = kPatchPx * kPatchPx;
-  std::int16_t more[kSamples];
-  subtract(first, stride, right, down, luma, more);
-  Difference sums;
-  for (std::size_t i = 0; i < kSamples; ++i) {  // factors of 16 bits, as in prepare()
-    sums.times_slope_x += more[i] * slope_x[i];
-    sums.times_slope_y += more[i] * slope_y[i];
-    sums.weighted += more[i] * kWeight[i];
-    sums.sum += more[i];
-    sums.squares += more[i] * more[i];
-  }
-  return sums;
-}
+namespace {
 
 double squared(double x, double y) { return x * x + y * y; }
 
@@ -188,14 +143,7 @@ std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, dou
     if (x_16th < 0 || y_16th < 0 || x_16th / kPositionSteps + kPatchPx >= grey.cols ||
         y_16th / kPositionSteps + kPatchPx >= grey.rows)
       return std::nullopt;
-    const Difference more =
-        sum_difference(grey.ptr<std::uint8_t>(y_16th / kPositionSteps) + x_16th / kPositionSteps,
-                       static_cast<std::ptrdiff_t>(grey.step),
-                       x_16th % kPositionSteps,
-                       y_16th % kPositionSteps,
-                       luma_.data(),
-                       slope_x_.data(),
-                       slope_y_.data());
+    const Difference more = difference(grey, x_16th, y_16th);
     const double mean = double(more.weighted) / kWeightOfAll;
     constexpr double kScale = 1.0 / (2 * kLumaSteps);  // half the neighbours' difference is a slope
     const double bx = kScale * (double(more.times_slope_x) / kWeightOfAll - mean * mean_slope_x_);

@@ -41,6 +41,8 @@ class Patch {
 
  private:
   static constexpr int kSamples = kPatchPx * kPatchPx;
+  struct Difference;
+  Difference difference(const cv::Mat& grey, int x_16th, int y_16th) const;
 
   std::array<std::int16_t, kSamples> luma_;  // in kLumaSteps a code value
   // The difference of the neighbours on either side, in code values, which is twice the slope,

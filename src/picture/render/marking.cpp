@@ -36,7 +36,7 @@ template <typename Inside>
 
 // A sample is inside where it is on the inner side of all three sides; an unused side is +1
 // everywhere.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 bool mark_all(
     const Bilinear* sides, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = sides[0];
@@ -53,7 +53,7 @@ bool mark_all(
 }
 
 // The same for a single side that crosses the pixel.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 bool mark_one(
     const Bilinear* side, const float* px, const float* py, int n, std::int32_t* covered) {
   const Bilinear p = *side;
@@ -80,7 +80,7 @@ std::optional<Bilinear> even_side(const Swept& side) {
   return Bilinear{p.a - p.d / 4 - drift + bend, p.b + p.d / 2, p.c + p.d / 2, 2 * drift};
 }
 
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 bool mark_even(const Bilinear* sides,
                const float* px,
                const float* py,
@@ -101,7 +101,7 @@ bool mark_even(const Bilinear* sides,
   });
 }
 
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 bool mark_one_even(const Bilinear* side,
                    const float* px,
                    const float* py,
@@ -114,7 +114,7 @@ bool mark_one_even(const Bilinear* side,
 }
 
 // The same for sides without a linear form; an unused one is 1 everywhere.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 void side_values(
     const Swept* side, const float* px, const float* py, const float* pt, int n, float* least) {
   const Bilinear p = side->steady;
@@ -131,65 +131,66 @@ void side_values(
   }
 }
 
-// Tests `width` samples at a time: the strips that are the bits of `strips`.
-AIRTRUTH_FOR_VECTORS
-unsigned mark_straight(const Straight* sides,
-                       const float* px,
-                       const float* py,
-                       int width,
-                       unsigned strips,
-                       std::int32_t* covered) {
+// Marks the samples of the strips that are the bits of `strips`, of `width` samples each.
+// value(side, i): of a side at sample i. kCrossing: how many sides are tested.
+template <std::size_t kCrossing, typename Value>
+[[gnu::always_inline]] inline unsigned mark_strips(
+    const Straight* sides, int width, unsigned strips, std::int32_t* covered, const Value& value) {
   const Straight p = sides[0];
   const Straight q = sides[1];
   const Straight r = sides[2];
   unsigned full = 0;
   for (unsigned left = strips; left != 0; left &= left - 1) {
     const int first = __builtin_ctz(left) * width;
-    const float* here_x = px + first;
-    const float* here_y = py + first;
     const bool all = mark_where(width, covered + first, [=](int i) {
-      const float x = here_x[i];
-      const float y = here_y[i];
-      const float u = p.a + p.b * x + p.c * y;
-      const float v = q.a + q.b * x + q.c * y;
-      const float w = r.a + r.b * x + r.c * y;
-      return (u >= 0) & (v >= 0) & (w >= 0);
+      bool inside = value(p, first + i) >= 0;
+      if constexpr (kCrossing > 1) inside &= value(q, first + i) >= 0;
+      if constexpr (kCrossing > 2) inside &= value(r, first + i) >= 0;
+      return inside;
     });
     full |= static_cast<unsigned>(all) << __builtin_ctz(left);
   }
   return full;
 }
 
+template <typename Value>
+[[gnu::always_inline]] inline unsigned mark_strips(const Straight* sides,
+                                                   int crossing,
+                                                   int width,
+                                                   unsigned strips,
+                                                   std::int32_t* covered,
+                                                   const Value& value) {
+  if (crossing == 1) return mark_strips<1>(sides, width, strips, covered, value);
+  if (crossing == 2) return mark_strips<2>(sides, width, strips, covered, value);
+  return mark_strips<3>(sides, width, strips, covered, value);
+}
+
+AIRTRUTH_FOR_SHORT_VECTORS
+unsigned mark_straight(const Straight* sides,
+                       int crossing,
+                       const float* px,
+                       const float* py,
+                       int width,
+                       unsigned strips,
+                       std::int32_t* covered) {
+  return mark_strips(sides, crossing, width, strips, covered, [=](const Straight& side, int i) {
+    return side.a + side.b * px[i] + side.c * py[i];
+  });
+}
+
 // The same during an exposure.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 unsigned mark_straight_moving(const Straight* sides,
+                              int crossing,
                               const float* px,
                               const float* py,
                               const float* pt,
                               int width,
                               unsigned strips,
                               std::int32_t* covered) {
-  const Straight p = sides[0];
-  const Straight q = sides[1];
-  const Straight r = sides[2];
-  unsigned full = 0;
-  for (unsigned left = strips; left != 0; left &= left - 1) {
-    const int first = __builtin_ctz(left) * width;
-    const float* here_x = px + first;
-    const float* here_y = py + first;
-    const float* here_t = pt + first;
-    const bool all = mark_where(width, covered + first, [=](int i) {
-      const float x = here_x[i];
-      const float y = here_y[i];
-      const float t = here_t[i];
-      const float u = (p.a + p.b * x) + (p.c * y + p.d * t);
-      const float v = (q.a + q.b * x) + (q.c * y + q.d * t);
-      const float w = (r.a + r.b * x) + (r.c * y + r.d * t);
-      return (u >= 0) & (v >= 0) & (w >= 0);
-    });
-    full |= static_cast<unsigned>(all) << __builtin_ctz(left);
-  }
-  return full;
+  return mark_strips(sides, crossing, width, strips, covered, [=](const Straight& side, int i) {
+    return (side.a + side.b * px[i]) + (side.c * py[i] + side.d * pt[i]);
+  });
 }
 
 bool mark_swept(const Swept* sides,
@@ -234,17 +235,18 @@ bool mark(const std::array<Bilinear, 3>& sides,
 }
 
 unsigned mark(const std::array<Straight, 3>& sides,
+              int crossing,
               bool moves,
               const Places& places,
               int samples,
               unsigned strips,
               std::int32_t* covered) {
+  const float* x = places.x.data();
+  const float* y = places.y.data();
   const float* t = places.t.data();
   const int width = samples / PixelSamples::kStrips;
-  return moves ? mark_straight_moving(
-                     sides.data(), places.x.data(), places.y.data(), t, width, strips, covered)
-               : mark_straight(
-                     sides.data(), places.x.data(), places.y.data(), width, strips, covered);
+  return moves ? mark_straight_moving(sides.data(), crossing, x, y, t, width, strips, covered)
+               : mark_straight(sides.data(), crossing, x, y, width, strips, covered);
 }
 
 // Chooses the cheapest method that is accurate enough.

@@ -41,16 +41,18 @@ struct Straight {
 // All strips of a pixel (samples.h), as bits.
 inline constexpr unsigned kAllStrips = (1U << PixelSamples::kStrips) - 1;
 // Marks the samples of some strips, which are the bits of `strips`. `covered` and `places` are in
-// the order of PixelSamples::fill(). Returns the bits of those in which every sample is then
+// the order of PixelSamples::fill(). `crossing`: how many of the sides cross the pixel, 1 to 3;
+// they come first in `sides`. Returns the bits of those strips in which every sample is then
 // covered.
 unsigned mark(const std::array<Straight, 3>& sides,
+              int crossing,
               bool moves,
               const Places& places,
               int samples,
               unsigned strips,
               std::int32_t* covered);
 
-// `crossing`: how many of the sides cross the pixel, 1 to 3; they come first in `sides`.
+// `crossing`: as above.
 bool mark(const std::array<Bilinear, 3>& sides,
           int crossing,
           const Places& places,

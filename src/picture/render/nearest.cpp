@@ -32,7 +32,7 @@ template <typename Inside, typename Plane>
   }
 }
 
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 void nearest_still(const Straight* sides,
                    const PixelDepth& depth,
                    std::int32_t triangle,
@@ -65,7 +65,7 @@ void nearest_still(const Straight* sides,
       [=](int i) { return at(n, i); });
 }
 
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 void nearest_moving(const Straight* sides,
                     const PixelDepth& depth,
                     std::int32_t triangle,
@@ -99,7 +99,7 @@ void nearest_moving(const Straight* sides,
       [=](int i) { return at(n, i); });
 }
 
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 void nearest_inside(const std::int32_t* inside,
                     const PixelDepth& depth,
                     float per_time,
@@ -124,7 +124,7 @@ void nearest_inside(const std::int32_t* inside,
 
 // Floats that are not negative have the order of their bits. The least of whole numbers, unlike
 // that of floats, may be found in any order, and so by vectors.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 std::int32_t least_bits(const float* nearness, int n) {
   std::int32_t least = std::numeric_limits<std::int32_t>::max();
   for (int i = 0; i < n; ++i) {

@@ -159,7 +159,8 @@ class Silhouette::PixelCover {
     const unsigned strips = sides.strips & open_;
     if (strips == 0) return;
     place();
-    open_ &= ~mark(sides.side, exposes_, places(), samples_, strips, cover_->marks.data());
+    open_ &= ~mark(
+        sides.side, sides.crossing, exposes_, places(), samples_, strips, cover_->marks.data());
   }
 
   // The same where the samples are sorted.

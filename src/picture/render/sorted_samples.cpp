@@ -11,7 +11,7 @@ namespace airtruth::render {
 namespace {
 
 // The cell of each sample in the moving picture.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 void find_cells(const float* px,
                 const float* py,
                 const float* pt,
@@ -44,7 +44,7 @@ struct Run {
 
 // Marks the samples of some runs that are inside three sides; the runs have no sample in common.
 // Returns how many were not covered before.
-AIRTRUTH_FOR_VECTORS
+AIRTRUTH_FOR_SHORT_VECTORS
 int mark_runs(const Straight* sides,
               const float* px,
               const float* py,
