@@ -92,7 +92,9 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
   Tally tally;
   const Stages stages(maker, outputs, options, clocks, tally);
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  const std::size_t in_flight = 2 * static_cast<std::size_t>(threads) + 2;
+  // One for each thread, one that waits for its turn and one that is being decoded. With more, a
+  // long run comes to hold them all at some time, and takes no less time.
+  const std::size_t in_flight = static_cast<std::size_t>(threads) + 2;
   // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
   const bool one_thread = maker.is_of_one_thread();
   tbb::task_arena arena(one_thread ? 1 : threads);
