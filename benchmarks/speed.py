@@ -29,6 +29,9 @@ MAX_RISE = 1.10  # of a ratio over the stored one: medians of five rounds differ
 PAPER = "paper's method, flight, 40 px"
 PAPER_ROUNDS = 3  # it takes a minute, and is an order of magnitude away from the others
 MEMORY_SIZES = (300, 3000)  # frames
+# The settings of airtruth's own encoder (src/picture/video/encoder.cpp), for a transcode that differs from a render in
+# nothing but the intruder.
+OWN_ENCODER = ("-threads", "8", "-x264-params", "partitions=i8x8,i4x4:bframes=1:me=dia:cpu-independent=1")
 
 
 def run(commands, environment=None):
@@ -93,13 +96,13 @@ class Bench:
         scene = self.scene(clip, size_px, **more)
         return lambda: (self.render if cached else self.render_without_motion)(scene)
 
-    def transcode(self, clip, frames=None):
+    def transcode(self, clip, frames=None, settings=()):
         length = ["-frames:v", str(frames)] if frames else []
-        return inputs.ffmpeg("-i", clip, *length, "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt",
+        return inputs.ffmpeg("-i", clip, *length, "-c:v", "libx264", "-preset", "veryfast", *settings, "-crf", "18", "-pix_fmt",
                              "yuv420p", self.path(f"transcoded-{time.monotonic_ns()}.mp4"))
 
-    def transcodes(self, clip, count=1, frames=None):
-        result = run([self.transcode(clip, frames) for _ in range(count)])
+    def transcodes(self, clip, count=1, frames=None, settings=()):
+        result = run([self.transcode(clip, frames, settings) for _ in range(count)])
         for name in os.listdir(self.folder):
             if name.startswith("transcoded-"):
                 os.remove(self.path(name))
@@ -114,6 +117,8 @@ class Bench:
         base = f"ffmpeg, {clip}"
         frames = self.frames
         rows = {base: Contender(lambda: self.transcodes(self.clips[clip]), base, frames)}
+        rows[f"{base}, airtruth's settings"] = Contender(
+            lambda: self.transcodes(self.clips[clip], settings=OWN_ENCODER), base, frames)
         for size in (40, 100):
             for cached, word in ((False, "motion unknown"), (True, "motion cached")):
                 rows[f"render, {clip}, {size} px, {word}"] = Contender(self.rendering(clip, size, cached), base, frames)

@@ -42,6 +42,17 @@ constexpr std::array<H264Encoder, 3> kHardware = {
 // at work; on two cores they take as much CPU time as two threads do, and 12 MiB each at 1280x960.
 constexpr int kX264Threads = 8;
 
+// libx264's settings: those of its preset "veryfast", but that P and B pictures predict whole
+// macroblocks alone, that at most one B picture stands between two others, and that the motion
+// search is a diamond. Onboard video then has the same quality at the same size for a fifth to a
+// third less of the encoder's time (docs/decisions/0055-x264-for-onboard-video.md).
+//
+// cpu-independent gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
+// mbtree) even gives different bytes from one encode to the next in the same process.
+constexpr const char* kX264Preset = "veryfast";
+constexpr const char* kX264Settings =
+    "partitions=i8x8,i4x4:bframes=1:me=dia:cpu-independent=1";
+
 struct Opened {
   CodecPtr codec;
   std::string fault;  // why `codec` is null
@@ -90,11 +101,9 @@ Opened open_own(const EncoderInput& input, const WriterOptions& options, const c
   return opened(name, input, options, [&](AVCodecContext& codec, AVDictionary** settings) {
     codec.pix_fmt = pixel_format(input.stored, options.format);
     if (options.format == Format::kMp4) {
-      av_dict_set(settings, "preset", options.preset.c_str(), 0);
+      av_dict_set(settings, "preset", kX264Preset, 0);
       av_dict_set_int(settings, "crf", options.quality, 0);
-      // The setting gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
-      // mbtree) even gives different bytes from one encode to the next in the same process.
-      av_dict_set(settings, "x264-params", "cpu-independent=1", 0);
+      av_dict_set(settings, "x264-params", kX264Settings, 0);
     } else if (options.format == Format::kMkv) {
       av_dict_set_int(settings, "level", 3, 0);
       av_dict_set_int(settings, "slicecrc", 1, 0);

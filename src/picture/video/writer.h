@@ -29,8 +29,6 @@ struct WriterOptions {
   // H.264: CRF 0..51. MJPEG: its qscale 1..31 is derived from the same scale. Lossless formats
   // ignore it.
   int quality = 18;
-  // x264's preset, which trades speed against size.
-  std::string preset = "veryfast";
   // Number of encoder threads of FFV1 and MJPEG; 0: one for each core. The bytes do not depend on
   // it. H.264 has a number of its own, on which its bytes do depend.
   int threads = 0;
