@@ -35,7 +35,8 @@ if(AIRTRUTH_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
     # What AddressSanitizer sees by itself, or x86 does not mind: a quarter of the time it takes to compile.
     -fno-sanitize=null,alignment,object-size,vptr)
-  target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined)
+  # lld links a sanitized program in a sixth of the time that GNU ld takes.
+  target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined -fuse-ld=lld)
 endif()
 if(AIRTRUTH_FUZZERS)
   # Every branch reports to the fuzzers that it was taken.

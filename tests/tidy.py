@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs clang-tidy over the sources of src/ but the tests: tidy.py BUILD [TEXT]
 
-BUILD holds compile_commands.json; TEXT limits the run to sources whose path contains it. Most of clang-tidy's time goes into headers, so that up to sixteen sources of one folder
-are read as one, which takes less than a third of the time. Sources whose private names clash do not compile as one; they are read one by one.
+BUILD holds compile_commands.json; TEXT limits the run to sources whose path contains it. Most of clang-tidy's time goes into headers, so that up to
+sixteen sources are read as one, which takes less than a third of the time. Sources that do not compile as one, such as those whose private names
+clash, are read one by one.
 The exit code is 1 where there is a finding.
 """
 import concurrent.futures
@@ -19,16 +20,26 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_SOURCES = 16
 
 
-def batches(sources):
-    """The sources of each folder in groups of nearly equal size, none larger than MOST_SOURCES."""
+def batches(flags):
+    """The sources in groups, none larger than MOST_SOURCES, whose members have one set of flags: small folders together,
+    large ones in parts of nearly equal size."""
     folders = {}
-    for source in sorted(sources):
+    for source in sorted(flags):
         folders.setdefault(os.path.dirname(source), []).append(source)
+    parts = {}
     for members in folders.values():
         count = -(-len(members) // MOST_SOURCES)
         size = -(-len(members) // count)
         for first in range(0, len(members), size):
-            yield members[first:first + size]
+            parts.setdefault(tuple(flags[members[first]]), []).append(members[first:first + size])
+    for alike in parts.values():
+        group = []
+        for part in sorted(alike, key=len, reverse=True):
+            if group and len(group) + len(part) > MOST_SOURCES:
+                yield group
+                group = []
+            group = group + part
+        yield group
 
 
 def flags_of(command):
