@@ -3,8 +3,8 @@
 """Runs clang-tidy over the sources of src/ but the tests: tidy.py BUILD [TEXT]
 
 BUILD holds compile_commands.json; TEXT limits the run to sources whose path contains it. Most of clang-tidy's time goes into headers, so that up to
-sixteen sources are read as one, which takes less than a third of the time. Sources that do not compile as one, such as those whose private names
-clash, are read one by one.
+sixteen sources are read as one, which takes less than a third of the time. Where they do not compile as one, for example because private names
+clash, each half of them is read as one.
 The exit code is 1 where there is a finding.
 """
 import concurrent.futures
@@ -57,13 +57,15 @@ def tidy(source, flags):
 
 
 def check(batch, flags, folder):
-    if len(batch) > 1:
-        joined = pathlib.Path(folder) / (os.path.relpath(batch[0], ROOT).replace("/", "_"))
-        joined.write_text("".join(f'#include "{source}"\n' for source in batch))
-        code, text = tidy(str(joined), flags[batch[0]])
-        if "clang-diagnostic-error" not in text:
-            return code, text
-    results = [tidy(source, flags[source]) for source in batch]
+    if len(batch) == 1:
+        return tidy(batch[0], flags[batch[0]])
+    joined = pathlib.Path(folder) / f"{len(batch)}_{os.path.relpath(batch[0], ROOT).replace('/', '_')}"
+    joined.write_text("".join(f'#include "{source}"\n' for source in batch))
+    code, text = tidy(str(joined), flags[batch[0]])
+    if "clang-diagnostic-error" not in text:
+        return code, text
+    half = len(batch) // 2
+    results = [check(part, flags, folder) for part in (batch[:half], batch[half:])]
     return max(code for code, _ in results), "".join(text for _, text in results)
 
 

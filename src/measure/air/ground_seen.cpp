@@ -52,7 +52,7 @@ struct BandSum : Sum {
   double depression_rad = 0;
 };
 
-int sector_of(const Eigen::Vector2d& way) {
+int sector_of_way(const Eigen::Vector2d& way) {
   return calibration::sector_of(std::atan2(way.y(), way.x()));
 }
 
@@ -87,7 +87,7 @@ class Gatherer {
       if (!band && !in_square) continue;
       const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone_);
       if (band) {
-        BandSum& sum = bands_[static_cast<std::size_t>(sector_of(*way)) * kBands + *band];
+        BandSum& sum = bands_[static_cast<std::size_t>(sector_of_way(*way)) * kBands + *band];
         sum.add(*way, range, linear);
         sum.depression_rad += std::asin(1 / range);
       }
@@ -124,7 +124,7 @@ class Gatherer {
       const double whole = 1 / (range * range * range * step_rad_ * step_rad_);
       if (sum.count < std::max(kMinPixels, kMinShareSeen * whole)) continue;
       const int square = numbers_.emplace(place, static_cast<int>(numbers_.size())).first->second;
-      seen_.squares.push_back({square, sector_of(sum.way), range, sum.mean_light()});
+      seen_.squares.push_back({square, sector_of_way(sum.way), range, sum.mean_light()});
     }
   }
 

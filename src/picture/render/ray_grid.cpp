@@ -8,14 +8,14 @@
 namespace airtruth::render {
 namespace {
 
-const Vector3 kNowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+const Vector3 kNoDirection = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
 
 Vector3 ray_in_cam(const View& view, const Pixel& pixel) {
   const Vector3 nominal = view.nominal_from_frame * Vector3(pixel.x(), pixel.y(), 1);
-  if (!(nominal.z() > 0)) return kNowhere;
+  if (!(nominal.z() > 0)) return kNoDirection;
   const auto ray =
       view.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
-  return ray ? *ray : kNowhere;
+  return ray ? *ray : kNoDirection;
 }
 
 }  // namespace

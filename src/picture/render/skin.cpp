@@ -17,14 +17,14 @@ int wrapped(int i, int size, bool repeat) {
 constexpr float kFarthestRepeat = 1e5f;
 
 // A place between two texels: the first of them, and the share of the second.
-struct Between {
+struct TexelPlace {
   int first;
   float share;
 };
 
 // Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
 // call of the library on machines that are only known to have SSE2.
-Between between(float place) {
+TexelPlace texel_place(float place) {
   const auto towards_zero = static_cast<std::int64_t>(place);
   const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);
   return {static_cast<int>(below), place - static_cast<float>(below)};
@@ -35,8 +35,8 @@ using Channels = Eigen::Array4f;
 
 Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, float v) {
   const auto& level = texture.levels[index];
-  const auto [x, fx] = between(u * static_cast<float>(level.width) - 0.5f);
-  const auto [y, fy] = between(v * static_cast<float>(level.height) - 0.5f);
+  const auto [x, fx] = texel_place(u * static_cast<float>(level.width) - 0.5f);
+  const auto [y, fy] = texel_place(v * static_cast<float>(level.height) - 0.5f);
   const int x0 = wrapped(x, level.width, texture.repeat_u);
   const int x1 = wrapped(x + 1, level.width, texture.repeat_u);
   const int y0 = wrapped(y, level.height, texture.repeat_v);
@@ -92,8 +92,8 @@ void Skin::prefetch(float u, float v) const {
   if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kFarthestRepeat) return;
   for (std::size_t l = level_; l <= level_ + (coarser_ > 0 ? 1 : 0); ++l) {
     const auto& level = texture_->levels[l];
-    const int x = between(uv.x() * static_cast<float>(level.width) - 0.5f).first;
-    const int y = between(uv.y() * static_cast<float>(level.height) - 0.5f).first;
+    const int x = texel_place(uv.x() * static_cast<float>(level.width) - 0.5f).first;
+    const int y = texel_place(uv.y() * static_cast<float>(level.height) - 0.5f).first;
     const auto column = static_cast<std::size_t>(wrapped(x, level.width, texture_->repeat_u));
     for (int row = 0; row < 2; ++row) {
       const int wrapped_row = wrapped(y + row, level.height, texture_->repeat_v);
