@@ -50,8 +50,7 @@ constexpr int kX264Threads = 8;
 // cpu-independent gives the same bytes on every machine. Without it x264's fastest code (AVX-512,
 // mbtree) even gives different bytes from one encode to the next in the same process.
 constexpr const char* kX264Preset = "veryfast";
-constexpr const char* kX264Settings =
-    "partitions=i8x8,i4x4:bframes=1:me=dia:cpu-independent=1";
+constexpr const char* kX264Settings = "partitions=i8x8,i4x4:bframes=1:me=dia:cpu-independent=1";
 
 struct Opened {
   CodecPtr codec;
