@@ -31,7 +31,8 @@ endfunction()
 #            [UNSANITIZED Suite.Name ...])
 # makes the static library airtruth_NAME and, from TESTS, the program NAME_test (one ctest entry; SLOW_TESTS
 # make NAME_slow_test, labelled slow; not with sanitizers, under which they take hours). UNSANITIZED Suite.Name ... names
-# tests of NAME_test that are left out with sanitizers: they repeat for their statistics what others of NAME_test run.
+# tests of NAME_test that are left out with sanitizers: they repeat, for their statistics or in
+# whole runs, what other tests run.
 function(add_module name)
   cmake_parse_arguments(arg "" ""
     "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED" ${ARGN})
