@@ -1,16 +1,21 @@
-# Headers that nearly every file reads, compiled once for libraries and once for tests. Every file includes what it
-# uses all the same: -DAIRTRUTH_PCH=OFF builds without.
+# Headers that nearly every file reads, compiled once for libraries and once for tests, and with airtruth's own the Eigen
+# expressions that their inline functions instantiate. Every file includes what it uses all the same: -DAIRTRUTH_PCH=OFF
+# builds without.
 if(AIRTRUTH_PCH)
   set(airtruth_common_headers
               <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <sstream>
-              <string> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h>)
+              <string> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h>
+              <foundation/base/error.h> <foundation/geometry/within_frame.h> <foundation/geometry/box.h> <foundation/image/layer.h>
+              <foundation/image/picture.h> <camera/lens/lens.h> <aircraft/model/mesh.h>)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pch.cpp CONTENT "")
   add_library(airtruth_pch STATIC ${PROJECT_BINARY_DIR}/pch.cpp)
   target_link_libraries(airtruth_pch PRIVATE airtruth_options Eigen3::Eigen)
+  target_include_directories(airtruth_pch PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_precompile_headers(airtruth_pch PRIVATE ${airtruth_common_headers})
   if(AIRTRUTH_TESTS)
     add_executable(airtruth_test_pch ${PROJECT_BINARY_DIR}/pch.cpp)
     target_link_libraries(airtruth_test_pch PRIVATE airtruth_options Eigen3::Eigen GTest::gmock GTest::gtest_main)
+    target_include_directories(airtruth_test_pch PRIVATE ${PROJECT_SOURCE_DIR}/src)
     if(AIRTRUTH_SANITIZE)
       target_compile_options(airtruth_test_pch PRIVATE -O0)
     endif()
