@@ -29,9 +29,17 @@ MAX_RISE = 1.10  # of a ratio over the stored one: medians of five rounds differ
 PAPER = "paper's method, flight, 40 px"
 PAPER_ROUNDS = 3  # it takes a minute, and is an order of magnitude away from the others
 MEMORY_SIZES = (300, 3000)  # frames
-# The settings of airtruth's own encoder (src/picture/video/encoder.cpp), for a transcode that differs from a render in
-# nothing but the intruder.
-OWN_ENCODER = ("-threads", "8", "-x264-params", "partitions=i8x8,i4x4:bframes=1:me=dia:cpu-independent=1")
+ENCODER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src", "picture", "video", "encoder.cpp")
+
+
+def own_encoder():
+    """ffmpeg's options for the settings of airtruth's own encoder, read from its source: a transcode with them differs
+    from a render in nothing but the intruder."""
+    with open(ENCODER, encoding="utf-8") as opened:
+        source = opened.read()
+    threads = re.search(r"kX264Threads = (\d+);", source).group(1)
+    settings = re.search(r'kX264Settings = "([^"]+)";', source).group(1)
+    return "-threads", threads, "-x264-params", settings
 
 
 def run(commands, environment=None):
@@ -118,7 +126,7 @@ class Bench:
         frames = self.frames
         rows = {base: Contender(lambda: self.transcodes(self.clips[clip]), base, frames)}
         rows[f"{base}, airtruth's settings"] = Contender(
-            lambda: self.transcodes(self.clips[clip], settings=OWN_ENCODER), base, frames)
+            lambda: self.transcodes(self.clips[clip], settings=own_encoder()), base, frames)
         for size in (40, 100):
             for cached, word in ((False, "motion unknown"), (True, "motion cached")):
                 rows[f"render, {clip}, {size} px, {word}"] = Contender(self.rendering(clip, size, cached), base, frames)
