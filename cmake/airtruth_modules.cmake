@@ -1,5 +1,5 @@
-# Tests are compiled with less optimisation than what they test.
-set(airtruth_test_optimisation $<IF:$<BOOL:${AIRTRUTH_SANITIZE}>,-O0,-O1>)
+# For tests and for the sources of the program: what they call is optimised (decision 0011).
+set(airtruth_light_optimisation $<IF:$<BOOL:${AIRTRUTH_SANITIZE}>,-O0,-O1>)
 
 # Headers that nearly every file reads, compiled once for libraries and once for tests. Every file includes what it
 # uses all the same: -DAIRTRUTH_PCH=OFF builds without.
@@ -22,7 +22,7 @@ if(AIRTRUTH_PCH)
     add_executable(airtruth_test_pch ${PROJECT_BINARY_DIR}/pch.cpp)
     target_link_libraries(airtruth_test_pch PRIVATE airtruth_options Eigen3::Eigen GTest::gmock GTest::gtest_main)
     target_include_directories(airtruth_test_pch PRIVATE ${PROJECT_SOURCE_DIR}/src)
-    target_compile_options(airtruth_test_pch PRIVATE ${airtruth_test_optimisation})
+    target_compile_options(airtruth_test_pch PRIVATE ${airtruth_light_optimisation})
     target_precompile_headers(airtruth_test_pch PRIVATE ${airtruth_common_headers} <gmock/gmock.h> <gtest/gtest.h>)
   endif()
 endif()
@@ -91,7 +91,7 @@ endfunction()
 function(add_module_test target label module sources libraries)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE airtruth_${module} ${libraries} GTest::gmock GTest::gtest_main)
-  target_compile_options(${target} PRIVATE ${airtruth_test_optimisation})
+  target_compile_options(${target} PRIVATE ${airtruth_light_optimisation})
   if(AIRTRUTH_PCH)
     target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
   endif()

@@ -39,7 +39,7 @@ if(AIRTRUTH_SANITIZE)
   target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined -fuse-ld=lld)
 endif()
 if(AIRTRUTH_FUZZERS)
-  # Every branch of what the fuzzers call reports to them that it was taken.
+  # Every branch reports to the fuzzers that it was taken, but for what computes pictures and measures.
   target_compile_options(airtruth_options INTERFACE -fsanitize=fuzzer-no-link
     -fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/cmake/not_fuzzed.txt)
 endif()

@@ -47,19 +47,13 @@ void read_blocks(const fs::path& path, Take take) {
   struct stat status {};
   if (::fstat(file.get(), &status) == 0 && S_ISDIR(status.st_mode))
     throw Error("is a folder; expected a file", {path.string()});
-  // A small file gets a small block, because the pages of a large one cost more than the file. What
-  // has no size, for example a pipe, is read in blocks of the largest size.
-  constexpr off_t kLargestBlock_bytes = 1 << 18;
-  const bool small =
-      S_ISREG(status.st_mode) && status.st_size > 0 && status.st_size < kLargestBlock_bytes;
-  const std::size_t size = static_cast<std::size_t>(small ? status.st_size : kLargestBlock_bytes);
-  const auto block = std::make_unique_for_overwrite<char[]>(size);
+  std::array<char, 1 << 16> block;  // left as it is: clearing it costs more than a small file
   for (;;) {
-    const ssize_t got = ::read(file.get(), block.get(), size);
+    const ssize_t got = ::read(file.get(), block.data(), block.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw Error("cannot read: " + reason(), {path.string()});
     if (got == 0) return;
-    if (!take(std::string_view(block.get(), static_cast<std::size_t>(got)))) return;
+    if (!take(std::string_view(block.data(), static_cast<std::size_t>(got)))) return;
   }
 }
 
