@@ -20,6 +20,8 @@ target_link_libraries(airtruth_options INTERFACE fmt::fmt)
 configure_file(${PROJECT_SOURCE_DIR}/include/airtruth/version.h.in ${PROJECT_BINARY_DIR}/include/airtruth/version.h @ONLY)
 target_include_directories(airtruth_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
 target_compile_options(airtruth_options INTERFACE -fvisibility=hidden -fvisibility-inlines-hidden)
+# No object holds the path of the folder that it is built in, so that ccache serves every clone on a machine.
+target_compile_options(airtruth_options INTERFACE -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
 endif()
