@@ -25,7 +25,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "truth/projection/exact_box.h"
+#include "labels/projection/exact_box.h"
 
 namespace {
 

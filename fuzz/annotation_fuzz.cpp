@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "foundation/base/error.h"
-#include "truth/annotation/evision.h"
-#include "truth/annotation/truth.h"
+#include "labels/annotation/evision.h"
+#include "labels/annotation/truth.h"
 
 namespace {
 

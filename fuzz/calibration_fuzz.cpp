@@ -6,7 +6,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "foundation/base/error.h"
-#include "world/trajectory/path.h"
+#include "scene/trajectory/path.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -10,7 +10,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "foundation/base/error.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace {
 

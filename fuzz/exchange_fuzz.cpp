@@ -11,7 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "truth/exchange/exchange.h"
+#include "labels/exchange/exchange.h"
 
 namespace {
 

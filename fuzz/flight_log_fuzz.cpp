@@ -6,9 +6,9 @@
 #include <string>
 
 #include "foundation/base/error.h"
-#include "world/flight_log/flight_log.h"
-#include "world/flight_log/gpmf.h"
-#include "world/flight_log/local_path.h"
+#include "scene/flight_log/flight_log.h"
+#include "scene/flight_log/gpmf.h"
+#include "scene/flight_log/local_path.h"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "scene/scene/scene.h"
 #include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::cli {
 namespace {

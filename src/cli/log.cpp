@@ -14,10 +14,10 @@
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "scene/flight_log/local_path.h"
+#include "scene/flight_log/log_rates.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/own_log.h"
-#include "world/flight_log/local_path.h"
-#include "world/flight_log/log_rates.h"
 
 namespace airtruth::cli {
 namespace {

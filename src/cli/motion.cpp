@@ -15,10 +15,10 @@
 #include "foundation/base/output_check.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
+#include "scene/scene/choices.h"
 #include "sequence/setup/motion_source.h"
 #include "show/motion_plot/motion_plot.h"
 #include "show/plot/gnuplot.h"
-#include "world/scene/choices.h"
 
 namespace airtruth::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "picture/video/still.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::cli {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/sequence.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::cli {
 namespace {

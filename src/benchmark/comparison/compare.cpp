@@ -24,13 +24,13 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/sequence/staging.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/truth.h"
 
 namespace airtruth::comparison {
 namespace {

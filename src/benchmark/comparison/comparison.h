@@ -16,7 +16,7 @@
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Compares an inserted aircraft with a real one, in the same frames of the same clip and at the
 // same apparent size: their appearance, and whether a judge can distinguish them (the paper,

@@ -18,8 +18,8 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/json/settings_record.h"
+#include "labels/exchange/exchange.h"
 #include "truth/evaluation/metrics.h"
-#include "truth/exchange/exchange.h"
 
 namespace airtruth::experiment {
 namespace {

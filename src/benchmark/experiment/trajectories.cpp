@@ -13,8 +13,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/suggest.h"
+#include "labels/exchange/text.h"
 #include "truth/evaluation/metrics.h"
-#include "truth/exchange/text.h"
 
 namespace airtruth::experiment {
 namespace {

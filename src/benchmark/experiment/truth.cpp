@@ -8,12 +8,12 @@
 #include "benchmark/experiment/frames.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
+#include "labels/annotation/in_view.h"
+#include "labels/annotation/lens_facts.h"
+#include "labels/exchange/exchange.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
 #include "show/drawing/thumbnails.h"
-#include "truth/annotation/in_view.h"
-#include "truth/annotation/lens_facts.h"
-#include "truth/exchange/exchange.h"
 
 namespace airtruth::experiment {
 namespace {

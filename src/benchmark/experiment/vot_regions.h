@@ -6,7 +6,7 @@
 
 #include <airtruth/vot.h>
 
-#include "truth/exchange/text.h"
+#include "labels/exchange/text.h"
 
 // Regions in the formats of VOT's toolkit: text with one region per line and, since version 0.5,
 // binary files (.bin). A region is a rectangle; a polygon or a mask, which becomes its bounding

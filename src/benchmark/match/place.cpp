@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "foundation/base/error.h"
-#include "truth/projection/exact_box.h"
+#include "labels/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
+#include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {

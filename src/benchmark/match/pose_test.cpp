@@ -9,9 +9,9 @@
 #include "aircraft/fleet/fleet.h"
 #include "benchmark/appearance/segment.h"
 #include "foundation/image/colour.h"
+#include "labels/projection/exact_box.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::match {
 namespace {

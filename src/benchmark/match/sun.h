@@ -7,7 +7,7 @@
 
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Finds the sun's direction for which the light and dark parts of an inserted aircraft lie where a
 // real aircraft has them.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 16u << 20;
 constexpr double kAspectTolerance = 0.01;
-// The limits of the keys of [lens] in a scene (world/scene/limits.h).
+// The limits of the keys of [lens] in a scene (scene/scene/limits.h).
 constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
 constexpr double kLargestCoefficient = 1e6;

@@ -11,13 +11,13 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/in_view.h"
+#include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/frame/masks.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recompose.h"
-#include "truth/annotation/in_view.h"
-#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::dataset {
 namespace {

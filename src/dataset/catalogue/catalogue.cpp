@@ -10,8 +10,8 @@
 #include "dataset/catalogue/names.h"
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
-#include "world/scene/parse_encounter.h"
-#include "world/scene/tables.h"
+#include "scene/scene/parse_encounter.h"
+#include "scene/scene/tables.h"
 
 namespace airtruth::dataset {
 namespace {

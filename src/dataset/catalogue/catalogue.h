@@ -15,8 +15,8 @@
 #include "dataset/catalogue/drawn_path.h"
 #include "encounter/pairing/geometric.h"
 #include "foundation/base/enum_names.h"
-#include "world/scene/scene.h"
-#include "world/synthetic/flight.h"
+#include "scene/scene/scene.h"
+#include "scene/synthetic/flight.h"
 
 // A catalogue names backgrounds, aircraft and trajectories, and says which sequences to make of
 // them: listed one by one, as a product, or drawn at random from ranges. docs/formats/catalogue.md

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/seed.h"
-#include "world/scene/flock.h"
+#include "scene/scene/flock.h"
 
 namespace airtruth::dataset {
 namespace {

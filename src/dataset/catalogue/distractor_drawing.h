@@ -7,7 +7,7 @@
 #include "dataset/catalogue/distractor_rule.h"
 #include "dataset/catalogue/drawing.h"
 #include "dataset/catalogue/meeting.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::dataset {
 

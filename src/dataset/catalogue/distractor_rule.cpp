@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "world/scene/flock.h"
+#include "scene/scene/flock.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "aircraft/shapes/shapes.h"
 #include "foundation/base/error.h"
-#include "world/scene/distractor.h"
-#include "world/scene/table_reader.h"
+#include "scene/scene/distractor.h"
+#include "scene/scene/table_reader.h"
 
 // The tables [[distractor]] of a catalogue: what they put into a share of all its sequences, those
 // without an aircraft included.

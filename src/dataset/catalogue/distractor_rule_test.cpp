@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "dataset/catalogue/expand.h"
+#include "scene/scene/scene.h"
 #include "sequence/setup/from_scene.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "foundation/base/seed.h"
-#include "world/scene/scene.h"
-#include "world/scene/table_reader.h"
+#include "scene/scene/scene.h"
+#include "scene/scene/table_reader.h"
 
 // Paths of a rule of [[random]] that are given as a scene gives them, by closest approach or by
 // what is seen, with numbers to draw.

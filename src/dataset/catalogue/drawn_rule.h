@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dataset/catalogue/catalogue.h"
-#include "world/scene/table_reader.h"
+#include "scene/scene/table_reader.h"
 
 namespace airtruth::dataset {
 

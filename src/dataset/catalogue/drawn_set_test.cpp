@@ -12,7 +12,7 @@
 #include "dataset/build/plan.h"
 #include "dataset/build/verify.h"
 #include "foundation/base/files.h"
-#include "truth/annotation/truth.h"
+#include "labels/annotation/truth.h"
 
 // Data sets from random rules: the truth of the rendered sequences agrees with the random values.
 namespace airtruth::dataset {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "dataset/catalogue/catalogue.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // The encounters of a rule of [[encounter_model]]. Each depends on the rule and its index alone.
 namespace airtruth::dataset {

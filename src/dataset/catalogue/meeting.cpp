@@ -10,10 +10,10 @@
 #include "aircraft/fleet/flight_limits.h"
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
+#include "labels/projection/exact_box.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/catalogue/drawing.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Turns the random values of an encounter into a path in the world.
 namespace airtruth::sequence {

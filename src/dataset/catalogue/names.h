@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/suggest.h"
-#include "world/scene/table_reader.h"
+#include "scene/scene/table_reader.h"
 
 // Look-up of the names in a catalogue's tables, for the readers of catalogues.
 namespace airtruth::dataset {

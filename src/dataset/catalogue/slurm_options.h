@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "foundation/base/error.h"
-#include "world/scene/table_reader.h"
+#include "scene/scene/table_reader.h"
 
 // The user's options for Slurm's sbatch: the table [slurm] of a catalogue, and --sbatch of
 // `airtruth dataset submit`. Each option becomes one line "#SBATCH --name=value" of a job script.

@@ -12,9 +12,9 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/object_class.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {

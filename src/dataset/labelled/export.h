@@ -12,7 +12,7 @@
 #include "dataset/labelled/labelled_set.h"
 #include "dataset/labelled/split.h"
 #include "foundation/base/log.h"
-#include "truth/exchange/exchange.h"
+#include "labels/exchange/exchange.h"
 
 namespace airtruth::dataset {
 

@@ -11,10 +11,10 @@
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
 #include "foundation/base/pattern.h"
+#include "labels/annotation/object_class.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {

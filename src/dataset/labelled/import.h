@@ -8,7 +8,7 @@
 
 #include "dataset/sequences/layout.h"
 #include "foundation/base/log.h"
-#include "truth/exchange/exchange.h"
+#include "labels/exchange/exchange.h"
 
 namespace airtruth::dataset {
 

@@ -10,11 +10,11 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
+#include "labels/exchange/pixel_mask.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/frame/masks.h"
 #include "sequence/replay/finished.h"
-#include "truth/exchange/pixel_mask.h"
 
 namespace airtruth::dataset {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "aircraft/wrapper/reader.h"
 #include "dataset/catalogue/folder.h"
-#include "world/scene/camera_keys.h"
+#include "scene/scene/camera_keys.h"
 
 namespace airtruth::dataset {
 namespace {

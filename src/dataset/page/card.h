@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dataset/page/portrait.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::dataset {
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include "labels/annotation/in_view.h"
+#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/object_class.h"
 #include "picture/video/reader.h"
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/in_view.h"
-#include "truth/annotation/lens_facts.h"
-#include "truth/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {

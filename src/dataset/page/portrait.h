@@ -13,7 +13,7 @@
 #include "dataset/labelled/labelled_set.h"
 #include "dataset/page/encounters.h"
 #include "dataset/page/film.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::dataset {
 
@@ -40,7 +40,7 @@ struct Portrait {
   struct Intruder {
     std::string id;
     std::string aircraft;
-    std::string object_class;  // truth/annotation/object_class.h
+    std::string object_class;  // labels/annotation/object_class.h
     std::vector<Point> points;
   };
   struct Camera {
@@ -69,7 +69,7 @@ struct Portrait {
   std::array<std::int64_t, 5> frames_by_state{};
   // Number of these visible states that have a covered box.
   std::int64_t covered_boxes = 0;
-  // Number of states that are in view by geometry and have no box (truth/annotation/in_view.h).
+  // Number of states that are in view by geometry and have no box (labels/annotation/in_view.h).
   std::int64_t without_box = 0;
   // Frames for which a label describes an aircraft.
   std::int64_t frames_with_intruder = 0;

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "truth/annotation/object_class.h"
+#include "labels/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {

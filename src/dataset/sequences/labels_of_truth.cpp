@@ -7,7 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
-#include "truth/annotation/object_class.h"
+#include "labels/annotation/object_class.h"
 
 namespace airtruth::dataset {
 namespace {

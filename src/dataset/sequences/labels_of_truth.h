@@ -6,7 +6,7 @@
 #include <airtruth/dataset.h>
 #include <airtruth/labels.h>
 
-#include "truth/annotation/truth.h"
+#include "labels/annotation/truth.h"
 
 // The truth of a rendered sequence as labels. Needs neither the scene nor the video.
 namespace airtruth::dataset {

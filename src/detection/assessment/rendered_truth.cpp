@@ -9,8 +9,8 @@
 #include "detection/assessment/first_violation.h"
 #include "encounter/separation/volumes.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/lens_facts.h"
 #include "sequence/replay/finished.h"
-#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::detection {
 namespace {

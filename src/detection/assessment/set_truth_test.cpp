@@ -15,10 +15,10 @@
 #include "detection/detections/results_folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "scene/scene/scene.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::detection {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "detection/detections/results_files.h"
-#include "truth/exchange/text.h"
+#include "labels/exchange/text.h"
 
 namespace airtruth::detection {
 namespace {

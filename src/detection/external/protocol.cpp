@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "truth/annotation/lens_facts.h"
+#include "labels/annotation/lens_facts.h"
 
 namespace airtruth::detection {
 namespace {

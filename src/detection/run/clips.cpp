@@ -10,9 +10,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/lens_facts.h"
+#include "scene/scene/scene.h"
 #include "sequence/replay/finished.h"
-#include "truth/annotation/lens_facts.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::detection {
 namespace {

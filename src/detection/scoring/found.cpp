@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "truth/annotation/object_class.h"
+#include "labels/annotation/object_class.h"
 
 namespace airtruth::detection {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "foundation/geometry/transform.h"
-#include "truth/annotation/object_class.h"
+#include "labels/annotation/object_class.h"
 
 namespace airtruth::detection {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "encounter/separation/violation.h"
-#include "world/trajectory/path.h"
+#include "scene/trajectory/path.h"
 
 // The encounter of two whole paths, between frames too. Times are on the clock of the paths.
 namespace airtruth::encounter {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "world/scene/scene.h"
-#include "world/trajectory/path.h"
+#include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 
 namespace airtruth::encounter {
 

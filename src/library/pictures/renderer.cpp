@@ -4,8 +4,8 @@
 #include "library/pictures/public_picture.h"
 #include "library/records/lens_state.h"
 #include "library/records/truth_values.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/frame_by_frame.h"
-#include "world/scene/scene.h"
 
 namespace airtruth {
 namespace {

@@ -8,8 +8,8 @@
 #include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "labels/annotation/truth.h"
 #include "library/records/truth_values.h"
-#include "truth/annotation/truth.h"
 
 namespace airtruth {
 namespace {

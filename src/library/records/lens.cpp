@@ -2,8 +2,8 @@
 #include <airtruth/lens.h>
 
 #include "camera/lens/calibration_file.h"
+#include "labels/annotation/lens_facts.h"
 #include "library/records/lens_state.h"
-#include "truth/annotation/lens_facts.h"
 
 namespace airtruth {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <airtruth/truth.h>
 
+#include "labels/annotation/lens_facts.h"
 #include "library/records/lens_state.h"
 #include "library/records/truth_values.h"
-#include "truth/annotation/lens_facts.h"
 
 namespace airtruth {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <airtruth/truth.h>
 
-#include "truth/annotation/truth.h"
+#include "labels/annotation/truth.h"
 
 // The public form of the truth, whose vectors are arrays, and back.
 namespace airtruth {

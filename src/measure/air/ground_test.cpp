@@ -7,7 +7,7 @@
 #include "foundation/base/error.h"
 #include "measure/air/ground_track.h"
 #include "measure/air/same_ground.h"
-#include "world/synthetic/flight.h"
+#include "scene/synthetic/flight.h"
 
 // Ground that is seen again: the path of the camera over it, and the effect of the air on its
 // light.

@@ -12,7 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/writer.h"
-#include "world/synthetic/flight.h"
+#include "scene/synthetic/flight.h"
 
 namespace airtruth::calibration {
 namespace {

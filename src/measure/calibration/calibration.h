@@ -21,7 +21,7 @@
 #include "measure/measured/measured.h"
 #include "measure/optics/edge_profile.h"
 #include "measure/sensor/noise_point.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Measures the camera model and the air of a scene from a video clip alone: point spread,
 // sharpening, noise, exposure, rolling shutter, codec step, airlight, extinction and sun. These are

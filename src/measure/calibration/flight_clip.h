@@ -8,7 +8,7 @@
 #include "measure/calibration/calibration.h"
 #include "picture/composite/sensor.h"
 #include "picture/video/writer.h"
-#include "world/synthetic/flight.h"
+#include "scene/synthetic/flight.h"
 
 // For tests: writes virtual flights as video clips with a known camera effect, which the
 // calibration must then measure.

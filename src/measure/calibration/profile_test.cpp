@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "world/scene/camera_keys.h"
+#include "scene/scene/camera_keys.h"
 
 namespace airtruth::calibration {
 namespace {

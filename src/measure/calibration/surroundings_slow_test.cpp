@@ -13,7 +13,7 @@
 #include "measure/calibration/flight_clip.h"
 #include "measure/own_aircraft/own_aircraft.h"
 #include "picture/video/still.h"
-#include "world/synthetic/sky.h"
+#include "scene/synthetic/sky.h"
 
 // The surroundings of a camera are found from its clip: sun, air, horizon and the own aircraft.
 namespace airtruth::calibration {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "measure/calibration/calibration.h"
-#include "world/scene/camera_keys.h"
+#include "scene/scene/camera_keys.h"
 
 namespace airtruth::calibration {
 namespace {

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "labels/projection/exact_box.h"
 #include "picture/composite/cover.h"
 #include "picture/composite/spread.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
 
 // Compares the renderer, with motion blur and rolling shutter, with brute force: each pixel has 64
 // x 64 places and 256 times. For each place the lens gives the ray, and each triangle is

@@ -5,8 +5,8 @@
 #include <tbb/global_control.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::render {
 namespace {

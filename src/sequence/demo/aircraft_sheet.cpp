@@ -6,10 +6,10 @@
 #include <string>
 
 #include "foundation/image/colour.h"
+#include "labels/projection/exact_box.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "show/drawing/tiles.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::sequence {
 namespace {

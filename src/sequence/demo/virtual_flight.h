@@ -7,7 +7,7 @@
 #include <stop_token>
 
 #include "picture/video/writer.h"
-#include "world/synthetic/flight.h"
+#include "scene/synthetic/flight.h"
 
 namespace airtruth::sequence {
 

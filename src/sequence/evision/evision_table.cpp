@@ -11,11 +11,11 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "labels/annotation/evision.h"
+#include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
+#include "scene/trajectory/path.h"
 #include "sequence/evision/evision_motion.h"
-#include "truth/annotation/evision.h"
-#include "truth/projection/exact_box.h"
-#include "world/trajectory/path.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -7,13 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "aircraft/shapes/shapes.h"
+#include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/composite/matte.h"
+#include "scene/scene/scene.h"
 #include "sequence/frame/frame_truth.h"
 #include "sequence/frame/paint.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/lens_facts.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
+#include "labels/projection/bearing.h"
+#include "labels/projection/spot_box.h"
 #include "sequence/setup/lens_marks.h"
-#include "truth/projection/bearing.h"
-#include "truth/projection/spot_box.h"
 
 namespace airtruth::sequence {
 namespace {

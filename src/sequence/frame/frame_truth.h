@@ -3,10 +3,10 @@
 
 #include <string>
 
+#include "labels/annotation/truth.h"
 #include "picture/video/frame.h"
 #include "sequence/frame/paint.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/truth.h"
 
 // The truth of one frame, put together in one place: for the run that makes the frame, and for the
 // check that makes it again and compares.

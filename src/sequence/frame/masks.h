@@ -9,8 +9,8 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/image/layer.h"
+#include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
-#include "truth/annotation/truth.h"
 
 // The pixels of each intruder, for a scene with `[output] masks = true`: masks/ID/000000.png, a
 // grey picture of the frame's size, 8 bits, whose samples are 255 alpha, rounded

@@ -10,9 +10,9 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "picture/composite/matte.h"
+#include "scene/scene/scene.h"
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
-#include "world/scene/scene.h"
 
 // Puts the intruders of one moment into a picture, by the method that the scene names.
 namespace airtruth::sequence {

@@ -6,7 +6,7 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/within_frame.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::sequence {
 

@@ -7,8 +7,8 @@
 
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/sequence.h"
-#include "world/scene/scene.h"
 
 // A look at a scene before it is rendered: where the intruders will be, how large and how far, on a
 // few frames of the clip.

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "labels/annotation/truth.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/truth.h"
 
 namespace airtruth::sequence {
 namespace {

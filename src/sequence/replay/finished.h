@@ -10,9 +10,9 @@
 
 #include "foundation/base/log.h"
 #include "foundation/image/picture.h"
+#include "labels/annotation/truth.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/encounter_record.h"
-#include "truth/annotation/truth.h"
-#include "world/scene/scene.h"
 
 // Opens a folder that `render` or `dataset import` has made.
 namespace airtruth::sequence {

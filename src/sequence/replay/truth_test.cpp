@@ -10,6 +10,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "labels/annotation/evision.h"
+#include "labels/projection/bearing.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
@@ -19,8 +21,6 @@
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/evision.h"
-#include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -8,11 +8,11 @@
 #include <unistd.h>
 
 #include "foundation/base/files.h"
+#include "labels/projection/bearing.h"
 #include "sequence/replay/finished.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "truth/projection/bearing.h"
 
 namespace airtruth::sequence {
 namespace {

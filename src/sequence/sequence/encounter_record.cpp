@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "truth/annotation/object_class.h"
+#include "labels/annotation/object_class.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "encounter/passage/geometry_class.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/truth.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/truth.h"
 
 // The encounters of a whole sequence, as sequence.json records them (docs/formats/output.md).
 namespace airtruth::sequence {

@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/frame.h"
 #include "picture/video/reader.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/sequence.h"
-#include "truth/annotation/lens_facts.h"
-#include "truth/annotation/truth.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::sequence {
 

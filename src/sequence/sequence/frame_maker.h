@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
+#include "scene/scene/scene.h"
 #include "sequence/frame/masks.h"
 #include "sequence/frame/paint.h"
 #include "sequence/sequence/resolve.h"
@@ -15,8 +17,6 @@
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
-#include "truth/annotation/truth.h"
-#include "world/scene/scene.h"
 
 // The way of a frame through a run, from top to bottom: the inputs that are read before the first
 // frame, and the stages of one frame. render() runs the stages in a pipeline and writes files;

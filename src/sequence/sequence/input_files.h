@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene/scene.h"
 #include "sequence/sequence/outputs.h"
 #include "sequence/setup/world.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::sequence {
 

@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
+#include "labels/annotation/evision.h"
+#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
+#include "scene/scene/scene.h"
 #include "sequence/frame/masks.h"
 #include "sequence/sequence/encounter_record.h"
 #include "sequence/sequence/sequence.h"
 #include "show/drawing/pictures.h"
-#include "truth/annotation/evision.h"
-#include "truth/annotation/lens_facts.h"
-#include "truth/annotation/truth.h"
-#include "world/scene/scene.h"
 
 // Writes the output of a run (docs/formats/output.md) frame by frame into the staged folder.
 namespace airtruth::sequence {

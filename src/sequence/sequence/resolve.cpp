@@ -12,12 +12,12 @@
 #include "measure/calibration/cache.h"
 #include "measure/calibration/calibration.h"
 #include "measure/calibration/profile.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/frame/paint.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
 #include "sequence/surroundings/ambient.h"
-#include "world/scene/camera_keys.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -8,8 +8,8 @@
 #include "foundation/base/log.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/sequence.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::sequence {
 

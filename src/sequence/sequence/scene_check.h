@@ -2,7 +2,7 @@
 #pragma once
 
 #include "picture/video/reader.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::sequence {
 

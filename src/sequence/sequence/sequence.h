@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "foundation/base/log.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Renders one video from beginning to end: read, move, render, composite, annotate, write.
 //

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "labels/annotation/object_class.h"
 #include "sequence/setup/flyable.h"
-#include "truth/annotation/object_class.h"
 
 namespace airtruth::sequence {
 namespace {

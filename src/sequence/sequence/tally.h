@@ -7,12 +7,12 @@
 
 #include "camera/motion/motion.h"
 #include "foundation/base/log.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
+#include "scene/scene/scene.h"
 #include "sequence/sequence/encounter_record.h"
 #include "sequence/sequence/sequence.h"
 #include "sequence/setup/world.h"
-#include "truth/annotation/truth.h"
-#include "world/scene/scene.h"
 
 // What a run counts while its frames pass, and the warnings that follow from the counts.
 namespace airtruth::sequence {

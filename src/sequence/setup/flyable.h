@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "world/trajectory/path.h"
+#include "scene/trajectory/path.h"
 
 namespace airtruth::sequence {
 

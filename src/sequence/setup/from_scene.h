@@ -11,8 +11,8 @@
 #include "foundation/image/tone_curve.h"
 #include "picture/composite/sensor.h"
 #include "picture/video/writer.h"
-#include "world/scene/scene.h"
-#include "world/trajectory/path.h"
+#include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 
 // What the tables of a scene file mean to the modules that work with them: one function for each
 // table. A scene holds choices and optional numbers as its file states them; lens, composite and

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "foundation/image/spot.h"
-#include "truth/projection/exact_box.h"
-#include "world/scene/distractor.h"
+#include "labels/projection/exact_box.h"
+#include "scene/scene/distractor.h"
 
 namespace airtruth::sequence {
 

@@ -8,9 +8,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "labels/annotation/lens_facts.h"
 #include "picture/video/telemetry.h"
 #include "sequence/setup/shared_inputs.h"
-#include "truth/annotation/lens_facts.h"
 
 namespace airtruth::sequence {
 namespace {

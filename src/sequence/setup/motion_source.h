@@ -14,7 +14,7 @@
 #include "camera/motion/reach.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
-#include "world/scene/scene.h"
+#include "scene/scene/scene.h"
 
 // Provides the homography of each frame from one of three sources: the cache, a preceding pass over
 // the clip, or an estimator that runs frame by frame.

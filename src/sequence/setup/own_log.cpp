@@ -8,8 +8,8 @@
 
 #include "foundation/base/error.h"
 #include "picture/video/telemetry.h"
-#include "world/flight_log/gpmf.h"
-#include "world/flight_log/local_path.h"
+#include "scene/flight_log/gpmf.h"
+#include "scene/flight_log/local_path.h"
 
 namespace airtruth::sequence {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "world/flight_log/flight_log.h"
-#include "world/scene/scene.h"
-#include "world/trajectory/path.h"
+#include "scene/flight_log/flight_log.h"
+#include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 
 // Where the own aircraft really flew: the log of a scene's [camera].
 namespace airtruth::sequence {

@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "camera/lens/lens.h"
+#include "labels/projection/exact_box.h"
+#include "scene/scene/scene.h"
 #include "sequence/setup/sight.h"
-#include "truth/projection/exact_box.h"
-#include "world/scene/scene.h"
 
 namespace airtruth::sequence {
 

@@ -14,10 +14,10 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/file_stamp.h"
 #include "foundation/base/log.h"
+#include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
-#include "truth/projection/exact_box.h"
-#include "world/scene/scene.h"
-#include "world/trajectory/path.h"
+#include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 
 // Inputs that sequences of one process have in common, each read and prepared once: aircraft with
 // their textures, BVHs and silhouettes, and the SHA-256 of files. A sequence has the same bytes

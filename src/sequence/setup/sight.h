@@ -2,8 +2,8 @@
 #pragma once
 
 #include "foundation/geometry/within_frame.h"
-#include "truth/projection/exact_box.h"
-#include "world/trajectory/path.h"
+#include "labels/projection/exact_box.h"
+#include "scene/trajectory/path.h"
 
 namespace airtruth::sequence {
 

@@ -9,10 +9,10 @@
 
 #include "aircraft/shapes/shapes.h"
 #include "foundation/base/error.h"
+#include "labels/annotation/object_class.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/lens_marks.h"
 #include "sequence/setup/shared_inputs.h"
-#include "truth/annotation/object_class.h"
 
 namespace airtruth::sequence {
 namespace {

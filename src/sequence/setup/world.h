@@ -14,14 +14,14 @@
 #include "encounter/separation/volumes.h"
 #include "foundation/base/log.h"
 #include "foundation/image/spot.h"
+#include "labels/annotation/truth.h"
+#include "labels/projection/exact_box.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "picture/video/reader.h"
+#include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 #include "sequence/setup/seen.h"
-#include "truth/annotation/truth.h"
-#include "truth/projection/exact_box.h"
-#include "world/scene/scene.h"
-#include "world/trajectory/path.h"
 
 // A scene after everything that it names has been loaded: lens, paths, aircraft.
 namespace airtruth::sequence {
@@ -32,7 +32,7 @@ class SharedInputs;
 struct Actor {
   std::string id;
   std::string aircraft;
-  // "aircraft", or the kind of a distractor (truth/annotation/object_class.h).
+  // "aircraft", or the kind of a distractor (labels/annotation/object_class.h).
   std::string object_class;
   trajectory::Path path;
   std::shared_ptr<const aircraft::Aircraft> type;

@@ -8,9 +8,9 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
+#include "labels/projection/exact_box.h"
+#include "scene/scene/scene.h"
 #include "sequence/surroundings/sky.h"
-#include "truth/projection/exact_box.h"
-#include "world/scene/scene.h"
 
 // Estimates the light that falls on the intruder from the background, where the scene does not
 // state it.

@@ -7,7 +7,7 @@
 
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
-#include "truth/annotation/truth.h"
+#include "labels/annotation/truth.h"
 
 // Pictures for people: the contact sheet, the overlay, and the enlarged view of a part of one
 // frame.

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
+#include "foundation/base/trimmed.h"
+#include "labels/annotation/evision.h"
+
+namespace airtruth::annotation {
+namespace {
+
+// Largest pixel coordinate; sums of two such numbers fit an int.
+constexpr int kLargestPixel = 1 << 29;
+
+// Names in corrupt files may be long and contain any character.
+std::string short_name(const pugi::xml_node& node) {
+  std::string name(node.name());
+  if (name.size() > 40) name = name.substr(0, 40) + "...";
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+  return name;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  Evision read(const pugi::xml_node& storage) {
+    Evision result;
+    int last = 0;
+    for (const pugi::xml_node& node : storage.children()) {
+      if (node.type() != pugi::node_element) continue;
+      const int number = frame_number(node);
+      if (number <= last)
+        fail(node,
+             fmt::format(
+                 "frame_{} comes after frame_{}; expected increasing numbers", number, last));
+      last = number;
+      result.camera_ned_m.push_back(point(child(node, "CameraPos_m")));
+      result.frames.push_back(frame(node, number, result.camera_ned_m.back()));
+    }
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& message) {
+    throw Error(message, {file_, line_of(text_, node.offset_debug()), 0});
+  }
+
+  int frame_number(const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    int number = 0;
+    if (name.starts_with("frame_")) {
+      const auto [end, code] = std::from_chars(name.data() + 6, name.data() + name.size(), number);
+      const bool whole = code == std::errc{} && end == name.data() + name.size();
+      if (whole && number >= 1 && number < std::numeric_limits<int>::max()) return number;
+    }
+    fail(node, fmt::format("found <{}>; expected <frame_1>, <frame_2>, ...", short_name(node)));
+  }
+
+  pugi::xml_node child(const pugi::xml_node& node, const char* name) {
+    const pugi::xml_node found = node.child(name);
+    if (!found) fail(node, fmt::format("<{}> has no <{}>", short_name(node), name));
+    return found;
+  }
+
+  double number(const pugi::xml_node& node) {
+    const std::string_view text = trimmed(node.text().get());
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc{} || end != text.data() + text.size() || text.empty() ||
+        !std::isfinite(value))
+      fail(node, fmt::format("<{}> holds no finite number", short_name(node)));
+    return value;
+  }
+
+  int pixels(const pugi::xml_node& node) {
+    const double value = number(node);
+    if (value != std::floor(value) || std::abs(value) > kLargestPixel)
+      fail(node, fmt::format("<{}> holds no whole number of pixels", short_name(node)));
+    return static_cast<int>(value);
+  }
+
+  Vector3 point(const pugi::xml_node& node) {
+    return {number(child(node, "x")), number(child(node, "y")), number(child(node, "z"))};
+  }
+
+  PixelBox rectangle(const pugi::xml_node& node) {
+    const PixelBox box{pixels(child(node, "x")),
+                       pixels(child(node, "y")),
+                       pixels(child(node, "width")),
+                       pixels(child(node, "height"))};
+    if (box.width < 0 || box.height < 0) fail(node, "<IntruderRect_pix> has a negative size");
+    return box;
+  }
+
+  std::optional<EvisionFrame> frame(const pugi::xml_node& node,
+                                    int number_of_frame,
+                                    const Vector3& camera_ned_m) {
+    EvisionFrame frame;
+    frame.number = number_of_frame;
+    frame.camera_ned_m = camera_ned_m;
+    frame.rect_px = rectangle(child(node, "IntruderRect_pix"));
+    const pugi::xml_node position = node.child("IntruderPos_m");
+    if (!position) return std::nullopt;
+    frame.intruder_ned_m = point(position);
+    frame.distance_m = number(child(node, "Distance_m"));
+    return frame;
+  }
+
+  std::string_view text_;
+  std::string file_;
+};
+
+}  // namespace
+
+Evision parse_evision(std::string_view text, const std::filesystem::path& name) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed =
+      document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!parsed)
+    throw Error(std::string("is not XML: ") + parsed.description(),
+                {name.string(), line_of(text, parsed.offset), 0});
+  const pugi::xml_node storage = document.child("opencv_storage");
+  if (!storage)
+    throw Error("has no <opencv_storage>; expected an annotation of OpenCV's FileStorage",
+                {name.string()});
+  return Reader(text, name.string()).read(storage);
+}
+
+Evision read_evision(const std::filesystem::path& file) {
+  return parse_evision(read_file(file), file);
+}
+
+}  // namespace airtruth::annotation

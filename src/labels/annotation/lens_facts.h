@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "camera/lens/lens.h"
+#include "labels/annotation/truth.h"
+
+// Conversion between a lens and its form in truth.jsonl. The round trip keeps every number:
+// lens_of(facts_of(lens)) maps each ray to the same pixel as the lens does.
+namespace airtruth::annotation {
+
+LensFacts facts_of(const lens::Lens& lens);
+
+// facts.model is "pinhole", "brown_conrady" or "fisheye"; the reader of truth.jsonl has checked it.
+lens::Lens lens_of(const LensFacts& facts);
+
+}  // namespace airtruth::annotation

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/unfinished.h"
+#include "labels/annotation/object_class.h"
+#include "labels/exchange/parts.h"
+#include "labels/exchange/python_json.h"
+#include "labels/exchange/text.h"
+
+// Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit": docs/DATASET.md,
+// core/flight.py, core/frame.py, core/metrics): one groundtruth.json; `samples` holds one flight
+// for each clip, its `entities` one entry for each object of each frame, and one without id and bb
+// for a frame without an object. Boxes are [left, top, width, height] from (0, 0); ids are a kind
+// and a number, "Airplane1". A picture is Images/FLIGHT/TIMEFLIGHT.png with the entity's time in
+// nanoseconds: the metrics join detections to truth only by that name, over all flights, and the
+// loader makes it from time and flight. `metadata` holds fps and the duration in milliseconds.
+namespace airtruth::exchange {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Origin of the times, in nanoseconds. With it all times have 19 digits, as AOT's own, which count
+// from 1970. Picture names therefore sort by time, and those of two flights differ whatever the
+// flights' names are.
+constexpr std::int64_t kTimeOriginNs = 1'500'000'000'000'000'000;
+// Largest distance of a time from the first frame, 5 years. A time farther away is invalid.
+constexpr double kLongestClipS = 1.5e8;
+// AOT's own rate, in frames a second, for clips whose frame rate is unknown.
+constexpr double kNominalRateHz = 10;
+
+// Times of the frames in nanoseconds from the first. Where they are unknown or two are equal, they
+// follow from the frame rate.
+struct Times {
+  std::vector<std::int64_t> ns;
+  double rate_hz = kNominalRateHz;
+  bool is_rate_nominal = false;
+  bool are_nominal = false;
+};
+
+Times times_of(const Clip& clip) {
+  Times times;
+  times.is_rate_nominal = !clip.frame_rate_hz;
+  times.rate_hz = clip.frame_rate_hz.value_or(kNominalRateHz);
+  for (const LabelledFrame& frame : clip.frames) {
+    const bool is_later = frame.time_s && std::abs(*frame.time_s) < kLongestClipS &&
+                          (times.ns.empty() || std::llround(*frame.time_s * 1e9) > times.ns.back());
+    if (!is_later) times.are_nominal = true;
+    if (times.are_nominal) break;
+    times.ns.push_back(std::llround(*frame.time_s * 1e9));
+  }
+  if (!times.are_nominal) return times;
+  times.ns.clear();
+  for (std::size_t i = 0; i < clip.frames.size(); ++i)
+    times.ns.push_back(std::llround(static_cast<double>(i) / times.rate_hz * 1e9));
+  return times;
+}
+
+class AotWriter : public Writer {
+ public:
+  AotWriter(fs::path root, const WriteOptions& options) : root_(std::move(root)) {
+    for (const std::string& part : options.parts) {
+      fs::create_directories(file_of(part).parent_path());
+      unfinished_.emplace(part, Unfinished::path(part_path(file_of(part))));
+      files_[part].open(part_path(file_of(part)), std::ios::binary);
+      files_[part] << "{\"metadata\":{\"description\":\"made by airtruth\"},\n\"samples\":{";
+    }
+  }
+
+  // A failed run leaves no half-written file.
+  ~AotWriter() override {
+    std::error_code ignored;
+    for (const auto& [part, file] : files_) fs::remove(part_path(file_of(part)), ignored);
+  }
+  AotWriter(const AotWriter&) = delete;
+  AotWriter& operator=(const AotWriter&) = delete;
+
+  std::vector<fs::path> images(const Clip& clip, const std::string& part) const override {
+    std::vector<fs::path> files;
+    for (const std::int64_t time_ns : times_of(clip).ns)
+      files.push_back(fs::path(part) / "Images" / clip.name / name_of(clip, time_ns));
+    return files;
+  }
+
+  void add(const Clip& clip, const std::string& part) override {
+    const Times times = times_of(clip);
+    Json entities = Json::array();
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, times.ns[i], entities);
+    const double duration_ms = static_cast<double>(clip.frames.size()) / times.rate_hz * 1000;
+    Json about = {{"data_path", "Images/" + clip.name + "/"},
+                  {"flight_id", clip.name},
+                  {"fps", times.rate_hz},
+                  {"number_of_frames", clip.frames.size()},
+                  {"duration", duration_ms},
+                  {"resolution", {{"height", clip.height}, {"width", clip.width}}},
+                  {"time_origin_ns", kTimeOriginNs}};
+    if (times.is_rate_nominal) about["fps_is_nominal"] = true;
+    if (times.are_nominal) about["time_is_nominal"] = true;
+    std::ofstream& file = files_.at(part);
+    file << (any_[part] ? ",\n" : "\n") << Json(clip.name).dump() << ":"
+         << Json{{"metadata", about}, {"entities", entities}}.dump();
+    any_[part] = true;
+    if (!file) throw Error("cannot be written: is the disk full?", {file_of(part).string()});
+  }
+
+  void finish() override {
+    for (auto& [part, file] : files_) {
+      file << "}}\n";
+      file.close();
+      if (!file) throw Error("cannot be written: is the disk full?", {file_of(part).string()});
+      const fs::path whole = file_of(part);
+      unfinished_.at(part).finish([&] { fs::rename(part_path(whole), whole); });
+    }
+  }
+
+ private:
+  fs::path file_of(const std::string& part) const {
+    return root_ / part / "ImageSets" / "groundtruth.json";
+  }
+  static std::string name_of(const Clip& clip, std::int64_t time_ns) {
+    return std::to_string(kTimeOriginNs + time_ns) + clip.name + ".png";
+  }
+
+  // The set's own word for an object; empty for what is not in the air.
+  static std::string_view kind_of(const Label& label) {
+    if (annotation::is_aircraft(label.object_class)) return "Airplane";
+    if (label.object_class == "bird") return "Bird";
+    if (label.object_class == "multirotor") return "Drone";
+    return label.object_class == "balloon" ? "Airborne" : "";
+  }
+
+  static void add_frame(const Clip& clip, std::size_t i, std::int64_t time_ns, Json& entities) {
+    const LabelledFrame& frame = clip.frames[i];
+    Json bare = Json::object();
+    bare["time"] = kTimeOriginNs + time_ns;
+    bare["blob"] = {{"frame", i}};
+    bare["flight_id"] = clip.name;
+    bare["img_name"] = name_of(clip, time_ns);
+    bool any = false;
+    for (const Label& label : frame.labels) any = any || !kind_of(label).empty();
+    if (!any) bare["labels"] = Json::object();
+    if (!any) entities.push_back(bare);
+    for (const Label& label : frame.labels) {
+      const std::string_view kind = kind_of(label);
+      if (kind.empty()) continue;
+      Json entity = bare;
+      const Box& b = label.box_px;
+      entity["id"] = fmt::format("{}{}", kind, label.track);
+      entity["bb"] = {b.x, b.y, b.width, b.height};
+      if (label.range_m) entity["blob"]["range_distance_m"] = *label.range_m;
+      entity["blob"]["category"] = label.category;
+      const int above = label.above_horizon ? (*label.above_horizon ? 1 : -1) : 0;
+      entity["labels"] = {{"is_above_horizon", above}};
+      entities.push_back(entity);
+    }
+  }
+
+  fs::path root_;
+  std::map<std::string, std::ofstream> files_;
+  std::map<std::string, Unfinished> unfinished_;
+  std::map<std::string, bool> any_;
+};
+
+class FlightReader {
+ public:
+  FlightReader(const fs::path& file, const std::string& id, const JsonObject& flight, LeftOut& left)
+      : file_(file), flight_(flight), left_out_(left) {
+    clip_.name = id;
+  }
+
+  Clip read() {
+    const JsonObject about = flight_.object("metadata");
+    if (!about.maybe_truth("fps_is_nominal").value_or(false))
+      clip_.frame_rate_hz = about.maybe_number("fps");
+    has_times_ = !about.maybe_truth("time_is_nominal").value_or(false);
+    origin_ns_ = about.maybe_integer("time_origin_ns");
+    if (about.has("resolution")) {
+      clip_.width = side_of(about.object("resolution").number("width"));
+      clip_.height = side_of(about.object("resolution").number("height"));
+    }
+    const fs::path pictures = file_.parent_path().parent_path() / "Images" / clip_.name;
+    if (!entries(pictures).empty()) clip_.media = pictures;
+    const auto frames = whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMaxFrames);
+    if (!frames) about.fail("number_of_frames is no number of frames");
+    clip_.frames.resize(static_cast<std::size_t>(*frames));
+    const std::vector<JsonObject> entities = flight_.objects("entities");
+    // Times in the published files count from 1970; those of a Clip count from the flight's first
+    // frame.
+    if (!origin_ns_)
+      for (const JsonObject& entity : entities)
+        if (const auto time = entity.maybe_integer("time"))
+          origin_ns_ = std::min(origin_ns_.value_or(*time), *time);
+    for (const JsonObject& entity : entities) add(entity);
+    for (std::size_t i = 0; i < clip_.frames.size(); ++i)
+      clip_.frames[i].frame = static_cast<std::int64_t>(i);
+    return clip_;
+  }
+
+ private:
+  void add(const JsonObject& entity) {
+    const JsonObject blob = entity.object("blob");
+    const std::int64_t number = blob.whole("frame");
+    if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
+    const auto i = static_cast<std::size_t>(number);
+    if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
+    LabelledFrame& frame = clip_.frames[i];
+    const auto time = entity.maybe_integer("time");
+    if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
+    if (!entity.has("id") || !entity.has("bb")) return;
+    const std::vector<double> bb = entity.numbers("bb", 4);
+    Label label;
+    label.box_px = {bb[0], bb[1], bb[2], bb[3]};
+    label.track = track_of(entity.text("id"));
+    label.category =
+        blob.has("category") ? blob.text("category") : name_and_number(entity.text("id")).first;
+    label.range_m = range_of(blob);
+    if (entity.has("labels")) {
+      const auto above = entity.object("labels").maybe_number("is_above_horizon");
+      if (above && *above != 0) label.above_horizon = *above > 0;
+    }
+    if (is_in_picture(label.box_px, clip_.width, clip_.height))
+      frame.labels.push_back(label);
+    else
+      left_out_.add("boxes that are empty or outside their image", entity.place());
+  }
+
+  // Where a range is unknown, the published files contain NaN, a string or no key.
+  static std::optional<double> range_of(const JsonObject& blob) {
+    try {
+      return blob.maybe_number("range_distance_m");
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  }
+
+  // The track takes the number of the id where that is free, since "Airplane1" and "Helicopter1"
+  // are two objects.
+  std::int64_t track_of(const std::string& id) {
+    if (const auto found = tracks_.find(id); found != tracks_.end()) return found->second;
+    std::int64_t track = name_and_number(id).second.value_or(1);
+    while (std::any_of(
+        tracks_.begin(), tracks_.end(), [&](const auto& known) { return known.second == track; }))
+      ++track;
+    return tracks_[id] = track;
+  }
+
+  fs::path file_;
+  const JsonObject& flight_;
+  LeftOut& left_out_;
+  std::map<std::string, std::int64_t> tracks_;
+  std::optional<std::int64_t> origin_ns_;
+  bool has_times_ = true;
+  Clip clip_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> aot_writer(const fs::path& root, const WriteOptions& options) {
+  return std::make_unique<AotWriter>(root, options);
+}
+
+Clips read_aot(const fs::path& source, const ReadOptions&, const Warn& warn) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(source)) {
+    const fs::path own = source / "ImageSets" / "groundtruth.json";
+    if (fs::exists(own)) files.push_back(own);
+    for (const fs::path& part : entries(source))
+      if (const fs::path file = part / "ImageSets" / "groundtruth.json"; fs::exists(file))
+        files.push_back(file);
+  } else {
+    files = {source};
+  }
+  if (files.empty()) throw Error("holds no ImageSets/groundtruth.json", {source.string()});
+  LeftOut left_out(warn);
+  Clips clips;
+  for (const fs::path& file : files) {
+    const JsonDocument json = python_json(file);
+    const JsonObject samples = json.object("samples");
+    for (const std::string& id : samples.keys())
+      clips.push_back(FlightReader(file, id, samples.object(id), left_out).read());
+  }
+  return clips;
+}
+
+}  // namespace airtruth::exchange

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "labels/exchange/exchange.h"
+
+#include <algorithm>
+#include <array>
+
+#include "foundation/base/error.h"
+#include "foundation/base/suggest.h"
+#include "labels/annotation/object_class.h"
+#include "labels/exchange/parts.h"
+
+namespace airtruth::exchange {
+namespace {
+
+struct About {
+  Format format;
+  const char* name;
+  const char* title;
+  const char* kept;
+  const char* lost;
+};
+
+constexpr const char* kPictures =
+    "positions, velocities, attitudes, the camera's motion and lens, light, the boxes of the "
+    "other two kinds, frames in which the aircraft is hidden or outside: see truth.jsonl";
+
+constexpr std::array<About, 11> kAll = {{
+    {Format::kCoco,
+     "coco",
+     "COCO, with videos and tracks",
+     "box, class, track, frame and time; visibility, occluded, truncated, range_m and "
+     "above_horizon "
+     "as further keys, which COCO's readers pass over",
+     ""},
+    {Format::kYolo,
+     "yolo",
+     "YOLO",
+     "box (as shares of the picture), class",
+     "track, time, visibility, occlusion, range"},
+    {Format::kMot,
+     "mot",
+     "MOTChallenge",
+     "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
+     "the "
+     "class of a track in tracks.txt, and as the number of the class where that was asked for; "
+     "otherwise what is no aircraft is marked as not to be considered",
+     "time stamps (a frame rate alone), occlusion and truncation as such"},
+    {Format::kVoc,
+     "voc",
+     "Pascal VOC",
+     "box (the whole pixels that it touches), class, truncated, occluded",
+     "track, time, visibility, range"},
+    {Format::kCvat,
+     "cvat",
+     "CVAT for video 1.1",
+     "box, class, track, occluded; visible, truncated, range_m and above_horizon as attributes",
+     "time stamps, frame rate"},
+    {Format::kAot,
+     "aot",
+     "Airborne Object Tracking",
+     "box, track, time in nanoseconds, range, above or below the horizon; the class as a further "
+     "key "
+     "of `blob`",
+     "visibility, occlusion, truncation; the id of every aircraft is an `Airplane`, that of a "
+     "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; what is on the lens"},
+    {Format::kOtb,
+     "otb",
+     "OTB",
+     "box",
+     "class, time, visibility, occlusion, range; of a sequence all before the first frame that "
+     "shows the object whole and after the "
+     "last that shows it; where it begins in the video"},
+    {Format::kGot10k,
+     "got10k",
+     "GOT-10k",
+     "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
+     "time stamps, occlusion, range; of a sequence all before the first frame that shows the "
+     "object whole and after the "
+     "last that shows it; where it begins in the video"},
+    {Format::kVot,
+     "vot",
+     "VOT",
+     "box, class, occlusion and range by frame",
+     "time stamps, visibility, truncation; of a sequence all before the first frame that shows the "
+     "object whole and after the "
+     "last that shows it; where it begins in the video"},
+    {Format::kEvision, "evision", "E-Vision", "", ""},
+    {Format::kCsv, "csv", "frame,x,y,w,h", "", ""},
+}};
+
+const About& about(Format format) {
+  return *std::find_if(
+      kAll.begin(), kAll.end(), [&](const About& a) { return a.format == format; });
+}
+
+}  // namespace
+
+Format format_from_name(std::string_view name) {
+  std::vector<std::string> names;
+  for (const About& a : kAll) {
+    if (name == a.name) return a.format;
+    names.emplace_back(a.name);
+  }
+  std::string all;
+  for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
+  const auto nearest = nearest_spelling(name, names);
+  throw Error("unknown format '" + std::string(name) + "'" +
+              (nearest ? "; did you mean '" + *nearest + "'?" : "; expected one of " + all));
+}
+
+const char* name(Format format) { return about(format).name; }
+
+bool can_write(Format format) { return format != Format::kEvision && format != Format::kCsv; }
+
+bool is_single_object(Format format) {
+  return format == Format::kOtb || format == Format::kGot10k || format == Format::kVot;
+}
+
+Pictures pictures_of(Format format) {
+  if (format == Format::kAot) return Pictures::kPngAlone;
+  if (format == Format::kOtb || format == Format::kGot10k) return Pictures::kJpgExpected;
+  return Pictures::kAny;
+}
+
+std::vector<fs::path> IndexedWriter::images(const Clip& clip, const std::string& part) const {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) files.push_back(image(clip, part, i));
+  return files;
+}
+
+Clip aircraft_alone(Clip clip) {
+  for (LabelledFrame& frame : clip.frames)
+    std::erase_if(frame.labels,
+                  [](const Label& label) { return !annotation::is_aircraft(label.object_class); });
+  return clip;
+}
+
+std::vector<Clip> arranged(Format format, const Clip& clip) {
+  if (!is_single_object(format)) return {clip};
+  std::vector<Clip> clips;
+  const Clip aircraft = aircraft_alone(clip);
+  const std::vector<std::int64_t> tracks = tracks_of(aircraft);
+  for (const std::int64_t track : tracks) {
+    Clip one = aircraft;
+    if (tracks.size() > 1) one.name += "-" + std::to_string(track);
+    for (LabelledFrame& frame : one.frames) {
+      std::erase_if(frame.labels, [&](const Label& label) { return label.track != track; });
+      if (frame.labels.size() > 1) frame.labels.resize(1);
+    }
+    const auto shows = [](const LabelledFrame& frame) { return !frame.labels.empty(); };
+    // A tracker that starts on a wing tip at the frame's edge learns the wing tip.
+    const auto shows_whole = [](const LabelledFrame& frame) {
+      return !frame.labels.empty() && !frame.labels.front().truncated.value_or(false);
+    };
+    auto first = std::find_if(one.frames.begin(), one.frames.end(), shows_whole);
+    if (first == one.frames.end())
+      first = std::find_if(one.frames.begin(), one.frames.end(), shows);
+    const auto last = std::find_if(one.frames.rbegin(), one.frames.rend(), shows).base();
+    one.frames = {first, last};
+    clips.push_back(std::move(one));
+  }
+  return clips;
+}
+
+std::unique_ptr<Writer> make_writer(Format format,
+                                    const fs::path& root,
+                                    const WriteOptions& options) {
+  switch (format) {
+    case Format::kCoco:
+      return coco_writer(root, options);
+    case Format::kYolo:
+      return yolo_writer(root, options);
+    case Format::kMot:
+      return mot_writer(root, options);
+    case Format::kVoc:
+      return voc_writer(root, options);
+    case Format::kCvat:
+      return cvat_writer(root, options);
+    case Format::kAot:
+      return aot_writer(root, options);
+    case Format::kOtb:
+    case Format::kGot10k:
+    case Format::kVot:
+      return single_object_writer(format, root, options);
+    case Format::kEvision:
+    case Format::kCsv:
+      break;
+  }
+  throw Error(std::string("'") + name(format) + "' can be read, not written");
+}
+
+std::string loss(Format format) {
+  const About& a = about(format);
+  std::string text = std::string("# What ") + a.title + " keeps\n\n";
+  text += std::string("Kept: ") + a.kept + ".\n\nLost: ";
+  if (*a.lost != 0) text += std::string(a.lost) + "; ";
+  text += kPictures;
+  text += ".\n\nFrames are counted anew where only every n-th was taken.\n";
+  return text;
+}
+
+std::vector<Clip> read_clips(Format format,
+                             const fs::path& source,
+                             const ReadOptions& options,
+                             const Warn& warn) {
+  if (!fs::exists(source)) throw Error("does not exist", {source.string()});
+  switch (format) {
+    case Format::kCoco:
+      return read_coco(source, options, warn);
+    case Format::kYolo:
+      return read_yolo(source, options, warn);
+    case Format::kMot:
+      return read_mot(source, options, warn);
+    case Format::kVoc:
+      return read_voc(source, options, warn);
+    case Format::kCvat:
+      return read_cvat(source, options, warn);
+    case Format::kAot:
+      return read_aot(source, options, warn);
+    case Format::kOtb:
+    case Format::kGot10k:
+    case Format::kVot:
+      return read_single_object(format, source, options, warn);
+    case Format::kEvision:
+      return read_evision(source, options);
+    case Format::kCsv:
+      return read_csv(source, options);
+  }
+  return {};
+}
+
+}  // namespace airtruth::exchange

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include <airtruth/labels.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
+#include "labels/annotation/object_class.h"
+
+namespace airtruth::exchange {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "airtruth labels 1";
+// The class of a region in which detections count neither way.
+constexpr const char* kIgnore = "ignore";
+
+template <typename T>
+void put(Json& json, const char* key, const std::optional<T>& value) {
+  if (value) json[key] = *value;
+}
+
+constexpr std::int64_t kLongestSide_px = 1'000'000;
+constexpr double kHighestRate_hz = 1e6;
+
+int side(const JsonObject& json, const char* key) {
+  return json.has(key) ? static_cast<int>(json.whole(key, 1, kLongestSide_px)) : 0;
+}
+
+std::optional<double> rate(const JsonObject& json, const char* key) {
+  const auto found = json.maybe_number(key);
+  if (found && !(*found > 0 && *found <= kHighestRate_hz))
+    json.fail(key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
+  return found;
+}
+
+Json json_of(const Label& label) {
+  const Box& b = label.box_px;
+  Json json = {{"track", label.track},
+               {"category", label.category},
+               {"box_px", {b.x, b.y, b.width, b.height}}};
+  if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
+  put(json, "visible", label.visible);
+  put(json, "occluded", label.occluded);
+  put(json, "truncated", label.truncated);
+  put(json, "range_m", label.range_m);
+  put(json, "above_horizon", label.above_horizon);
+  return json;
+}
+
+Label label_of(const JsonObject& json) {
+  Label label;
+  label.track = json.whole("track");
+  label.category = json.text("category");
+  const auto box = json.numbers("box_px", 4);
+  label.box_px = {box[0], box[1], box[2], box[3]};
+  label.object_class = json.maybe_text("class").value_or(label.object_class);
+  if (!annotation::is_object_class(label.object_class) && label.object_class != kIgnore)
+    json.fail("class", "aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore");
+  label.visible = json.maybe_number("visible");
+  label.occluded = json.maybe_truth("occluded");
+  label.truncated = json.maybe_truth("truncated");
+  label.range_m = json.maybe_number("range_m");
+  label.above_horizon = json.maybe_truth("above_horizon");
+  return label;
+}
+
+LabelledFrame frame_of(const JsonObject& json) {
+  LabelledFrame frame;
+  frame.frame = json.count("frame");
+  frame.time_s = json.maybe_number("time_s");
+  for (const JsonObject& label : json.objects("labels")) frame.labels.push_back(label_of(label));
+  return frame;
+}
+
+Clip clip_of(const JsonObject& json) {
+  if (json.text("format") != kFormat) json.fail("format", std::string("'") + kFormat + "'");
+  Clip clip;
+  clip.name = json.text("name");
+  clip.media = json.maybe_text("media").value_or("");
+  clip.width = side(json, "width");
+  clip.height = side(json, "height");
+  clip.frame_rate_hz = rate(json, "frame_rate_hz");
+  return clip;
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string labels_jsonl(const Clip& clip) {
+  Json head = {{"format", kFormat}, {"name", clip.name}};
+  if (!clip.media.empty()) head["media"] = clip.media.string();
+  if (clip.width > 0) head["width"] = clip.width;
+  if (clip.height > 0) head["height"] = clip.height;
+  put(head, "frame_rate_hz", clip.frame_rate_hz);
+  std::string text = text_of(head);
+  for (const LabelledFrame& frame : clip.frames) {
+    Json json = {{"frame", frame.frame}};
+    put(json, "time_s", frame.time_s);
+    json["labels"] = Json::array();
+    for (const Label& label : frame.labels) json["labels"].push_back(json_of(label));
+    text += text_of(json);
+  }
+  return text;
+}
+
+Clip read_labels(const fs::path& file) {
+  const std::string text = read_file(file);
+  Clip clip;
+  int line = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    ++line;
+    const JsonDocument json(std::string_view(text).substr(at, end - at), {file.string(), line});
+    if (line == 1)
+      clip = clip_of(json);
+    else
+      clip.frames.push_back(frame_of(json));
+    at = end + 1;
+  }
+  if (line == 0) throw Error("is empty; expected labels", {file.string()});
+  return clip;
+}
+
+std::vector<std::int64_t> tracks_of(const Clip& clip) {
+  std::set<std::int64_t> tracks;
+  for (const LabelledFrame& frame : clip.frames)
+    for (const Label& label : frame.labels) tracks.insert(label.track);
+  return {tracks.begin(), tracks.end()};
+}
+
+}  // namespace airtruth::exchange

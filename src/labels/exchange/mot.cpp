@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "labels/annotation/object_class.h"
+#include "labels/exchange/parts.h"
+#include "labels/exchange/text.h"
+
+// MOTChallenge (Milan et al. 2016, "MOT16", table 4): one folder for each clip, with
+// img1/000001.jpg ..., seqinfo.ini and gt/gt.txt. The lines are "frame, id, left, top, width,
+// height, conf, class, visibility" with frames, ids and pixels from 1. A tenth column, which the
+// readers of that format ignore, holds the range in metres (-1: unknown).
+//
+// The class of every object is 1 by default: TrackEval's MOT16, MOT17 and MOT20 keep
+// only class 1 (trackeval/datasets/mot_challenge_2d_box.py, get_preprocessed_seq_data).
+// tracks.txt, with a line "id,class" for each track, stores the class; other readers ignore it.
+// seqinfo.ini has the seven keys of the published ones, with whole numbers, since datumaro refuses
+// others (plugins/data_formats/mot.py); comments hold further properties of the clip.
+// Unknown values are 0; the visibility is 1 where no label of the clip states one.
+namespace airtruth::exchange {
+namespace {
+
+constexpr double kUnknown = -1;
+// The comments of seqinfo.ini.
+constexpr std::string_view kExactRate = "; exact frame rate: ";
+constexpr std::string_view kNoVisibility = "; visibility: unknown, written as 1";
+
+class MotWriter : public IndexedWriter {
+ public:
+  MotWriter(fs::path root, const WriteOptions& options)
+      : root_(std::move(root)), options_(options) {}
+
+  void add(const Clip& clip, const std::string& part) override {
+    const fs::path folder = root_ / part / clip.name;
+    fs::create_directories(folder / "gt");
+    std::string text;
+    const double unknown = knows_visibility(clip) ? kUnknown : 1;
+    for (std::size_t i = 0; i < clip.frames.size(); ++i)
+      for (const Label& label : clip.frames[i].labels) text += line_of(label, i, unknown);
+    write_file(folder / "gt" / "gt.txt", text);
+    write_file(folder / "gt" / "labels.txt", classes());
+    write_file(folder / "seqinfo.ini", about(clip));
+    write_file(folder / "tracks.txt", tracks(clip));
+    maps_[part] += in_csv(clip.name) + "\n";
+  }
+
+  void finish() override {
+    fs::create_directories(root_ / "seqmaps");
+    for (const std::string& part : options_.parts)
+      write_file(root_ / "seqmaps" / (part + ".txt"), "name\n" + maps_[part]);
+    write_file(root_ / "labels.txt", classes());
+  }
+
+ private:
+  fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
+    return fs::path(part) / clip.name / "img1" /
+           (padded(static_cast<std::int64_t>(i) + 1, 6) + options_.image_extension);
+  }
+
+  // The names of the classes, one on each line.
+  std::string classes() const {
+    if (!options_.mot_classes)
+      return (options_.categories.size() == 1 ? options_.categories.front() : "aircraft") + "\n";
+    std::string text;
+    for (const std::string& category : options_.categories) text += category + "\n";
+    return text;
+  }
+
+  static std::string tracks(const Clip& clip) {
+    std::map<std::int64_t, std::string> categories;
+    for (const LabelledFrame& frame : clip.frames)
+      for (const Label& label : frame.labels) categories.emplace(label.track, label.category);
+    std::string text;
+    for (const auto& [track, category] : categories)
+      text += std::to_string(track) + "," + category + "\n";
+    return text;
+  }
+
+  static bool knows_visibility(const Clip& clip) {
+    for (const LabelledFrame& frame : clip.frames)
+      for (const Label& label : frame.labels)
+        if (label.visible) return true;
+    return false;
+  }
+
+  // Names with commas are quoted, as TrackEval's csv.reader expects.
+  static std::string in_csv(const std::string& name) {
+    if (name.find_first_of(",\"") == std::string::npos) return name;
+    std::string quoted = "\"";
+    for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+  }
+
+  std::int64_t class_of(const Label& label) const {
+    if (!options_.mot_classes) return 1;
+    const auto& all = options_.categories;
+    return std::find(all.begin(), all.end(), label.category) - all.begin() + 1;
+  }
+
+  std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
+    const Box& b = label.box_px;
+    // MOTChallenge's evaluation of one class passes over what is not to be considered.
+    const bool is_considered = options_.mot_classes || annotation::is_aircraft(label.object_class);
+    return fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
+                       i + 1,
+                       label.track,
+                       b.x + 1,
+                       b.y + 1,
+                       b.width,
+                       b.height,
+                       is_considered ? 1 : 0,
+                       class_of(label),
+                       label.visible.value_or(unknown_visibility),
+                       label.range_m.value_or(kUnknown));
+  }
+
+  std::string about(const Clip& clip) const {
+    const double rate = clip.frame_rate_hz.value_or(0);
+    std::string text = fmt::format(
+        "[Sequence]\nname={}\nimDir=img1\nframeRate={}\nseqLength={}\nimWidth={}\nimHeight={}\n"
+        "imExt={}\n",
+        clip.name,
+        rate > 0 ? std::max(1LL, std::llround(rate)) : 0,
+        clip.frames.size(),
+        clip.width,
+        clip.height,
+        options_.image_extension);
+    if (rate != std::floor(rate)) text += fmt::format("{}{}\n", kExactRate, rate);
+    if (!knows_visibility(clip)) text += std::string(kNoVisibility) + "\n";
+    return text;
+  }
+
+  fs::path root_;
+  WriteOptions options_;
+  std::map<std::string, std::string> maps_;
+};
+
+constexpr std::int64_t kMaxTracks = 1'000'000'000;
+
+// The folder of one sequence.
+class SequenceFolder {
+ public:
+  SequenceFolder(fs::path folder,
+                 const std::vector<std::string>& classes,
+                 const ReadOptions& options,
+                 LeftOut& left_out)
+      : folder_(std::move(folder)), classes_(classes), options_(options), left_out_(left_out) {
+    if (classes_.empty() && fs::exists(folder_ / "gt" / "labels.txt"))
+      for (const Line& line : lines_of(folder_ / "gt" / "labels.txt"))
+        classes_.push_back(line.text);
+  }
+
+  Clip read() {
+    clip_.name = folder_.filename().string();
+    if (fs::exists(folder_ / "seqinfo.ini")) about(folder_ / "seqinfo.ini");
+    if (fs::exists(folder_ / "tracks.txt")) tracks(folder_ / "tracks.txt");
+    if (!entries(folder_ / "img1").empty()) clip_.media = folder_ / "img1";
+    const fs::path file = folder_ / "gt" / "gt.txt";
+    for (const Line& line : lines_of(file))
+      add(numbers_of(line, file), {file.string(), line.number});
+    for (std::size_t i = 0; i < clip_.frames.size(); ++i)
+      clip_.frames[i].frame = static_cast<std::int64_t>(i);
+    return clip_;
+  }
+
+ private:
+  void about(const fs::path& file) {
+    const auto about = settings_of(file);
+    if (const auto named = about.find("name"); named != about.end()) clip_.name = named->second;
+    if (const auto rate = number_in(about, "frameRate"); rate && *rate > 0)
+      clip_.frame_rate_hz = rate;
+    clip_.width = side_of(number_in(about, "imWidth"));
+    clip_.height = side_of(number_in(about, "imHeight"));
+    const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
+    if (!frames) throw Error("seqLength is no number of frames", {file.string()});
+    clip_.frames.resize(static_cast<std::size_t>(*frames));
+    for (const Line& line : lines_of(file)) {
+      if (line.text == kNoVisibility) knows_visibility_ = false;
+      if (!line.text.starts_with(kExactRate)) continue;
+      const auto rate = numbers_of({line.number, line.text.substr(kExactRate.size())}, file);
+      if (rate.size() == 1 && rate[0] > 0) clip_.frame_rate_hz = rate[0];
+    }
+  }
+
+  void tracks(const fs::path& file) {
+    for (const Line& line : lines_of(file)) {
+      const std::size_t comma = line.text.find(',');
+      const auto number = numbers_of({line.number, line.text.substr(0, comma)}, file);
+      const auto track = number.size() == 1 ? whole_in(number[0], 0, kMaxTracks) : std::nullopt;
+      if (!track || comma == std::string::npos)
+        throw Error("is no 'id,class'", {file.string(), line.number});
+      categories_[*track] = line.text.substr(comma + 1);
+    }
+  }
+
+  void add(const std::vector<double>& n, const Where& where) {
+    if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
+    const auto frame = whole_in(n[0], 1, kMaxFrames);
+    if (!frame) throw Error("the frame is no whole number from 1 on", where);
+    const auto track = whole_in(n[1], -1, kMaxTracks);
+    if (!track) throw Error("the id is no whole number", where);
+    if (n.size() > 6 && n[6] == 0)
+      return left_out_.add("lines that are not to be considered (conf 0)", to_string(where));
+    Label label;
+    label.track = *track;
+    label.box_px = {n[2] - 1, n[3] - 1, n[4], n[5]};
+    label.category = category_of(label.track, n.size() > 7 ? n[7] : 0);
+    if (n.size() > 8 && n[8] >= 0 && knows_visibility_) label.visible = n[8];
+    if (n.size() > 9 && n[9] >= 0) label.range_m = n[9];
+    if (!is_in_picture(label.box_px, clip_.width, clip_.height))
+      return left_out_.add("boxes that are empty or outside their image", to_string(where));
+    const auto i = static_cast<std::size_t>(*frame) - 1;
+    if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
+    clip_.frames[i].labels.push_back(label);
+  }
+
+  std::string category_of(std::int64_t track, double number) const {
+    if (const auto found = categories_.find(track); found != categories_.end())
+      return found->second;
+    if (!(number >= 1)) return options_.category;
+    return number <= static_cast<double>(classes_.size())
+               ? classes_[static_cast<std::size_t>(number) - 1]
+               : fmt::format("{}", number);
+  }
+
+  fs::path folder_;
+  std::vector<std::string> classes_;
+  const ReadOptions& options_;
+  LeftOut& left_out_;
+  std::map<std::int64_t, std::string> categories_;
+  bool knows_visibility_ = true;
+  Clip clip_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> mot_writer(const fs::path& root, const WriteOptions& options) {
+  return std::make_unique<MotWriter>(root, options);
+}
+
+Clips read_mot(const fs::path& source, const ReadOptions& options, const Warn& warn) {
+  std::vector<std::string> categories;
+  if (fs::exists(source / "labels.txt"))
+    for (const Line& line : lines_of(source / "labels.txt")) categories.push_back(line.text);
+  LeftOut left_out(warn);
+  Clips clips;
+  const auto look = [&](const fs::path& folder) {
+    if (fs::exists(folder / "gt" / "gt.txt"))
+      clips.push_back(SequenceFolder(folder, categories, options, left_out).read());
+  };
+  look(source);
+  for (const fs::path& folder : entries(source)) {
+    look(folder);
+    for (const fs::path& inner : entries(folder)) look(inner);
+  }
+  if (clips.empty()) throw Error("holds no gt/gt.txt", {source.string()});
+  return clips;
+}
+
+}  // namespace airtruth::exchange

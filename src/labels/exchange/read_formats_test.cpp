@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "labels/exchange/exchange.h"
+#include "labels/exchange/test_folder.h"
+#include "labels/exchange/text.h"
+
+namespace airtruth::exchange {
+namespace {
+
+// The library for tracker authors decodes no pictures; a caller may state how to read their size.
+TEST(Yolo, TheSizeOfPicturesComesFromTheCaller) {
+  const Folder folder;
+  folder.file("labels/s_000000.txt", "0 0.5 0.5 0.25 0.5\n");
+  folder.file("images/s_000000.jpg", "no picture");
+  EXPECT_THROW(read_clips(Format::kYolo, folder.path(), {}, {}), Error);
+  ReadOptions options;
+  options.size_of_picture = [](const fs::path& file) {
+    EXPECT_EQ(file.filename(), "s_000000.jpg");
+    return std::pair(64, 48);
+  };
+  const auto clips = read_clips(Format::kYolo, folder.path(), options, {});
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_EQ(clips[0].frames.at(0).labels.at(0).box_px, (Box{24, 12, 16, 24}));
+}
+
+TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
+  const Folder folder;
+  const fs::path file = folder.file("foreign.json", R"({
+    "categories": [{"id": 7, "name": "plane"}],
+    "images": [{"id": 900, "file_name": "x/3.jpg", "width": 100, "height": 50},
+               {"id": 12, "file_name": "x/1.jpg", "width": 100, "height": 50}],
+    "annotations": [
+      {"id": 5, "image_id": 900, "category_id": 7, "segmentation": [[10, 5, 30, 5, 30, 20]]},
+      {"id": 88, "image_id": 900, "category_id": 7, "bbox": [200, 5, 10, 10]},
+      {"id": 89, "image_id": 900, "category_id": 7, "bbox": [1, 1, 0, 10]},
+      {"id": 90, "image_id": 4, "category_id": 7, "bbox": [1, 1, 2, 2]},
+      {"id": 91, "image_id": 12, "category_id": 7, "segmentation": {"counts": "abc", "size": [50, 100]}}
+    ]})");
+  std::vector<std::string> warnings;
+  const auto clips =
+      read_clips(Format::kCoco, file, {}, [&](const std::string& w) { warnings.push_back(w); });
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_EQ(clips[0].name, "x");
+  ASSERT_EQ(clips[0].frames.size(), 2u);
+  // The order is that of the pictures' numbers.
+  EXPECT_TRUE(clips[0].frames[0].labels.empty());
+  ASSERT_EQ(clips[0].frames[1].labels.size(), 1u);
+  EXPECT_EQ(clips[0].frames[1].labels[0].box_px, (Box{10, 5, 20, 15}));
+  std::string all;
+  for (const std::string& warning : warnings) all += warning + "\n";
+  EXPECT_NE(all.find("2 boxes that are empty or outside their image (the first: annotations[1])"),
+            std::string::npos)
+      << all;
+  EXPECT_NE(all.find("1 annotations of images that are not listed"), std::string::npos) << all;
+  EXPECT_NE(all.find("1 annotations with neither bbox nor polygons"), std::string::npos) << all;
+}
+
+TEST(Coco, CrowdsAreNoObjectsAndPicturesOfSeveralSizesAreNoVideo) {
+  const Folder folder;
+  const fs::path file = folder.file("instances_val2017.json", R"({
+    "categories": [{"id": 5, "name": "airplane"}],
+    "images": [{"id": 139, "file_name": "000000000139.jpg", "width": 640, "height": 426},
+               {"id": 581929, "file_name": "000000581929.jpg", "width": 500, "height": 375}],
+    "annotations": [
+      {"id": 1, "image_id": 139, "category_id": 5, "bbox": [1, 2, 3, 4], "iscrowd": 0},
+      {"id": 2, "image_id": 139, "category_id": 5, "bbox": [5, 5, 90, 80], "iscrowd": 1,
+       "segmentation": {"counts": [0, 9], "size": [426, 640]}}]})");
+  std::string warnings;
+  const auto clips =
+      read_clips(Format::kCoco, file, {}, [&](const std::string& w) { warnings += w + "\n"; });
+  ASSERT_EQ(clips.size(), 1u);
+  ASSERT_EQ(clips[0].frames.size(), 2u);
+  EXPECT_EQ(clips[0].frames[1].frame, 581929);
+  EXPECT_EQ(clips[0].width, 0);
+  ASSERT_EQ(clips[0].frames[0].labels.size(), 1u);
+  EXPECT_EQ(clips[0].frames[0].labels[0].box_px, (Box{1, 2, 3, 4}));
+  EXPECT_NE(warnings.find("1 crowds (iscrowd = 1), which are regions and no objects (the first: "
+                          "annotations[1])"),
+            std::string::npos)
+      << warnings;
+  EXPECT_NE(warnings.find("differ in size"), std::string::npos) << warnings;
+}
+
+// An entity of the published training set, as docs/DATASET.md prints it, with the NaN that Python
+// writes. Times count from 1970.
+TEST(Aot, ThePublishedFilesHoldNanAndTimesSince1970) {
+  const Folder folder;
+  const fs::path file = folder.file("part1/ImageSets/groundtruth.json", R"({"metadata": {},
+    "samples": {"280dc81adbb3420cab502fb88d6abf84": {
+      "metadata": {"data_path": "train3/2/", "fps": 10.0, "number_of_frames": 3, "duration": 300.0,
+                   "resolution": {"height": 2048, "width": 2448}},
+      "entities": [
+        {"time": 1550844897819368155, "blob": {"frame": 0, "range_distance_m": NaN},
+         "id": "Bird2", "bb": [1013.4, 515.8, 6.0, 6.0], "labels": {"is_above_horizon": 1},
+         "flight_id": "280dc81adbb3420cab502fb88d6abf84", "img_name": "a NaN \" NaN.png"},
+        {"time": 1550844897919368155, "blob": {"frame": 1, "range_distance_m": -Infinity}, "id": "Airplane1",
+         "bb": [1, 2, 3, 4], "labels": {"is_above_horizon": -1}, "flight_id": "x", "img_name": "b"},
+        {"time": 1550844898019368156, "blob": {"frame": 2, "range_distance_m": nan},
+         "labels": {}, "flight_id": "x", "img_name": "c"}]}}})");
+  const auto clips = read_clips(Format::kAot, file, {}, {});
+  ASSERT_EQ(clips.size(), 1u);
+  ASSERT_EQ(clips[0].frames.size(), 3u);
+  ASSERT_EQ(clips[0].frames[0].labels.size(), 1u);
+  const Label& bird = clips[0].frames[0].labels[0];
+  EXPECT_EQ(bird.category, "Bird");
+  EXPECT_EQ(bird.range_m, std::nullopt);
+  EXPECT_EQ(bird.above_horizon, true);
+  EXPECT_EQ(bird.box_px, (Box{1013.4, 515.8, 6, 6}));
+  EXPECT_EQ(clips[0].frames[1].labels[0].range_m, std::nullopt);
+  EXPECT_EQ(clips[0].frames[0].time_s, 0.0);
+  EXPECT_EQ(clips[0].frames[1].time_s, 0.1);
+  EXPECT_EQ(clips[0].frames[2].time_s, 0.200000001);
+}
+
+// VOT's own words for regions (vot/region/io.py). The masks are worked by hand:
+// a window 4 x 3 at (10, 20) of the rows 0110 / 0111 / 0000; one whose ones run over the row's end.
+TEST(Vot, MasksPolygonsAndSpecialRegions) {
+  const Folder folder;
+  folder.file("s/groundtruth.txt",
+              "m10,20,4,3,1,2,2,3,4\n"
+              "m-2,5,4,2,3,2,3\n"
+              "m0,0,0,0,0\n"
+              "1\n"
+              "nan,nan,nan,nan\n"
+              "1,2,5,2,5,8,1,8\n"
+              "1.5,2,3,4\n");
+  const auto clips = read_clips(Format::kVot, folder.path(), {}, {});
+  ASSERT_EQ(clips.size(), 1u);
+  const auto& frames = clips[0].frames;
+  ASSERT_EQ(frames.size(), 7u);
+  EXPECT_EQ(frames[0].labels.at(0).box_px, (Box{11, 20, 3, 2}));
+  EXPECT_EQ(frames[1].labels.at(0).box_px, (Box{-2, 5, 4, 2}));
+  for (const std::size_t i : {2u, 3u, 4u}) EXPECT_TRUE(frames[i].labels.empty()) << i;
+  EXPECT_EQ(frames[5].labels.at(0).box_px, (Box{1, 2, 4, 6}));
+  EXPECT_EQ(frames[6].labels.at(0).box_px, (Box{1.5, 2, 3, 4}));
+}
+
+TEST(Yolo, PolygonsCountByTheirBounds) {
+  const Folder folder;
+  folder.file("labels/train/s_000000.txt", "0 0.1 0.2 0.3 0.2 0.3 0.6\n1 0.5 0.5 0.2 0.4 0.9\n");
+  const auto clips = read_clips(Format::kYolo, folder.path(), {{{100, 50}}, "aircraft"}, {});
+  ASSERT_EQ(clips.at(0).frames.at(0).labels.size(), 2u);
+  const Box polygon = clips[0].frames[0].labels[0].box_px;
+  EXPECT_NEAR(polygon.x, 10, 1e-9);
+  EXPECT_NEAR(polygon.y, 10, 1e-9);
+  EXPECT_NEAR(polygon.width, 20, 1e-9);
+  EXPECT_NEAR(polygon.height, 20, 1e-9);
+  // A sixth number is the confidence of a detector.
+  EXPECT_NEAR(clips[0].frames[0].labels[1].box_px.width, 20, 1e-9);
+}
+
+TEST(Cvat, ForImagesHasItsBoxesInThePictures) {
+  const Folder folder;
+  const fs::path file =
+      folder.file("task/annotations.xml", R"(<?xml version="1.0" encoding="utf-8"?>
+<annotations><version>1.1</version>
+  <meta><task><name>t</name><size>2</size></task></meta>
+  <image id="0" name="a_01.jpg" width="64" height="48"></image>
+  <image id="1" name="a_02.jpg" width="64" height="48">
+    <box label="plane" source="manual" occluded="1" xtl="3.5" ytl="4" xbr="13.5" ybr="9" z_order="0">
+      <attribute name="range_m">700</attribute></box>
+    <box label="bird" occluded="0" xtl="30" ytl="4" xbr="32" ybr="9"/></image>
+</annotations>)");
+  const auto clips = read_clips(Format::kCvat, file, {}, {});
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_EQ(clips[0].width, 64);
+  ASSERT_EQ(clips[0].frames.size(), 2u);
+  EXPECT_TRUE(clips[0].frames[0].labels.empty());
+  ASSERT_EQ(clips[0].frames[1].labels.size(), 2u);
+  const Label& plane = clips[0].frames[1].labels[0];
+  EXPECT_EQ(plane.box_px, (Box{3.5, 4, 10, 5}));
+  EXPECT_EQ(plane.category, "plane");
+  EXPECT_EQ(plane.occluded, true);
+  EXPECT_EQ(plane.range_m, 700);
+  EXPECT_EQ(clips[0].frames[1].labels[1].track, 2);
+}
+
+TEST(Format, IsKnownByNameAndNearMissesAreHelped) {
+  for (const Format format : kWritten) EXPECT_EQ(format_from_name(name(format)), format);
+  try {
+    format_from_name("cocoo");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "unknown format 'cocoo'; did you mean 'coco'?");
+  }
+}
+
+TEST(Published, EvisionIsReadWithItsEmptyFrames) {
+  const Folder folder;
+  const fs::path file = folder.file("1LRB737.xml", R"(<?xml version="1.0"?>
+<opencv_storage>
+<frame_1><CameraPos_m><x>0.</x><y>0.</y><z>-150.</z></CameraPos_m>
+  <IntruderPos_m><x>700.</x><y>-900.</y><z>-350.</z></IntruderPos_m>
+  <Distance_m>1150.</Distance_m>
+  <IntruderRect_pix><x>11</x><y>340</y><width>30</width><height>9</height></IntruderRect_pix></frame_1>
+<frame_3><CameraPos_m><x>0.</x><y>0.</y><z>-150.</z></CameraPos_m>
+  <IntruderPos_m><x>700.</x><y>-900.</y><z>-350.</z></IntruderPos_m>
+  <Distance_m>1150.</Distance_m>
+  <IntruderRect_pix><x>0</x><y>0</y><width>0</width><height>0</height></IntruderRect_pix></frame_3>
+</opencv_storage>)");
+  const auto clips = read_clips(Format::kEvision, file, {}, {});
+  ASSERT_EQ(clips.size(), 1u);
+  ASSERT_EQ(clips[0].frames.size(), 3u);
+  ASSERT_EQ(clips[0].frames[0].labels.size(), 1u);
+  EXPECT_EQ(clips[0].frames[0].labels[0].box_px, (Box{11, 340, 30, 9}));
+  EXPECT_EQ(clips[0].frames[0].labels[0].category, "B737");
+  EXPECT_TRUE(clips[0].frames[1].labels.empty());
+  EXPECT_TRUE(clips[0].frames[2].labels.empty());
+}
+
+}  // namespace
+}  // namespace airtruth::exchange

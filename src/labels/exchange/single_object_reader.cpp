@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
+#include "labels/exchange/parts.h"
+#include "labels/exchange/text.h"
+
+// Folders with one object each, and one line of x, y, width, height for each frame.
+//
+// OTB (Wu et al. 2013): groundtruth_rect.txt, img/0001.jpg; pixels from 1; "0,0,0,0" where the
+// target is absent; the toolkit skips such frames.
+// GOT-10k (Huang et al. 2019): groundtruth.txt, 00000001.jpg, absence.label, cut_by_image.label,
+// cover.label (0 to 8 for the visible share), meta_info.ini, list.txt. Pixels from 1, as its
+// toolkit's reference tracker takes them. The toolkit (got10k/datasets/got10k.py) reads all three
+// labels of every sequence; pytracking's loader takes the lines of meta_info.ini by their position.
+// Therefore all are written: an unknown value is "unknown" in meta_info.ini, cover 8 where there is
+// a box, and cut where the box reaches the picture's edge. A last line of meta_info.ini names those
+// labels. VOT (Kristan et al. 2013 on; vot-toolkit's vot/dataset/common.py): groundtruth.txt,
+// color/00000001.jpg, a file `sequence` with a whole fps, list.txt, occlusion.tag, range_m.value,
+// and anchor.value with the starts of the multi-start experiment (1 forward, -1 backward, 0 none;
+// vot/experiment/multistart.py). Pixels from 0; "nan,nan,nan,nan" where the target is absent.
+namespace airtruth::exchange {
+namespace {
+
+// A side of a picture, in pixels, that no camera reaches.
+constexpr std::int64_t kLongestSide = 1'000'000;
+
+// Columns beside the boxes; empty where the file does not exist.
+std::vector<double> column(const fs::path& file) {
+  std::vector<double> values;
+  if (!fs::exists(file)) return values;
+  for (const Line& line : lines_of(file))
+    for (const double value : numbers_of(line, file)) values.push_back(value);
+  return values;
+}
+
+// VOT's mask, "mX,Y,W,H,ZEROS,ONES,ZEROS,...": run lengths of the rows of a W x H window at (X, Y),
+// starting with the zeros (vot/region/io.py). Returns the bounds of its ones; an empty box where it
+// has none.
+Box box_of_mask(const Line& line, const fs::path& file) {
+  const std::vector<double> n = numbers_of({line.number, line.text.substr(1)}, file);
+  const Where where{file.string(), line.number};
+  if (n.size() < 5) throw Error("is no mask: expected mX,Y,WIDTH,HEIGHT and run lengths", where);
+  const auto left = whole_in(n[0], -kLongestSide, kLongestSide);
+  const auto top = whole_in(n[1], -kLongestSide, kLongestSide);
+  const auto width = whole_in(n[2], 0, kLongestSide);
+  const auto height = whole_in(n[3], 0, kLongestSide);
+  if (!left || !top || !width || !height)
+    throw Error("is no mask: its window is no whole numbers of pixels", where);
+  BoxBounds bounds;
+  std::int64_t at = 0;
+  for (std::size_t i = 4; i < n.size(); ++i) {
+    const auto run = whole_in(n[i], 0, *width * *height - at);
+    if (!run) throw Error("is no mask: its run lengths do not fit its window", where);
+    if (i % 2 == 1 && *run > 0) {
+      const std::int64_t last = at + *run - 1;
+      const bool wraps = at / *width != last / *width;
+      const auto x = [&](std::int64_t column) { return static_cast<double>(*left + column); };
+      const auto y = [&](std::int64_t row) { return static_cast<double>(*top + row); };
+      bounds.add({x(wraps ? 0 : at % *width), y(at / *width)});
+      bounds.add({x(wraps ? *width : last % *width + 1), y(last / *width + 1)});
+    }
+    at += *run;
+  }
+  return bounds.box().value_or(Box{});
+}
+
+// "key: value" of meta_info.ini.
+std::string got10k_value(const fs::path& file, const std::string& key) {
+  if (fs::exists(file))
+    for (const Line& line : lines_of(file))
+      if (line.text.starts_with(key + ":")) {
+        const std::size_t start = line.text.find_first_not_of(' ', key.size() + 1);
+        return start == std::string::npos ? "" : line.text.substr(start);
+      }
+  return {};
+}
+
+class SequenceReader {
+ public:
+  SequenceReader(Format format, fs::path folder, const ReadOptions& options, LeftOut& left_out)
+      : format_(format), folder_(std::move(folder)), options_(options), left_out_(left_out) {}
+
+  Clip read() {
+    clip_.name = folder_.filename().string();
+    category_ = options_.category;
+    about();
+    boxes();
+    columns();
+    return clip_;
+  }
+
+ private:
+  void about() {
+    const fs::path pictures = format_ == Format::kOtb   ? folder_ / "img"
+                              : format_ == Format::kVot ? folder_ / "color"
+                                                        : folder_;
+    const auto size = options_.size ? options_.size : size_of_pictures(pictures, options_);
+    if (size) std::tie(clip_.width, clip_.height) = *size;
+    if (size && !options_.size) clip_.media = pictures;
+    if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
+      const auto settings = settings_of(folder_ / "sequence");
+      clip_.frame_rate_hz = number_in(settings, "fps");
+      if (const auto exact = number_in(settings, "exact_fps"); exact && *exact > 0)
+        clip_.frame_rate_hz = exact;
+      clip_.width = side_of(number_in(settings, "width").value_or(clip_.width));
+      clip_.height = side_of(number_in(settings, "height").value_or(clip_.height));
+      if (const auto found = settings.find("category"); found != settings.end())
+        category_ = found->second;
+    }
+    if (format_ == Format::kGot10k) about_got10k();
+  }
+
+  void about_got10k() {
+    const fs::path file = folder_ / "meta_info.ini";
+    if (const std::string kind = got10k_value(file, "object_class"); !kind.empty())
+      category_ = kind;
+    std::string rate = got10k_value(file, "anno_fps");
+    if (rate.ends_with("Hz")) rate.resize(rate.size() - 2);
+    const std::vector<double> rates = known_numbers(rate, file);
+    if (rates.size() == 1 && rates[0] > 0) clip_.frame_rate_hz = rates[0];
+    std::string size = got10k_value(file, "resolution");
+    std::replace_if(
+        size.begin(), size.end(), [](char c) { return c == '(' || c == ')'; }, ' ');
+    const std::vector<double> numbers = known_numbers(size, file);
+    const std::string unknown = " " + got10k_value(file, "labels_unknown") + " ";
+    knows_cut_ = unknown.find(" cut_by_image ") == std::string::npos;
+    knows_cover_ = unknown.find(" cover ") == std::string::npos;
+    if (numbers.size() == 2) {
+      clip_.width = side_of(numbers[0]);
+      clip_.height = side_of(numbers[1]);
+    }
+  }
+
+  static std::vector<double> known_numbers(const std::string& text, const fs::path& file) {
+    return text == "unknown" ? std::vector<double>() : numbers_of({0, text}, file);
+  }
+
+  void boxes() {
+    const fs::path file =
+        folder_ / (format_ == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt");
+    const double from = format_ == Format::kVot ? 0 : 1;
+    for (const Line& line : lines_of(file)) {
+      LabelledFrame frame;
+      frame.frame = static_cast<std::int64_t>(clip_.frames.size());
+      const auto box = format_ == Format::kVot && line.text.starts_with('m')
+                           ? box_of_mask(line, file)
+                           : box_of(numbers_of(line, file), from);
+      if (!box)
+        throw Error("is no box: expected x, y, width, height", {file.string(), line.number});
+      const bool empty = box->width == 0 && box->height == 0;
+      if (is_in_picture(*box, clip_.width, clip_.height)) {
+        Label label;
+        label.category = category_;
+        label.box_px = *box;
+        frame.labels.push_back(label);
+      } else if (std::isfinite(box->x) && !empty) {
+        left_out_.add("boxes that are empty or outside their image",
+                      file.string() + ":" + std::to_string(line.number));
+      }
+      clip_.frames.push_back(std::move(frame));
+    }
+  }
+
+  // A rectangle, or the bounds of a polygon. A single number means that there is no region (VOT).
+  static std::optional<Box> box_of(const std::vector<double>& n, double from) {
+    if (n.size() == 1) return Box{0, 0, 0, 0};
+    if (n.size() == 4) return Box{n[0] - from, n[1] - from, n[2], n[3]};
+    if (n.size() < 6 || n.size() % 2 != 0) return std::nullopt;
+    BoxBounds bounds;
+    for (std::size_t i = 0; i < n.size(); i += 2) bounds.add({n[i] - from, n[i + 1] - from});
+    return bounds.box();
+  }
+
+  void columns() {
+    const auto each = [&](const char* name, const auto& set) {
+      const std::vector<double> values = column(folder_ / name);
+      for (std::size_t i = 0; i < std::min(values.size(), clip_.frames.size()); ++i)
+        for (Label& label : clip_.frames[i].labels) set(label, values[i]);
+    };
+    if (format_ == Format::kGot10k) {
+      const std::vector<double> absent = column(folder_ / "absence.label");
+      for (std::size_t i = 0; i < std::min(absent.size(), clip_.frames.size()); ++i)
+        if (absent[i] != 0) clip_.frames[i].labels.clear();
+      if (knows_cut_)
+        each("cut_by_image.label", [](Label& label, double v) { label.truncated = v != 0; });
+      // A value stands for the middle of its step; the whole is exact.
+      if (knows_cover_)
+        each("cover.label", [](Label& label, double v) {
+          label.visible = v >= 8 ? 1.0 : std::clamp(0.15 * v - 0.075, 0.0, 1.0);
+        });
+    }
+    if (format_ == Format::kVot) {
+      each("occlusion.tag", [](Label& label, double v) { label.occluded = v != 0; });
+      each("range_m.value", [](Label& label, double v) {
+        if (std::isfinite(v)) label.range_m = v;
+      });
+    }
+  }
+
+  Format format_;
+  fs::path folder_;
+  const ReadOptions& options_;
+  LeftOut& left_out_;
+  std::string category_;
+  bool knows_cut_ = true;
+  bool knows_cover_ = true;
+  Clip clip_;
+};
+
+}  // namespace
+
+Clips read_single_object(Format format,
+                         const fs::path& source,
+                         const ReadOptions& options,
+                         const Warn& warn) {
+  LeftOut left_out(warn);
+  Clips clips;
+  const auto look = [&](const fs::path& folder) {
+    if (fs::exists(folder / (format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt")))
+      clips.push_back(SequenceReader(format, folder, options, left_out).read());
+  };
+  look(source);
+  for (const fs::path& folder : entries(source)) {
+    look(folder);
+    for (const fs::path& inner : entries(folder)) look(inner);
+  }
+  if (clips.empty())
+    throw Error(std::string("holds no sequence of ") + name(format), {source.string()});
+  return clips;
+}
+
+}  // namespace airtruth::exchange

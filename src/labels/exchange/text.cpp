@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "labels/exchange/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/trimmed.h"
+
+namespace airtruth::exchange {
+namespace {
+
+std::optional<double> number_from(std::string_view text) {
+  if (text == "nan" || text == "NaN" || text == "NAN")
+    return std::numeric_limits<double>::quiet_NaN();
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::vector<Line> lines_of(const fs::path& file) {
+  const std::string text = read_file(file);
+  std::vector<Line> lines;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    ++number;
+    const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
+    if (!line.empty() && line.front() != '#') lines.push_back({number, std::string(line)});
+    at = end + 1;
+  }
+  return lines;
+}
+
+std::vector<double> numbers_of(const Line& line, const fs::path& file) {
+  std::vector<double> numbers;
+  const std::string_view separators = ",; \t";
+  const std::string_view text = line.text;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
+    const std::string_view word = text.substr(at, end - at);
+    if (!word.empty()) {
+      const auto number = number_from(word);
+      if (!number)
+        throw Error(fmt::format("'{}' is not a number", word.substr(0, 40)),
+                    {file.string(), line.number, static_cast<int>(at) + 1});
+      numbers.push_back(*number);
+    }
+    at = end + 1;
+  }
+  return numbers;
+}
+
+std::map<std::string, std::string> settings_of(const fs::path& file) {
+  std::map<std::string, std::string> settings;
+  for (const Line& line : lines_of(file)) {
+    const std::size_t equals = line.text.find('=');
+    if (equals == std::string::npos) continue;
+    settings[std::string(trimmed(line.text.substr(0, equals)))] =
+        std::string(trimmed(line.text.substr(equals + 1)));
+  }
+  return settings;
+}
+
+std::optional<double> number_in(const std::map<std::string, std::string>& settings,
+                                const std::string& key) {
+  const auto found = settings.find(key);
+  return found == settings.end() ? std::nullopt : number_from(found->second);
+}
+
+std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high) {
+  const bool inside = value >= static_cast<double>(low) && value <= static_cast<double>(high);
+  if (!inside || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::int64_t>(value);
+}
+
+int side_of(const std::optional<double>& value) {
+  return static_cast<int>(value ? whole_in(*value, 1, 1'000'000).value_or(0) : 0);
+}
+
+std::string padded(std::int64_t number, int digits) {
+  return fmt::format("{:0{}}", number, digits);
+}
+
+std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::string& stem) {
+  const std::size_t last = stem.find_last_not_of("0123456789");
+  const std::size_t digits = last == std::string::npos ? 0 : last + 1;
+  if (digits == stem.size() || stem.size() - digits > 15) return {stem, std::nullopt};
+  std::int64_t number = 0;
+  std::from_chars(stem.data() + digits, stem.data() + stem.size(), number);
+  const bool parted = digits > 0 && (stem[digits - 1] == '_' || stem[digits - 1] == '-');
+  return {stem.substr(0, parted ? digits - 1 : digits), number};
+}
+
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::vector<fs::path> found;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (!entry.path().filename().string().starts_with(".")) found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension) {
+  std::vector<fs::path> found = entries(folder);
+  std::erase_if(found, [&](const fs::path& path) {
+    return path.extension() != extension || !fs::is_regular_file(path);
+  });
+  return found;
+}
+
+void sort_frames(Clip& clip) {
+  std::stable_sort(
+      clip.frames.begin(), clip.frames.end(), [](const LabelledFrame& a, const LabelledFrame& b) {
+        return a.frame < b.frame;
+      });
+}
+
+std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
+                                                    const ReadOptions& options) {
+  if (!options.size_of_picture) return std::nullopt;
+  for (const fs::path& file : entries(folder)) {
+    const std::string extension = file.extension().string();
+    if (extension != ".jpg" && extension != ".jpeg" && extension != ".png") continue;
+    return options.size_of_picture(file);
+  }
+  return std::nullopt;
+}
+
+bool is_in_picture(const Box& box, int width, int height) {
+  const bool sound = std::isfinite(box.x) && std::isfinite(box.y) && box.width > 0 &&
+                     box.height > 0 && std::isfinite(box.right()) && std::isfinite(box.bottom());
+  if (!sound) return false;
+  if (width <= 0 || height <= 0) return true;
+  return box.x < width && box.y < height && box.right() > 0 && box.bottom() > 0;
+}
+
+std::optional<Box> clipped(const Box& box, int width, int height) {
+  if (!is_in_picture(box, width, height)) return std::nullopt;
+  if (width <= 0 || height <= 0) return box;
+  const double x = std::max(box.x, 0.0);
+  const double y = std::max(box.y, 0.0);
+  return Box{
+      x, y, std::min(box.right(), double(width)) - x, std::min(box.bottom(), double(height)) - y};
+}
+
+void LeftOut::add(const std::string& why, const std::string& first) {
+  auto& [count, where] = found_[why];
+  if (count++ == 0) where = first;
+}
+
+LeftOut::~LeftOut() {
+  for (const auto& [why, found] : found_)
+    warn(warn_, fmt::format("left out: {} {} (the first: {})", found.first, why, found.second));
+}
+
+}  // namespace airtruth::exchange

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "labels/exchange/xml_file.h"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
+
+namespace airtruth::exchange {
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0;
+  const char* first = text.data();
+  const char* last = first + text.size();
+  while (first < last && (*first == ' ' || *first == '\n' || *first == '\t' || *first == '\r'))
+    ++first;
+  while (first < last &&
+         (last[-1] == ' ' || last[-1] == '\n' || last[-1] == '\t' || last[-1] == '\r'))
+    --last;
+  const auto [end, failed] = std::from_chars(first, last, value);
+  if (failed != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+XmlFile::XmlFile(const std::filesystem::path& file)
+    : file_(file), text_(read_file(file, std::size_t{4} << 30)) {
+  const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
+  if (!result)
+    throw Error(std::string("is not XML: ") + result.description(),
+                {file.string(), line_of(text_, result.offset)});
+}
+
+pugi::xml_node XmlFile::top(const char* name) const {
+  const pugi::xml_node node = document_.document_element();
+  if (std::string(node.name()) != name)
+    throw Error(
+        "begins with <" + std::string(node.name()).substr(0, 40) + ">; expected <" + name + ">",
+        {file_.string()});
+  return node;
+}
+
+pugi::xml_node XmlFile::child(const pugi::xml_node& node, const char* name) const {
+  const pugi::xml_node found = node.child(name);
+  if (!found) fail(node, std::string("has no <") + name + ">");
+  return found;
+}
+
+double XmlFile::number(const pugi::xml_node& node, const char* name) const {
+  const auto value = number_in(child(node, name).child_value());
+  if (!value) fail(node, std::string("<") + name + "> is not a number");
+  return *value;
+}
+
+double XmlFile::attribute(const pugi::xml_node& node, const char* name) const {
+  const auto value = number_in(node.attribute(name).value());
+  if (!value) fail(node, std::string(name) + " is not a number");
+  return *value;
+}
+
+void XmlFile::fail(const pugi::xml_node& node, const std::string& what) const {
+  throw Error("<" + std::string(node.name()) + "> " + what,
+              {file_.string(), line_of(text_, node.offset_debug())});
+}
+
+std::string text_of(const pugi::xml_document& document) {
+  std::ostringstream out;
+  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+  return out.str();
+}
+
+std::string bare_text_of(const pugi::xml_document& document) {
+  std::ostringstream out;
+  document.save(out, "\t", pugi::format_default | pugi::format_no_declaration, pugi::encoding_utf8);
+  return out.str();
+}
+
+}  // namespace airtruth::exchange

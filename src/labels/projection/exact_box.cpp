@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "labels/projection/exact_box.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::projection {
+namespace {
+
+std::optional<Pixel> pixel_from_cam(const Sight& sight, const Vector3& p_in_cam) {
+  const auto nominal = sight.lens->pixel_from_cam(p_in_cam);
+  if (!nominal) return std::nullopt;
+  // A homography has a horizon, and the image lies on one side of it.
+  const auto size = sight.lens->size();
+  const double w_of_image =
+      (sight.frame_from_nominal.row(2) * Vector3(size.width / 2.0, size.height / 2.0, 1)).value();
+  const Vector3 q = sight.frame_from_nominal * Vector3(nominal->x(), nominal->y(), 1);
+  if (!(q.z() * w_of_image > 0)) return std::nullopt;
+  const Pixel pixel(q.x() / q.z(), q.y() / q.z());
+  return pixel.allFinite() ? std::optional(pixel) : std::nullopt;
+}
+
+// Adds the silhouette at one moment.
+void add_instant(const Sight& sight,
+                 const SilhouettePoints& silhouette,
+                 const Rigid& world_from_body,
+                 double time_s,
+                 BoxBounds& bounds,
+                 bool& partly_unseen) {
+  const Rigid cam_from_body = sight.cam_from_world * world_from_body;
+  const Matrix3 rotation = cam_from_body.rotation.toRotationMatrix();
+  for (std::size_t part = 0; part < silhouette.points.size(); ++part) {
+    const Eigen::Affine3d body_from_part =
+        aircraft::body_from_part(silhouette.mesh->parts[part], time_s).cast<double>();
+    const Matrix3 cam_from_part = rotation * body_from_part.linear();
+    const Vector3 part_in_cam = rotation * body_from_part.translation() + cam_from_body.translation;
+    for (const Eigen::Vector3f& point : silhouette.points[part]) {
+      const auto pixel = pixel_from_cam(sight, cam_from_part * point.cast<double>() + part_in_cam);
+      if (pixel)
+        bounds.add(*pixel);
+      else
+        partly_unseen = true;
+    }
+  }
+}
+
+// The path of one point over the picture during the exposure: a parabola through three projections,
+// on which the row time is solved.
+class Sweep {
+ public:
+  Sweep(const Sight& sight, const Twist& body, const Rigid& world_from_body)
+      : shutter_(sight.shutter), size_(sight.lens->size()) {
+    half_s_ = 0.5 * (shutter_.exposure_s + shutter_.readout_s);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double dt_s = (static_cast<double>(k) - 1) * half_s_;
+      sights_[k] = sight.at(dt_s);
+      cam_from_body_[k] = sights_[k].cam_from_world * carried(world_from_body, body, dt_s);
+      rotation_[k] = cam_from_body_[k].rotation.toRotationMatrix();
+    }
+  }
+
+  void add(const Vector3& p_in_body, BoxBounds& bounds, bool& partly_unseen) const {
+    std::array<Pixel, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto pixel =
+          pixel_from_cam(sights_[k], rotation_[k] * p_in_body + cam_from_body_[k].translation);
+      if (!pixel) {
+        partly_unseen = true;
+        return;
+      }
+      at[k] = *pixel;
+    }
+    if (is_within(at, bounds)) return;
+    // Number of steps of the exposure.
+    constexpr int kSteps = 4;
+    for (int step = 0; step <= kSteps; ++step) {
+      const double into_exposure_s =
+          shutter_.exposure_s * (static_cast<double>(step) / kSteps - 0.5);
+      bounds.add(seen(at, into_exposure_s));
+    }
+  }
+
+ private:
+  // True where the path, at any time of the exposure and of the readout, lies inside the bounds: it
+  // does where the control points of its Bezier form do.
+  static bool is_within(const std::array<Pixel, 3>& at, const BoxBounds& bounds) {
+    constexpr double kRoundingPx = 1e-6;
+    const Pixel control = 2 * at[1] - 0.5 * (at[0] + at[2]);
+    const Pixel low = at[0].cwiseMin(at[2]).cwiseMin(control) - Pixel::Constant(kRoundingPx);
+    const Pixel high = at[0].cwiseMax(at[2]).cwiseMax(control) + Pixel::Constant(kRoundingPx);
+    const auto box = bounds.box();
+    return box && low.x() >= box->x && low.y() >= box->y && high.x() <= box->right() &&
+           high.y() <= box->bottom();
+  }
+
+  Pixel along(const std::array<Pixel, 3>& at, double dt_s) const {
+    // From -1 to 1.
+    const double u = half_s_ > 0 ? dt_s / half_s_ : 0;
+    return at[1] + 0.5 * u * (at[2] - at[0]) + 0.5 * u * u * (at[2] - 2 * at[1] + at[0]);
+  }
+
+  // Row times are treated as linear over the rows: a box is not more accurate than its row.
+  Pixel seen(const std::array<Pixel, 3>& at, double into_exposure_s) const {
+    Pixel pixel = along(at, into_exposure_s);
+    if (shutter_.readout_s <= 0) return pixel;
+    constexpr int kRounds = 6;
+    for (int round = 0; round < kRounds; ++round) {
+      const Pixel inside(std::clamp(pixel.x(), 0.0, double(size_.width)),
+                         std::clamp(pixel.y(), 0.0, double(size_.height)));
+      pixel = along(at, into_exposure_s + shutter_.middle_s(inside, size_.width, size_.height));
+    }
+    return pixel;
+  }
+
+  Shutter shutter_;
+  lens::ImageSize size_;
+  double half_s_ = 0;
+  std::array<Sight, 3> sights_;
+  std::array<Rigid, 3> cam_from_body_;
+  std::array<Matrix3, 3> rotation_;
+};
+
+// A part that spins or swings passes through many angles during the exposure. So many angles are
+// taken that neighbours are a few degrees apart, and the part counts as present at each of them all
+// the time.
+constexpr double kSpinStepTurns = 1.0 / 120;
+constexpr int kMaxSpinSteps = 120;
+
+void add_swept(const Sight& sight,
+               const SilhouettePoints& silhouette,
+               const Rigid& world_from_body,
+               double time_s,
+               const Twist& body,
+               BoxBounds& bounds,
+               bool& partly_unseen) {
+  const Sweep sweep(sight, body, world_from_body);
+  const double open_s = sight.shutter.exposure_s + sight.shutter.readout_s;
+  for (std::size_t i = 0; i < silhouette.points.size(); ++i) {
+    const aircraft::Part& part = silhouette.mesh->parts[i];
+    const double turns = aircraft::fastest_turn_per_s(part) * open_s;
+    const int steps =
+        1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
+    for (int step = 0; step < steps; ++step) {
+      const double dt_s = steps > 1 ? open_s * (double(step) / (steps - 1) - 0.5) : 0;
+      const Eigen::Affine3d body_from_part =
+          aircraft::body_from_part(part, time_s + dt_s).cast<double>();
+      for (const Eigen::Vector3f& point : silhouette.points[i]) {
+        sweep.add(body_from_part * point.cast<double>(), bounds, partly_unseen);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Sight Sight::at(double dt_s) const {
+  Sight moved = *this;
+  moved.cam_from_world = carried(cam_from_world.inverse(), camera, dt_s).inverse();
+  moved.frame_from_nominal += dt_s * frame_from_nominal_per_s;
+  return moved;
+}
+
+std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_world) {
+  return pixel_from_cam(sight, sight.cam_from_world * p_in_world);
+}
+
+ExactBox exact_box(const Sight& sight,
+                   const SilhouettePoints& silhouette,
+                   const Rigid& world_from_body,
+                   double time_s,
+                   const Twist& body) {
+  check(silhouette.mesh && silhouette.points.size() == silhouette.mesh->parts.size(),
+        "a silhouette has the parts of its mesh");
+  BoxBounds bounds;
+  ExactBox result;
+  if (sight.shutter.is_instant())
+    add_instant(sight, silhouette, world_from_body, time_s, bounds, result.partly_unseen);
+  else
+    add_swept(sight, silhouette, world_from_body, time_s, body, bounds, result.partly_unseen);
+  result.box = bounds.box();
+  return result;
+}
+
+}  // namespace airtruth::projection

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// ArduPilot DataFlash logs (.bin). Source: ArduPilot developer documentation, "Log File Format" and
+// the list of log messages: FMT describes every other message; POS, GPS, ATT, IMU are read.
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "scene/flight_log/builder.h"
+#include "scene/flight_log/formats.h"
+#include "scene/flight_log/little_endian.h"
+
+namespace airtruth::flight_log {
+namespace {
+
+constexpr char kHead1 = '\xa3', kHead2 = '\x95';
+constexpr std::uint8_t kFormatType = 128;
+constexpr std::size_t kHeadBytes = 3;
+constexpr std::size_t kFormatBytes = 89;  // head, type, length, name[4], format[16], labels[64]
+constexpr double kStatusFix3d = 3;        // GPS.Status
+
+// The bytes and the factor of one letter of a format.
+struct Letter {
+  std::size_t size = 0;
+  double scale = 1;
+};
+
+std::optional<Letter> letter_of(char c) {
+  switch (c) {
+    case 'b':
+    case 'B':
+    case 'M':
+      return Letter{1};
+    case 'h':
+    case 'H':
+    case 'g':
+      return Letter{2};
+    case 'i':
+    case 'I':
+    case 'f':
+    case 'n':
+      return Letter{4};
+    case 'c':
+    case 'C':
+      return Letter{2, 0.01};
+    case 'e':
+    case 'E':
+      return Letter{4, 0.01};
+    case 'L':
+      return Letter{4, 1e-7};
+    case 'd':
+    case 'q':
+    case 'Q':
+      return Letter{8};
+    case 'N':
+      return Letter{16};
+    case 'Z':
+    case 'a':
+      return Letter{64};
+    default:
+      return std::nullopt;
+  }
+}
+
+struct MessageColumn {
+  char letter = 0;
+  std::size_t at = 0;
+};
+struct Kind {
+  std::string name;
+  std::size_t length = 0;  // of the whole message
+  std::map<std::string, MessageColumn, std::less<>> columns;
+};
+
+std::string_view until_zero(std::string_view text) { return text.substr(0, text.find('\0')); }
+
+// The kind of message that an FMT message describes; empty where its letters and labels disagree
+// with its length.
+std::optional<Kind> kind_of(std::string_view body) {
+  Kind kind;
+  kind.length = static_cast<std::uint8_t>(body[1]);
+  kind.name = until_zero(body.substr(2, 4));
+  const std::string_view letters = until_zero(body.substr(6, 16));
+  std::string_view labels = until_zero(body.substr(22, 64));
+  std::size_t at = kHeadBytes;
+  for (const char c : letters) {
+    const auto letter = letter_of(c);
+    if (!letter || labels.empty()) return std::nullopt;
+    const std::size_t comma = std::min(labels.find(','), labels.size());
+    kind.columns[std::string(labels.substr(0, comma))] = {c, at};
+    labels.remove_prefix(std::min(comma + 1, labels.size()));
+    at += letter->size;
+  }
+  return at == kind.length ? std::optional(kind) : std::nullopt;
+}
+
+double number_at(std::string_view message, const MessageColumn& column) {
+  const double scale = letter_of(column.letter)->scale;
+  switch (column.letter) {
+    case 'b':
+      return little_endian<std::int8_t>(message, column.at);
+    case 'B':
+    case 'M':
+      return little_endian<std::uint8_t>(message, column.at);
+    case 'h':
+    case 'c':
+      return scale * little_endian<std::int16_t>(message, column.at);
+    case 'H':
+    case 'C':
+      return scale * little_endian<std::uint16_t>(message, column.at);
+    case 'i':
+    case 'e':
+    case 'L':
+      return scale * little_endian<std::int32_t>(message, column.at);
+    case 'I':
+    case 'E':
+      return scale * little_endian<std::uint32_t>(message, column.at);
+    case 'f':
+      return little_endian<float>(message, column.at);
+    case 'd':
+      return little_endian<double>(message, column.at);
+    case 'q':
+      return static_cast<double>(little_endian<std::int64_t>(message, column.at));
+    case 'Q':
+      return static_cast<double>(little_endian<std::uint64_t>(message, column.at));
+    default:
+      return NAN;
+  }
+}
+
+class DataFlashReader {
+ public:
+  DataFlashReader(std::string_view bytes, std::string file)
+      : bytes_(bytes), file_(std::move(file)) {
+    log_.format = Format::kDataFlash;
+  }
+
+  FlightLog read() {
+    std::size_t at = 0;
+    while (bytes_.size() - at >= kHeadBytes) {
+      if (bytes_[at] != kHead1 || bytes_[at + 1] != kHead2) {
+        // A logger that lost a block of memory goes on with the next message.
+        ++at;
+        continue;
+      }
+      const std::size_t length = length_at(at);
+      if (length == 0) {
+        ++at;
+        continue;
+      }
+      if (bytes_.size() - at < length) break;  // the log ends where the battery was taken out
+      message(bytes_.substr(at, length), at);
+      at += length;
+    }
+    choose_positions();
+    return from_first_record(std::move(log_));
+  }
+
+ private:
+  // The length of the message at a byte; 0 where its type is not known.
+  std::size_t length_at(std::size_t at) const {
+    const auto type = static_cast<std::uint8_t>(bytes_[at + 2]);
+    if (type == kFormatType) return kFormatBytes;
+    const auto kind = kinds_.find(type);
+    return kind == kinds_.end() ? 0 : kind->second.length;
+  }
+
+  void message(std::string_view bytes, std::size_t at) {
+    const auto type = static_cast<std::uint8_t>(bytes[2]);
+    if (type == kFormatType) {
+      const auto kind = kind_of(bytes.substr(kHeadBytes));
+      if (kind) kinds_[static_cast<std::uint8_t>(bytes[kHeadBytes])] = *kind;
+      return;
+    }
+    const Kind& kind = kinds_.find(type)->second;
+    const auto number = [&](std::string_view label) -> std::optional<double> {
+      const auto column = kind.columns.find(label);
+      if (column == kind.columns.end()) return std::nullopt;
+      return number_at(bytes, column->second);
+    };
+    const auto microseconds = number("TimeUS");
+    if (!microseconds) return;
+    // Messages of a second GPS or inertial unit have an instance above 0.
+    if (number("I").value_or(0) != 0) return;
+    const Where where{fmt::format("{} (byte {})", file_, at)};
+    const double time_s = *microseconds * 1e-6;
+    if (kind.name == "POS") add_position(position_, number, time_s, where);
+    if (kind.name == "GPS") {
+      if (number("Status").value_or(0) < kStatusFix3d) return void(++satellite_.left_out);
+      add_position(satellite_, number, time_s, where);
+    }
+    if (kind.name == "ATT") add_angles(number, time_s, where);
+    if (kind.name == "IMU") add_rate(number, time_s, where);
+  }
+
+  template <typename Number>
+  static void add_position(FlightLog& log,
+                           const Number& number,
+                           double time_s,
+                           const Where& where) {
+    const auto latitude = number("Lat"), longitude = number("Lng"), altitude = number("Alt");
+    if (!latitude || !longitude || !altitude) return;
+    add_fix(log, {time_s, *latitude, *longitude, *altitude, number("RelHomeAlt")}, where);
+  }
+
+  template <typename Number>
+  void add_angles(const Number& number, double time_s, const Where& where) {
+    const auto yaw = number("Yaw"), pitch = number("Pitch"), roll = number("Roll");
+    if (yaw && pitch && roll) add_attitude(log_, {time_s, {*yaw, *pitch, *roll}}, where);
+  }
+
+  template <typename Number>
+  void add_rate(const Number& number, double time_s, const Where& where) {
+    const auto x = number("GyrX"), y = number("GyrY"), z = number("GyrZ");
+    if (x && y && z) add_rates(log_, {time_s, {*x, *y, *z}}, where);
+  }
+
+  // The estimator's positions, else those of the satellites.
+  void choose_positions() {
+    const FlightLog& chosen = position_.fixes.size() >= 2 ? position_ : satellite_;
+    log_.fixes = chosen.fixes;
+    log_.left_out += chosen.left_out;
+  }
+
+  std::string_view bytes_;
+  std::string file_;
+  std::map<std::uint8_t, Kind> kinds_;
+  FlightLog log_, position_, satellite_;
+};
+
+}  // namespace
+
+bool is_dataflash(std::string_view content) {
+  return content.size() >= kHeadBytes && content[0] == kHead1 && content[1] == kHead2 &&
+         static_cast<std::uint8_t>(content[2]) == kFormatType;
+}
+
+FlightLog from_dataflash(std::string_view bytes, const std::string& file) {
+  return DataFlashReader(bytes, file).read();
+}
+
+}  // namespace airtruth::flight_log

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/flight_log/flight_log.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::flight_log {
+namespace {
+
+std::string error_of(std::string_view text, const char* name) {
+  try {
+    parse_flight_log(text, name);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(DjiSubtitles, TheKeysOfTodaysFirmwareAreRead) {
+  const FlightLog log = parse_flight_log(
+      "1\r\n00:00:00,000 --> 00:00:00,033\r\n<font size=\"28\">FrameCnt: 1, DiffTime: 33ms\r\n"
+      "2023-05-06 12:00:00.123\r\n[iso: 100] [shutter: 1/1000.0] [latitude: 47.123456] [longitude: "
+      "8.5] "
+      "[rel_alt: 30.300 abs_alt: 500.100] [gb_yaw: 12.5 gb_pitch: -10.0 gb_roll: 0.5] "
+      "</font>\r\n\r\n"
+      "2\r\n00:01:02,040 --> 00:01:02,073\r\n[latitude: 47.123457] [longitude: 8.6] "
+      "[rel_alt: 31.0 abs_alt: 501.0] [gb_yaw: 13 gb_pitch: -11 gb_roll: 0]\r\n",
+      "a.srt");
+  EXPECT_EQ(log.format, Format::kDjiSubtitles);
+  EXPECT_TRUE(log.is_on_video_clock);
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(log.fixes[0].latitude_deg, 47.123456);
+  EXPECT_DOUBLE_EQ(log.fixes[0].altitude_m, 500.1);
+  EXPECT_DOUBLE_EQ(log.fixes[0].height_m.value(), 30.3);
+  EXPECT_DOUBLE_EQ(log.fixes[1].time_s, 62.04);
+  ASSERT_EQ(log.attitudes.size(), 2u);
+  EXPECT_DOUBLE_EQ(log.attitudes[0].angles.yaw_deg, 12.5);
+  EXPECT_DOUBLE_EQ(log.attitudes[0].angles.pitch_deg, -10);
+}
+
+TEST(DjiSubtitles, OlderTextsStateLongitudeFirst) {
+  const FlightLog mini = parse_flight_log(
+      "1\n00:00:00,000 --> 00:00:01,000\nF/2.8, SS 206.14, ISO 150, EV 0, GPS (-122.1669, 37.4243, "
+      "16), "
+      "D 26.5m, H 6.00m, H.S 2.10m/s, V.S 0.30m/s\n\n"
+      "2\n00:00:01,000 --> 00:00:02,000\nF/2.8, SS 206.14, ISO 150, EV 0, GPS (-122.1670, 37.4244, "
+      "16), "
+      "D 26.5m, H 7.50m, H.S 2.10m/s, V.S 0.30m/s\n",
+      "a.srt");
+  ASSERT_EQ(mini.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(mini.fixes[0].latitude_deg, 37.4243);
+  EXPECT_DOUBLE_EQ(mini.fixes[0].longitude_deg, -122.1669);
+  EXPECT_DOUBLE_EQ(mini.fixes[1].height_m.value(), 7.5);
+  const FlightLog phantom = parse_flight_log(
+      "1\n00:00:00,000 --> 00:00:01,000\nHOME(8.1,47.1) 2017.08.05 14:11:51\nGPS(8.2,47.2,16) "
+      "BAROMETER:91.2\n"
+      "ISO:100 Shutter:60 EV: Fnum:F2.8\n\n"
+      "2\n00:00:01,000 --> 00:00:02,000\nHOME(8.1,47.1) 2017.08.05 14:11:52\nGPS(8.3,47.2,16) "
+      "BAROMETER:91.4\n",
+      "a.srt");
+  ASSERT_EQ(phantom.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(phantom.fixes[1].longitude_deg, 8.3);
+  EXPECT_DOUBLE_EQ(phantom.fixes[1].altitude_m, 91.4);
+}
+
+TEST(DjiSubtitles, AHeightInBracketsComesWithLatitudeFirstAndTheGimbalAsPitchRollYaw) {
+  const FlightLog matrice = parse_flight_log(
+      "1\n00:00:00,000 --> 00:00:01,000\n2022.06.21 16:06:17\nGPS(36.6,-6.1,0.0M) "
+      "BAROMETER:0.3M\n\n"
+      "2\n00:00:01,000 --> 00:00:02,000\n2022.06.21 16:06:18\nGPS(36.7,-6.2,0.0M) BAROMETER:1.3M\n",
+      "a.srt");
+  EXPECT_DOUBLE_EQ(matrice.fixes[1].latitude_deg, 36.7);
+  EXPECT_DOUBLE_EQ(matrice.fixes[1].height_m.value(), 1.3);
+  const FlightLog rtk = parse_flight_log(
+      "1\n00:15:04,904 --> 00:15:05,905\nF/5.6, EV +0.7, GPS (-59.409424, -34.650200, 16), HOME "
+      "(-59.407880, "
+      "-34.650736, 7.60m), D 153.32m, H 17.39m, H.S 1.84m/s, F.PRY (-8.9\xc2\xb0, 2.9\xc2\xb0, "
+      "-75.0\xc2\xb0), "
+      "G.PRY (-27.3\xc2\xb0, 0.5\xc2\xb0, -76.0\xc2\xb0)\n\n2\n00:15:05,905 --> 00:15:06,906\nGPS "
+      "(-59.409447, "
+      "-34.650195, 16), H 17.33m\n",
+      "a.srt");
+  ASSERT_EQ(rtk.attitudes.size(), 1u);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.yaw_deg, -76);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.pitch_deg, -27.3);
+  EXPECT_DOUBLE_EQ(rtk.attitudes[0].angles.roll_deg, 0.5);
+  EXPECT_DOUBLE_EQ(rtk.fixes[0].latitude_deg, -34.6502);
+  EXPECT_DOUBLE_EQ(rtk.fixes[0].height_m.value(), 17.39);
+}
+
+TEST(DjiSubtitles, FramesWithoutSatellitesAreLeftOutAndBadTimesNamed) {
+  EXPECT_EQ(error_of("1\n00:00:00,000 --> 00:00:00,033\n[latitude: 0.0] [longitude: 0.0] [rel_alt: "
+                     "1 abs_alt: 1]\n",
+                     "a.srt"),
+            "a.srt: holds 0 positions (DJI subtitles, 1 records left out); expected at least two");
+  EXPECT_EQ(error_of("1\n00:0x --> 00:00:00,033\n", "a.srt"),
+            "a.srt:2: time is '00:0x '; expected one such as 00:01:02,033");
+  EXPECT_EQ(
+      error_of("1\n00:00:00,000 --> 00:00:00,033\n[latitude: 95] [longitude: 0.0] [rel_alt: 1]\n",
+               "a.srt"),
+      "a.srt:2: latitude is 95; expected -90 to 90 degrees");
+}
+
+TEST(Gpx, PointsWithTimesOfAnyZoneAreRead) {
+  const FlightLog log = parse_flight_log(
+      R"(<?xml version="1.0"?>
+<gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
+<trkpt lat="47.5" lon="8.25"><ele>500.5</ele><time>2024-02-28T23:59:59.500Z</time></trkpt>
+<trkpt lat="47.6" lon="8.26"><ele>501</ele><time>2024-02-29T02:00:01+02:00</time></trkpt>
+<trkpt lat="47.6" lon="8.26"><ele>501</ele><time>2024-02-29T00:00:01Z</time></trkpt>
+</trkseg></trk></gpx>)",
+      "a.gpx");
+  EXPECT_EQ(log.format, Format::kGpx);
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(log.fixes[0].time_s, 0);
+  EXPECT_DOUBLE_EQ(log.fixes[1].time_s, 1.5);
+  EXPECT_DOUBLE_EQ(log.fixes[1].longitude_deg, 8.26);
+  EXPECT_EQ(log.left_out, 1);  // the same time twice
+}
+
+TEST(Gpx, WhatAPointLacksIsAnErrorAtItsLine) {
+  const std::string head = "<gpx>\n<trk><trkseg>\n";
+  EXPECT_EQ(
+      error_of(head + "<trkpt lat=\"47\" "
+                      "lon=\"8\"><time>2024-05-17T08:30:05Z</time></trkpt></trkseg></trk></gpx>",
+               "a.gpx"),
+      "a.gpx:3: <trkpt> has no <ele>; expected a height in each point");
+  EXPECT_EQ(error_of(head + "<trkpt lat=\"47\" "
+                            "lon=\"8\"><ele>1</ele><time>noon</time></trkpt></trkseg></trk></gpx>",
+                     "a.gpx"),
+            "a.gpx:3: <time> is 'noon'; expected a time such as 2024-05-17T08:30:05Z");
+  EXPECT_EQ(error_of(head + "<trkpt lat=\"x\" lon=\"8\"/></trkseg></trk></gpx>", "a.gpx"),
+            "a.gpx:3: lat is 'x'; expected a number");
+  EXPECT_THAT(error_of(head + "<trkpt", "a.gpx"), testing::StartsWith("a.gpx:3: is no XML: "));
+}
+
+TEST(CsvLog, OptionalColumnsComeInGroups) {
+  const FlightLog log = parse_flight_log(
+      "time_s,altitude_m,latitude_deg,longitude_deg,yaw_deg,pitch_deg,roll_deg,rate_x_radps,rate_y_"
+      "radps,rate_z_radps\n"
+      "0,500,47,8,359,1,2,0.1,0.2,0.3\n0.5,501,47.001,8.001,1,1,2,0.1,0.2,0.3\n",
+      "a.csv");
+  EXPECT_EQ(log.format, Format::kCsv);
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_FALSE(log.fixes[0].height_m);
+  EXPECT_DOUBLE_EQ(log.attitudes[0].angles.yaw_deg, 359);
+  EXPECT_DOUBLE_EQ(log.rates[1].in_body_radps.z(), 0.3);
+  const std::string head = "time_s,latitude_deg,longitude_deg,altitude_m";
+  EXPECT_EQ(error_of(head + ",yaw_deg\n", "a.csv"), "a.csv:1: has no column pitch_deg");
+  EXPECT_EQ(error_of("time_s,lattitude_deg,longitude_deg,altitude_m\n", "a.csv"),
+            "a.csv:1: unknown column 'lattitude_deg'; did you mean 'latitude_deg'?");
+  EXPECT_EQ(error_of(head + "\n0,47,8,5\n0,47,8,5\n", "a.csv"),
+            "a.csv:3: time_s is 0, not after the row before; expected times that increase");
+  EXPECT_EQ(error_of(head + "\n0,47,8\n", "a.csv"), "a.csv:2: has no value for altitude_m");
+  EXPECT_EQ(error_of(head + "\n0,47,8,5\n", "a.csv"),
+            "a.csv: holds 1 position (CSV); expected at least two");
+}
+
+TEST(FlightLog, OtherFilesAreRefused) {
+  EXPECT_EQ(error_of("", "a.bin"), "a.bin: is empty; expected a flight log");
+  EXPECT_THAT(error_of("\x7f"
+                       "ELF",
+                       "a.bin"),
+              testing::StartsWith("a.bin: is no flight log that airtruth reads"));
+}
+
+}  // namespace
+}  // namespace airtruth::flight_log

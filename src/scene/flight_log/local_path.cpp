@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/flight_log/local_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::flight_log {
+namespace {
+
+// Frames before the first record and after the last one take the path on for so long: a log of one
+// record a second ends up to a second before its video.
+constexpr double kMaxExtensionS = 1.5;
+
+template <typename Record>
+std::size_t after(const std::vector<Record>& records, double time_s) {
+  const auto later =
+      std::upper_bound(records.begin(), records.end(), time_s, [](double t, const Record& r) {
+        return t < r.time_s;
+      });
+  return static_cast<std::size_t>(later - records.begin());
+}
+
+// A value between the two records around a time, or of the nearest one outside of them.
+template <typename Record, typename Value>
+auto between(const std::vector<Record>& records, double time_s, const Value& value) {
+  const std::size_t next = after(records, time_s);
+  if (next == 0) return value(records.front());
+  if (next == records.size()) return value(records.back());
+  const Record &a = records[next - 1], &b = records[next];
+  const double share = (time_s - a.time_s) / (b.time_s - a.time_s);
+  const auto before = value(a);
+  return decltype(before)(before + share * (value(b) - before));
+}
+
+double nearest_turn(double angle_deg, double before_deg) {
+  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
+}
+
+void require_covered(const FlightLog& log, double offset_s) {
+  const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
+  if (offset_s >= first_s - kMaxExtensionS && offset_s <= last_s + kMaxExtensionS) return;
+  throw Error(fmt::format(
+      "the log's positions go from {:.2f} to {:.2f} s, and the clip begins at {:.3f} s of the log; "
+      "expected a log of the same flight, or another log_offset_s",
+      first_s,
+      last_s,
+      offset_s));
+}
+
+// The positions in the plane that touches the ellipsoid at the clip's first position. Positions
+// within half a second count as one, at the mean of their times: DJI's subtitles repeat a position
+// of 0.1 m of resolution in every frame, and a spline through each would shake. An acceleration of
+// 5 m/s2 moves the mean by 0.05 m.
+trajectory::Samples local_positions(const FlightLog& log, const Placement& placement) {
+  constexpr double kBinS = 0.5;
+  const Fix& first =
+      log.fixes[std::min(after(log.fixes, placement.offset_s), log.fixes.size() - 1)];
+  const GeographicLib::LocalCartesian local(
+      first.latitude_deg, first.longitude_deg, first.altitude_m);
+  trajectory::Samples samples;
+  double bin = 0, members = 0;
+  for (const Fix& fix : log.fixes) {
+    const double time_s = fix.time_s - placement.offset_s;
+    double east = 0, north = 0, up = 0;
+    local.Forward(fix.latitude_deg, fix.longitude_deg, fix.altitude_m, east, north, up);
+    const Vector3 position(north, east, -up);
+    if (samples.times_s.empty() || std::floor(time_s / kBinS) != bin) {
+      samples.times_s.push_back(time_s);
+      samples.positions_ned_m.push_back(position);
+      bin = std::floor(time_s / kBinS), members = 1;
+    } else {
+      ++members;
+      samples.times_s.back() += (time_s - samples.times_s.back()) / members;
+      samples.positions_ned_m.back() += (position - samples.positions_ned_m.back()) / members;
+    }
+  }
+  return samples;
+}
+
+// No aircraft needs more, and the world of a scene ends at such speeds (scene::kSpeed).
+constexpr double kFastestMps = 1e4;
+
+void require_flyable(const trajectory::Samples& samples, double offset_s) {
+  for (std::size_t i = 1; i < samples.times_s.size(); ++i) {
+    const double step_m = (samples.positions_ned_m[i] - samples.positions_ned_m[i - 1]).norm();
+    const double step_s = samples.times_s[i] - samples.times_s[i - 1];
+    if (!(step_m <= kFastestMps * step_s))
+      throw Error(
+          fmt::format("the log's positions jump {:.0f} m in {:.2f} s at {:.2f} s of the "
+                      "log; expected less than {:.0f} m/s",
+                      step_m,
+                      step_s,
+                      samples.times_s[i] + offset_s,
+                      kFastestMps));
+  }
+}
+
+// Adds positions at constant velocity before the first one and after the last one.
+void extend(trajectory::Samples& samples) {
+  auto& times = samples.times_s;
+  auto& positions = samples.positions_ned_m;
+  const std::size_t n = times.size();
+  const auto velocity = [&](std::size_t a, std::size_t b) -> Vector3 {
+    return (positions[b] - positions[a]) / (times[b] - times[a]);
+  };
+  const Vector3 before = positions[0] - kMaxExtensionS * velocity(0, 1);
+  const Vector3 behind = positions[n - 1] + kMaxExtensionS * velocity(n - 2, n - 1);
+  times.push_back(times.back() + kMaxExtensionS);
+  positions.push_back(behind);
+  times.insert(times.begin(), times.front() - kMaxExtensionS);
+  positions.insert(positions.begin(), before);
+}
+
+}  // namespace
+
+trajectory::Path local_path(const FlightLog& log,
+                            const Placement& placement,
+                            const trajectory::AttitudeOverride& stated) {
+  require_covered(log, placement.offset_s);
+  trajectory::Samples samples = local_positions(log, placement);
+  if (samples.times_s.size() < 2)
+    throw Error(
+        "the log's positions span less than half a second; expected one a second or "
+        "more");
+  require_flyable(samples, placement.offset_s);
+  extend(samples);
+  if (!log.attitudes.empty()) {
+    samples.has_angle = {true, true, true};
+    for (const double time_s : samples.times_s) {
+      const YawPitchRoll a = *attitude_at(log, time_s + placement.offset_s);
+      samples.angles_deg.emplace_back(a.yaw_deg, a.pitch_deg, a.roll_deg);
+    }
+  }
+  const Vector3 first = trajectory::path_through_samples(samples).at(0)->position_in_world;
+  for (Vector3& position : samples.positions_ned_m)
+    position += placement.first_position_ned_m - first;
+  return trajectory::path_through_samples(samples, stated);
+}
+
+std::optional<double> height_at(const FlightLog& log, double time_s) {
+  if (log.fixes.empty()) return std::nullopt;
+  const std::size_t next = after(log.fixes, time_s);
+  const Fix& before = log.fixes[next == 0 ? 0 : next - 1];
+  const Fix& later = log.fixes[std::min(next, log.fixes.size() - 1)];
+  if (!before.height_m || !later.height_m) return std::nullopt;
+  return between(log.fixes, time_s, [](const Fix& fix) { return fix.height_m.value_or(0.0); });
+}
+
+std::optional<YawPitchRoll> attitude_at(const FlightLog& log, double time_s) {
+  if (log.attitudes.empty()) return std::nullopt;
+  const std::size_t next = after(log.attitudes, time_s);
+  const YawPitchRoll a = log.attitudes[next == 0 ? 0 : next - 1].angles;
+  const Vector3 angles = between(log.attitudes, time_s, [&](const Attitude& attitude) {
+    const YawPitchRoll& b = attitude.angles;
+    return Vector3(
+        nearest_turn(b.yaw_deg, a.yaw_deg), b.pitch_deg, nearest_turn(b.roll_deg, a.roll_deg));
+  });
+  return YawPitchRoll{angles.x(), angles.y(), angles.z()};
+}
+
+}  // namespace airtruth::flight_log

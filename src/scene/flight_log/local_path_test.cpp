@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/flight_log/local_path.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::flight_log {
+namespace {
+
+// Radii of curvature of the WGS 84 ellipsoid at a latitude (Torge 2001, eq. 4.15 and 4.16).
+struct Radii {
+  double meridian_m, normal_m;
+};
+Radii radii_at(double latitude_deg) {
+  constexpr double kAxisM = 6378137, kEccentricity2 = 6.69437999014e-3;
+  const double w2 = 1 - kEccentricity2 * std::pow(std::sin(radians(latitude_deg)), 2);
+  return {kAxisM * (1 - kEccentricity2) / std::pow(w2, 1.5), kAxisM / std::sqrt(w2)};
+}
+
+// Flight from 47 degrees north, 8 degrees east at a constant velocity, `rate` fixes a second.
+FlightLog straight(
+    double north_mps, double east_mps, double up_mps, double rate, double resolution_deg = 0) {
+  const Radii radii = radii_at(47);
+  FlightLog log;
+  for (int i = 0; i <= 60 * rate; ++i) {
+    const double t = i / rate;
+    Fix fix;
+    fix.time_s = t;
+    fix.latitude_deg = 47 + degrees(north_mps * (t - 20) / (radii.meridian_m + 500));
+    fix.longitude_deg =
+        8 + degrees(east_mps * (t - 20) / ((radii.normal_m + 500) * std::cos(radians(47))));
+    if (resolution_deg > 0) {
+      fix.latitude_deg = resolution_deg * std::round(fix.latitude_deg / resolution_deg);
+      fix.longitude_deg = resolution_deg * std::round(fix.longitude_deg / resolution_deg);
+    }
+    fix.altitude_m = 500 + up_mps * (t - 20);
+    fix.height_m = 80 + up_mps * (t - 20);
+    log.fixes.push_back(fix);
+  }
+  return log;
+}
+
+TEST(LocalPath, MetresFollowFromTheEllipsoidsRadii) {
+  for (const double rate : {1.0, 10.0, 30.0}) {
+    const auto path = local_path(straight(30, -20, 2, rate), {20, {100, 200, -80}});
+    EXPECT_NEAR((path.at(0)->position_in_world - Vector3(100, 200, -80)).norm(), 0, 1e-9);
+    // Over some hundred metres the plane leaves the ellipsoid by millimetres.
+    EXPECT_NEAR((path.at(10)->position_in_world - Vector3(400, 0, -100)).norm(), 0, 0.02) << rate;
+    EXPECT_NEAR((path.at(5)->velocity_in_world_mps - Vector3(30, -20, -2)).norm(), 0, 0.01);
+    EXPECT_NEAR(
+        yaw_pitch_roll(path.at(5)->world_from_body).yaw_deg, degrees(std::atan2(-20, 30)), 0.02);
+  }
+}
+
+TEST(LocalPath, APositionOfOneMicrodegreeDoesNotShake) {
+  const auto path = local_path(straight(12, 9, 0, 30, 1e-6), {20, {0, 0, 0}});
+  for (double t = 0.5; t <= 9.5; t += 0.1) {
+    EXPECT_LT((path.at(t)->velocity_in_world_mps - Vector3(12, 9, 0)).norm(), 0.25);
+    EXPECT_LT((path.at(t)->position_in_world - Vector3(12 * t, 9 * t, 0)).norm(), 0.1);
+  }
+}
+
+TEST(LocalPath, AttitudesAreInterpolatedAcrossNorth) {
+  FlightLog log = straight(30, 0, 0, 5);
+  for (int i = 0; i <= 60; ++i)
+    log.attitudes.push_back({double(i), {std::fmod(330.0 + i, 360.0), 2, 0}});
+  const auto path = local_path(log, {25.5, {0, 0, 0}});
+  for (const double t : {0.0, 2.0, 4.7, 9.9}) {
+    const double yaw = yaw_pitch_roll(path.at(t)->world_from_body).yaw_deg;
+    EXPECT_NEAR(std::remainder(yaw - (355.5 + t), 360.0), 0, 0.01) << t;
+  }
+  EXPECT_NEAR(attitude_at(log, 30.5)->pitch_deg, 2, 1e-12);
+  EXPECT_NEAR(height_at(straight(0, 10, 2, 1), 25).value(), 90, 1e-9);
+}
+
+TEST(LocalPath, AJumpAcrossTheWorldIsRefused) {
+  FlightLog log = straight(30, -20, 2, 1);
+  log.fixes[31].latitude_deg += 2;
+  try {
+    local_path(log, {20, {0, 0, 0}});
+    ADD_FAILURE() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                testing::MatchesRegex("the log's positions jump 22[0-9]{4} m in 1.00 s at 31.00 s "
+                                      "of the log; expected less than 10000 m/s"));
+  }
+}
+
+TEST(LocalPath, ALogOfAnotherTimeIsRefused) {
+  const FlightLog log = straight(30, 0, 0, 1);
+  EXPECT_NO_THROW(local_path(log, {-1, {0, 0, 0}}));
+  try {
+    local_path(log, {100, {0, 0, 0}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "the log's positions go from 0.00 to 60.00 s, and the clip begins at 100.000 s of the "
+        "log; expected a log of the same flight, or another log_offset_s");
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::flight_log

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene/camera_keys.h"
+
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/files.h"
+
+// The table of keys against what is outside it: the struct, the files that read the members, the
+// document, and the text of scenes.
+namespace airtruth::scene {
+namespace {
+
+const fs::path kSource = AIRTRUTH_SOURCE_DIR;
+
+std::string type_of(const CameraKey& key) {
+  if (std::holds_alternative<CameraKey::Number>(key.member)) return "number";
+  return std::holds_alternative<CameraKey::Colour>(key.member) ? "[r, g, b]" : "string";
+}
+
+std::string range_of(const CameraKey& key) {
+  if (!std::holds_alternative<CameraKey::Direction>(key.member))
+    return fmt::format("{} to {}", key.limits.low, key.limits.high);
+  std::string words;
+  for (const std::string& word : all_enum_names<Readout>())
+    words += (words.empty() ? "`" : ", `") + word + "`";
+  return words;
+}
+
+std::string table_for_document() {
+  std::string text =
+      "| table | key | type | unit | range | measured by | |\n|---|---|---|---|---|---|---|\n";
+  for (const CameraKey& key : kCameraModelKeys)
+    text += fmt::format("| [{}] | `{}` | {} | {} | {} | {} | {} |\n",
+                        key.table(),
+                        key.key(),
+                        type_of(key),
+                        key.unit,
+                        range_of(key),
+                        key.is_measured() ? key.measured : "never",
+                        key.meaning);
+  return text;
+}
+
+TEST(CameraKeys, EveryFieldOfTheModelHasARow) {
+  // A new field of CameraModel breaks this binding; it then needs a row of its own.
+  const CameraModel model;
+  [[maybe_unused]] const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, automatic] = model;
+  EXPECT_EQ(kCameraModelKeys.size(), 15u);
+  std::set<const void*> members;
+  for (const CameraKey& key : kCameraModelKeys)
+    std::visit([&](auto member) { members.insert(&(model.*member)); }, key.member);
+  EXPECT_EQ(members.size(), kCameraModelKeys.size());
+}
+
+TEST(CameraKeys, TheTableOfSceneMdIsThatOfTheProgram) {
+  const std::string document = read_file(kSource / "docs/formats/scene.md");
+  const std::string begin = "<!-- begin: rows of src/scene/scene/camera_keys.h -->\n";
+  const std::string end = "<!-- end -->\n";
+  const std::size_t from = document.find(begin);
+  const std::size_t to = document.find(end, from);
+  ASSERT_NE(from, std::string::npos);
+  ASSERT_NE(to, std::string::npos);
+  // Where they differ, the text below replaces the rows of the document.
+  EXPECT_EQ(document.substr(from + begin.size(), to - from - begin.size()), table_for_document());
+}
+
+TEST(CameraKeys, TheNamedFileReadsTheMember) {
+  for (const CameraKey& key : kCameraModelKeys) {
+    const fs::path file = kSource / "src" / key.read_by;
+    ASSERT_TRUE(fs::exists(file)) << key.name << ": " << file;
+    EXPECT_NE(read_file(file).find("." + std::string(key.key())), std::string::npos)
+        << file << " does not read " << key.name;
+  }
+}
+
+// A scene with one key of a camera model.
+Scene scene_with(const CameraKey& key, const std::string& value) {
+  return parse_scene(fmt::format("[background]\nvideo = \"clip.mp4\"\n[lens]\nvertical_fov_deg = "
+                                 "60\n[{}]\n{} = {}\n",
+                                 key.table(),
+                                 key.key(),
+                                 value),
+                     "/data/a.toml");
+}
+
+std::string message_of(const CameraKey& key, const std::string& value) {
+  try {
+    scene_with(key, value);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CameraKeys, RangesHoldAndAutoIsForWhatIsMeasured) {
+  for (const CameraKey& key : kCameraModelKeys) {
+    EXPECT_EQ(message_of(key, "\"auto\"").empty(), key.is_measured()) << key.name;
+    if (key.is_measured()) {
+      EXPECT_EQ(scene_with(key, "\"auto\"").camera_model.automatic,
+                std::vector<std::string>{key.name});
+    }
+    if (!std::holds_alternative<CameraKey::Number>(key.member)) continue;
+    EXPECT_EQ(message_of(key, fmt::format("{}", key.limits.high)), "") << key.name;
+    EXPECT_NE(
+        message_of(key, fmt::format("{}", key.limits.high + 1))
+            .find(fmt::format(
+                "{} is {}; expected {}", key.key(), key.limits.high + 1, key.limits.expected)),
+        std::string::npos)
+        << key.name;
+  }
+}
+
+TEST(CameraKeys, AKeyThatExcludesAnotherSaysSo) {
+  EXPECT_NE(message_of(*camera_key("shutter.angle_deg"), "180\nexposure_s = 0.01")
+                .find("exposure_s and angle_deg exclude each other"),
+            std::string::npos);
+}
+
+TEST(CameraKeys, AnEffectNeedsAValueAboveZero) {
+  const CameraKey& haze = *camera_key("air.extinction_per_km");
+  CameraModel model;
+  EXPECT_FALSE(is_above_zero(model, haze));
+  EXPECT_FALSE(states_any_key(model));
+  model.extinction_per_km = {{0, 0, 0}};
+  EXPECT_FALSE(is_above_zero(model, haze));
+  EXPECT_TRUE(states_any_key(model));
+  model.extinction_per_km = {{0, 0.1, 0}};
+  EXPECT_TRUE(is_above_zero(model, haze));
+}
+
+TEST(CameraKeys, TwelveCanBeMeasured) {
+  EXPECT_EQ(kCameraKeys.size(), 12u);
+  for (const CameraKey& key : kCameraKeys) EXPECT_TRUE(key.is_measured());
+  EXPECT_EQ(camera_key("sensor.codec_steps"), nullptr);
+}
+
+TEST(CameraKeys, AMisspelledChoiceNamesTheNearest) {
+  try {
+    scene_with(*camera_key("shutter.readout"), "\"rigth\"");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("readout is 'rigth'; expected down, up, right or left; did you mean "
+                        "'right'?"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace airtruth::scene

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "labels/annotation/object_class.h"
+#include "scene/scene/flock.h"
+#include "scene/scene/scene.h"
+
+namespace airtruth::scene {
+namespace {
+
+const std::string kHead =
+    "[background]\nvideo = \"clip.mp4\"\n[lens]\nvertical_fov_deg = 60\n[[distractor]]\n";
+const std::string kPath = "waypoints_ned_m = [[100, -10, -150], [100, 10, -150]]\nspeed_mps = 12\n";
+
+Scene scene_with(const std::string& keys) { return parse_scene(kHead + keys, "/data/s.toml"); }
+
+std::string message_of(const std::string& keys) {
+  try {
+    scene_with(keys);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DistractorKeys, KindsAreTheClassesOfTheTruth) {
+  std::set<std::string> words;
+  for (const auto& [kind, word] : enum_names(DistractorKind{})) {
+    words.insert(word);
+    EXPECT_TRUE(annotation::is_object_class(word));
+    EXPECT_EQ(annotation::is_on_lens(word), is_on_lens(kind)) << word;
+  }
+  EXPECT_EQ(words.size(), annotation::kInTheAir.size() + annotation::kOnTheLens.size());
+}
+
+TEST(DistractorKeys, ABirdFollowsAPathAndBeatsAsItsSizeHasIt) {
+  const Scene scene = scene_with("kind = \"bird\"\nsize_m = 0.65\nplumage = \"grey\"\n" + kPath);
+  ASSERT_EQ(scene.intruders.size(), 1U);
+  const Intruder& bird = scene.intruders[0];
+  EXPECT_EQ(bird.id, "bird-1");
+  EXPECT_EQ(bird.aircraft, "bird");
+  ASSERT_TRUE(bird.distractor);
+  EXPECT_FALSE(is_aircraft(bird));
+  EXPECT_EQ(bird.distractor->size_m, 0.65);
+  EXPECT_EQ(bird.distractor->plumage, aircraft::Plumage::kGrey);
+  EXPECT_NEAR(bird.distractor->flap_hz, 3.05 * std::sqrt(1.34 / 0.65), 1e-12);
+  EXPECT_EQ(bird.speed_mps, 12.0);
+}
+
+TEST(DistractorKeys, AircraftComeFirst) {
+  const Scene scene = scene_with(
+      "kind = \"balloon\"\nposition_ned_m = [50, 0, -150]\n[[intruder]]\naircraft = "
+      "\"c172/news\"\n" +
+      kPath);
+  ASSERT_EQ(scene.intruders.size(), 2U);
+  EXPECT_TRUE(is_aircraft(scene.intruders[0]));
+  EXPECT_EQ(scene.intruders[1].aircraft, "balloon");
+  EXPECT_EQ(*scene.intruders[1].position_ned_m, Vector3(50, 0, -150));
+}
+
+TEST(DistractorKeys, AFlockIsItsBirdsApartFromEachOther) {
+  const Scene scene = scene_with(
+      "kind = \"bird\"\nid = \"starlings\"\nsize_m = 0.4\ncount = 20\nspread_m = 8\n" + kPath);
+  ASSERT_EQ(scene.intruders.size(), 20U);
+  EXPECT_EQ(scene.intruders[19].id, "starlings-20");
+  std::set<double> phases;
+  for (const Intruder& one : scene.intruders) {
+    phases.insert(one.distractor->flap_phase);
+    EXPECT_LE(one.offset_ned_m.head<2>().norm(), 8);
+    EXPECT_LE(std::abs(one.offset_ned_m.z()), 8.0 / 3);
+    EXPECT_NEAR(one.distractor->size_m, 0.4, 0.04);
+    for (const Intruder& other : scene.intruders) {
+      if (&other == &one) continue;
+      EXPECT_GT((one.offset_ned_m - other.offset_ned_m).norm(), 1.8 * one.distractor->size_m);
+    }
+  }
+  EXPECT_EQ(phases.size(), 20U);
+}
+
+TEST(DistractorKeys, TheEffectiveSceneReadsBackAsItIs) {
+  for (const std::string& keys :
+       {"kind = \"bird\"\ncount = 3\nspread_m = 4\n" + kPath,
+        std::string("kind = \"multirotor\"\nrotors = 6\ncolour = [0.1, 0.2, 0.3]\nposition_ned_m = "
+                    "[60, 1, -150]\nvelocity_ned_mps = [3, 0, 0]\nyaw_deg = 10\n"),
+        std::string("kind = \"balloon\"\n[distractor.encounter]\ncpa_time_s = 2\ncourse_deg = "
+                    "90\nspeed_mps = 4\ncpa_right_m = 20\n"),
+        std::string("kind = \"dirt\"\npixel = [100, 50]\n[[distractor]]\nkind = \"glint\"\n"
+                    "[[distractor]]\nkind = \"insect\"\npixel = [0, 200]\nbegin_s = 1.5\n")}) {
+    const Scene scene = scene_with(keys);
+    const std::string text = toml_from_scene(scene);
+    const Scene again = parse_scene(text, "/elsewhere/t.toml");
+    EXPECT_EQ(toml_from_scene(again), text) << text;
+    ASSERT_EQ(again.intruders.size(), scene.intruders.size());
+    for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
+      EXPECT_EQ(again.intruders[i].distractor, scene.intruders[i].distractor);
+      EXPECT_EQ(again.intruders[i].offset_ned_m, scene.intruders[i].offset_ned_m);
+    }
+    ASSERT_EQ(again.lens_marks.size(), scene.lens_marks.size());
+    for (std::size_t i = 0; i < scene.lens_marks.size(); ++i) {
+      EXPECT_EQ(again.lens_marks[i].size_px, scene.lens_marks[i].size_px);
+      EXPECT_EQ(again.lens_marks[i].end_s, scene.lens_marks[i].end_s);
+    }
+  }
+}
+
+TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
+  EXPECT_EQ(message_of("size_m = 1\n"),
+            "/data/s.toml:5:1: [[distractor]] has no kind; expected bird, multirotor, balloon, "
+            "glint, dirt or insect");
+  EXPECT_NE(message_of("kind = \"brid\"\n").find("did you mean 'bird'?"), std::string::npos);
+  EXPECT_EQ(message_of("kind = \"balloon\"\nglide = 0.5\n" + kPath),
+            "/data/s.toml:7:9: glide has no effect with kind = \"balloon\"");
+  EXPECT_EQ(message_of("kind = \"bird\"\nopacity = 0.5\n" + kPath),
+            "/data/s.toml:7:11: opacity has no effect with kind = \"bird\"");
+  EXPECT_EQ(message_of("kind = \"bird\"\ncolour = [0, 0, 0]\n" + kPath),
+            "/data/s.toml:7:10: colour has no effect with kind = \"bird\"");
+  EXPECT_EQ(message_of("kind = \"bird\"\ncount = 4\n" + kPath),
+            "/data/s.toml:7:9: count is 4 without spread_m; expected the flock's radius in metres "
+            "with it");
+  EXPECT_EQ(message_of("kind = \"bird\"\nsize_m = nan\n" + kPath).find("/data/s.toml:7:10: "), 0U);
+  EXPECT_EQ(message_of("kind = \"multirotor\"\nrotors = 5\n" + kPath),
+            "/data/s.toml:7:10: rotors is 5; expected 4, 6 or 8");
+  EXPECT_EQ(message_of("kind = \"bird\"\n"),
+            "/data/s.toml:5:1: [[distractor]] has no path; expected waypoints_ned_m with speed_mps "
+            "or times_s, path_file, [intruder.encounter] or [[intruder.seen]]");
+  EXPECT_EQ(message_of("kind = \"dirt\"\n"),
+            "/data/s.toml:5:1: [[distractor]] of kind \"dirt\" has no pixel; expected the place of "
+            "its middle in the picture");
+  EXPECT_EQ(message_of("kind = \"dirt\"\npixel = [1, 2]\nsize_px = 50\nlength_px = 20\n"),
+            "/data/s.toml:9:13: length_px is 20, below size_px; expected 50 or more");
+  EXPECT_EQ(message_of("kind = \"bird\"\nposition_ned_m = [1, 2, 3]\n" + kPath),
+            "/data/s.toml:8:19: position_ned_m and waypoints_ned_m exclude each other; keep one of "
+            "them");
+  EXPECT_EQ(message_of("kind = \"dirt\"\nid = \"a\"\npixel = [1, 2]\n[[distractor]]\nkind = "
+                       "\"dirt\"\nid = \"a\"\npixel = [3, 4]\n"),
+            "/data/s.toml:11:6: id 'a' is taken; expected another");
+}
+
+}  // namespace
+}  // namespace airtruth::scene

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene/parse_distractor.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "scene/scene/flock.h"
+#include "scene/scene/parse_intruder.h"
+
+namespace airtruth::scene {
+namespace {
+
+constexpr const char* kTitle = "[[distractor]]";
+const TableReader::Keys kBirdKeys = {"plumage", "aspect_ratio", "flap_hz", "flap_phase", "glide"};
+const TableReader::Keys kAirKeys = {"size_m",
+                                    "position_ned_m",
+                                    "velocity_ned_mps",
+                                    "count",
+                                    "spread_m",
+                                    "offset_ned_m",
+                                    "path_file",
+                                    "encounter",
+                                    "seen",
+                                    "start_s",
+                                    "yaw_deg",
+                                    "pitch_deg",
+                                    "roll_deg",
+                                    "waypoints_ned_m",
+                                    "speed_mps",
+                                    "times_s"};
+const TableReader::Keys kLensKeys = {
+    "pixel", "velocity_px_s", "size_px", "length_px", "softness", "opacity", "begin_s", "end_s"};
+
+constexpr Limits kSize{.expected = "metres from 0.05 to 20", .low = 0.05, .high = 20};
+constexpr Limits kAspect{.expected = "a number from 2 to 30", .low = 2, .high = 30};
+constexpr Limits kStrokeRate{.expected = "strokes a second from 0 to 100", .low = 0, .high = 100};
+constexpr Limits kStrokes{.expected = "strokes from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+constexpr Limits kColour{.expected = "a number from 0 to 1", .low = 0, .high = 1};
+constexpr Limits kFlockRadius{.expected = "metres from 0 to 1e4", .low = 0, .high = 1e4};
+constexpr Limits kSpotSize{.expected = "pixels from 1 to 5000", .low = 1, .high = 5000};
+constexpr Limits kSpotSpeed{
+    .expected = "pixels a second from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+constexpr Limits kOpacity{
+    .expected = "a number above 0, up to 1", .low = 0, .high = 1, .without_low = true};
+constexpr Limits kAlong{.expected = "a number from -10 to 10", .low = -10, .high = 10};
+
+TableReader::Keys all_keys() {
+  TableReader::Keys keys = {"kind", "id", "colour", "rotors", "along"};
+  for (const TableReader::Keys* more : {&kBirdKeys, &kAirKeys, &kLensKeys})
+    keys.insert(keys.end(), more->begin(), more->end());
+  return keys;
+}
+
+// A key that has no effect is refused.
+void refuse(const TableReader& table, const TableReader::Keys& keys, DistractorKind kind) {
+  for (const std::string_view key : keys)
+    if (table.has(key))
+      table.fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, enum_name(kind)));
+}
+
+std::array<double, 3> colour_in(const TableReader& table, const std::array<double, 3>& otherwise) {
+  const auto colour = table.vector("colour", kColour);
+  return colour ? std::array<double, 3>{colour->x(), colour->y(), colour->z()} : otherwise;
+}
+
+Pixel pixel_of(const std::vector<double>& pair) { return {pair[0], pair[1]}; }
+
+Distractor distractor_in(const TableReader& table, DistractorKind kind) {
+  Distractor one =
+      usual_distractor(kind, table.number("size_m", kSize).value_or(usual_size_m(kind)));
+  if (kind == DistractorKind::kBird) {
+    one.plumage = table.choice<aircraft::Plumage>("plumage").value_or(one.plumage);
+    one.aspect_ratio = table.number("aspect_ratio", kAspect).value_or(one.aspect_ratio);
+    one.flap_hz = table.number("flap_hz", kStrokeRate).value_or(one.flap_hz);
+    one.flap_phase = table.number("flap_phase", kStrokes).value_or(one.flap_phase);
+    one.glide = table.number("glide", kShare).value_or(one.glide);
+  } else {
+    refuse(table, kBirdKeys, kind);
+  }
+  if (kind == DistractorKind::kBird)
+    refuse(table, {"colour"}, kind);
+  else
+    one.colour = colour_in(table, one.colour);
+  if (kind != DistractorKind::kMultirotor) {
+    refuse(table, {"rotors"}, kind);
+  } else if (const auto rotors = table.whole("rotors", 4, 8)) {
+    if (*rotors % 2 != 0)
+      table.fail("rotors", fmt::format("rotors is {}; expected 4, 6 or 8", *rotors));
+    one.rotors = static_cast<int>(*rotors);
+  }
+  return one;
+}
+
+// A place and a velocity in place of a path.
+void read_drift(const TableReader& table, Intruder& intruder) {
+  table.exclude(
+      "position_ned_m",
+      {"waypoints_ned_m", "speed_mps", "times_s", "path_file", "encounter", "seen", "start_s"});
+  intruder.position_ned_m = table.vector("position_ned_m", kPosition);
+  intruder.velocity_ned_mps = table.vector("velocity_ned_mps", kVelocity).value_or(Vector3::Zero());
+}
+
+Intruder intruder_from(const TableReader& table, DistractorKind kind) {
+  refuse(table, kLensKeys, kind);
+  refuse(table, {"along"}, kind);
+  Intruder intruder;
+  intruder.where = table.where();
+  intruder.aircraft = enum_name(kind);
+  intruder.distractor = distractor_in(table, kind);
+  intruder.offset_ned_m = table.vector("offset_ned_m", kPosition).value_or(Vector3::Zero());
+  if (table.has("position_ned_m"))
+    read_drift(table, intruder);
+  else if (table.has("velocity_ned_mps"))
+    table.fail("velocity_ned_mps", "velocity_ned_mps is for position_ned_m, which is not there");
+  else
+    read_path(table, kTitle, intruder);
+  read_attitude(table, intruder);
+  return intruder;
+}
+
+std::vector<Intruder> flock_in(const TableReader& table,
+                               const Intruder& leader,
+                               std::uint64_t seed) {
+  const std::int64_t count = table.whole("count", 1, kMaxFlock).value_or(1);
+  const auto spread_m = table.number("spread_m", kFlockRadius);
+  if (count > 1 && !spread_m)
+    table.fail("count",
+               fmt::format("count is {} without spread_m; expected the flock's radius in "
+                           "metres with it",
+                           count));
+  return flock_of(leader, count, spread_m.value_or(0), seed);
+}
+
+void read_place(const TableReader& table, LensMark& mark) {
+  if (const auto pair = table.tuple("pixel", {kPixel, kPixel})) mark.pixel = pixel_of(*pair);
+  const bool follows_sun = mark.kind == DistractorKind::kGlint && !mark.pixel;
+  if (!mark.pixel && !follows_sun)
+    throw Error(fmt::format("[[distractor]] of kind \"{}\" has no pixel; expected the place of its "
+                            "middle in the picture",
+                            enum_name(mark.kind)),
+                table.where());
+  if (follows_sun) {
+    refuse(table, {"velocity_px_s"}, mark.kind);
+    mark.along = table.number("along", kAlong).value_or(mark.along);
+  } else if (table.has("along")) {
+    table.fail("along", "along is for a glint that follows the sun, without a pixel");
+  }
+  if (const auto pair = table.tuple("velocity_px_s", {kSpotSpeed, kSpotSpeed}))
+    mark.velocity_px_s = pixel_of(*pair);
+}
+
+LensMark mark_from(const TableReader& table, DistractorKind kind) {
+  refuse(table, kAirKeys, kind);
+  refuse(table, kBirdKeys, kind);
+  refuse(table, {"rotors"}, kind);
+  LensMark mark = usual_mark(kind);
+  mark.where = table.where();
+  read_place(table, mark);
+  const double slender = mark.length_px / mark.size_px;
+  mark.size_px = table.number("size_px", kSpotSize).value_or(mark.size_px);
+  mark.length_px = table.number("length_px", kSpotSize)
+                       .value_or(std::min(kSpotSize.high, slender * mark.size_px));
+  if (mark.length_px < mark.size_px)
+    table.fail("length_px",
+               fmt::format("length_px is {}, below size_px; expected {} or more",
+                           shown(mark.length_px),
+                           shown(mark.size_px)));
+  mark.softness = table.number("softness", kShare).value_or(mark.softness);
+  mark.opacity = table.number("opacity", kOpacity).value_or(mark.opacity);
+  mark.colour = colour_in(table, mark.colour);
+  mark.begin_s = table.number("begin_s", kTime).value_or(mark.begin_s);
+  if (mark.end_s) *mark.end_s += mark.begin_s;
+  if (const auto end_s = table.number("end_s", kTime)) mark.end_s = end_s;
+  if (mark.end_s && *mark.end_s < mark.begin_s)
+    table.fail("end_s", fmt::format("end_s is {}, before begin_s", shown(*mark.end_s)));
+  return mark;
+}
+
+// The ids that are in use.
+class Ids {
+ public:
+  explicit Ids(const Scene& scene) {
+    for (const Intruder& intruder : scene.intruders) taken_.insert(intruder.id);
+  }
+  // The id of the table, or the kind's name and the number of this kind.
+  std::string of(const TableReader& table, DistractorKind kind) {
+    const std::int64_t number = ++count_[kind];
+    const auto stated = table.file_name("id");
+    const std::string id = stated ? *stated : fmt::format("{}-{}", enum_name(kind), number);
+    return id;
+  }
+  void take(const TableReader& table, const std::string& id) {
+    if (!taken_.insert(id).second)
+      table.fail("id", fmt::format("id '{}' is taken; expected another", id));
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<DistractorKind, std::int64_t> count_;
+};
+
+}  // namespace
+
+void add_distractors(const TableReader& root, Scene& scene) {
+  Ids ids(scene);
+  for (const TableReader& table : root.tables("distractor", all_keys())) {
+    const auto kind = table.choice<DistractorKind>("kind");
+    if (!kind)
+      throw Error(
+          "[[distractor]] has no kind; expected bird, multirotor, balloon, glint, dirt or insect",
+          table.where());
+    const std::string id = ids.of(table, *kind);
+    if (is_on_lens(*kind)) {
+      ids.take(table, id);
+      scene.lens_marks.push_back(mark_from(table, *kind));
+      scene.lens_marks.back().id = id;
+      continue;
+    }
+    Intruder leader = intruder_from(table, *kind);
+    leader.id = id;
+    for (Intruder& one : flock_in(table, leader, scene.seed)) {
+      ids.take(table, one.id);
+      scene.intruders.push_back(std::move(one));
+    }
+  }
+}
+
+}  // namespace airtruth::scene

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene/scene.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "foundation/base/files.h"
+
+namespace airtruth::scene {
+namespace {
+
+// The scene of the E-Vision paper's sequence 1LRB737, as a user writes it.
+constexpr std::string_view kPaper = R"(
+name = "1LRB737"
+seed = 7
+[background]
+video = "flight.mp4"
+mask = "../own.png"
+first_frame = 10
+frame_count = 322
+[lens]
+model = "pinhole"
+vertical_fov_deg = 90
+[camera]
+position_ned_m = [0, 0.5, -150]
+velocity_ned_mps = [40, 0, 0]
+attitude_yaw_pitch_roll_deg = [1, 2, 3]
+[motion]
+model = "homography"
+reference = "smoothed"
+[light]
+sun_azimuth_deg = 120
+sun_elevation_deg = 40
+[[intruder]]
+id = "b737"
+aircraft = "738/738-Ryanair"
+waypoints_ned_m = [[700, -900, -350], [760, -300, -355.25], [800, 500, -360]]
+speed_mps = 140
+[[intruder]]
+aircraft = "models/plane.OBJ"
+model_forward = "-x"
+model_up = "z"
+model_scale = 0.3048
+waypoints_ned_m = [[1, 2, 3], [4, 5, 6]]
+times_s = [0.1, 1e-3e]
+)";
+
+std::string paper() {
+  std::string text(kPaper);
+  return text.replace(text.find("1e-3e"), 5, "12.5");
+}
+
+TEST(Scene, EveryValueArrives) {
+  const Scene scene = parse_scene(paper(), "/data/scenes/a.toml");
+  EXPECT_EQ(scene.name, "1LRB737");
+  EXPECT_EQ(scene.seed, 7u);
+  EXPECT_EQ(scene.background.video, "/data/scenes/flight.mp4");
+  EXPECT_EQ(scene.background.mask, "/data/own.png");
+  EXPECT_EQ(scene.background.first_frame, 10);
+  EXPECT_EQ(scene.background.frame_count, 322);
+  EXPECT_EQ(scene.lens.vertical_fov_deg, 90.0);
+  EXPECT_EQ(scene.camera.position_ned_m, Vector3(0, 0.5, -150));
+  EXPECT_EQ(scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg, 2);
+  EXPECT_EQ(scene.motion.reference, MotionReference::kSmoothed);
+  EXPECT_EQ(scene.light.sun_azimuth_deg, 120);
+  ASSERT_EQ(scene.intruders.size(), 2u);
+  EXPECT_EQ(scene.intruders[0].waypoints_ned_m.at(1), Vector3(760, -300, -355.25));
+  EXPECT_EQ(scene.intruders[0].speed_mps, 140.0);
+  EXPECT_EQ(scene.intruders[0].aircraft, "738/738-Ryanair");
+  EXPECT_EQ(scene.intruders[1].aircraft, "/data/scenes/models/plane.OBJ");
+  EXPECT_EQ(scene.intruders[1].times_s, (std::vector<double>{0.1, 12.5}));
+}
+
+TEST(Scene, WhatIsNotSaidHasItsDefault) {
+  const Scene scene = parse_scene(paper(), "a.toml");
+  EXPECT_EQ(scene.intruders[1].id, "intruder-2");
+  EXPECT_EQ(scene.composite.method, CompositeMethod::kMatte);
+  EXPECT_EQ(scene.output.video, OutputVideo::kMp4);
+  EXPECT_EQ(scene.output.quality, 18);
+  EXPECT_EQ(scene.output.encoder, OutputEncoder::kX264);
+  EXPECT_EQ(scene.render.quality, 3);
+  EXPECT_FALSE(scene.light.exposure);
+  std::string unnamed = paper();
+  unnamed.erase(unnamed.find("name"), std::string("name = \"1LRB737\"").size());
+  EXPECT_EQ(parse_scene(unnamed, "far/away/my flight.toml").name, "my flight");
+}
+
+TEST(Scene, TablesKnowWhereTheyStand) {
+  const Scene scene = parse_scene(paper(), "a.toml");
+  EXPECT_EQ(to_string(scene.lens.where), "a.toml:9:1");
+  EXPECT_EQ(to_string(scene.intruders[1].where), "a.toml:27:1");
+}
+
+TEST(Scene, EffectiveSceneReadsBackTheSame) {
+  const Scene scene = parse_scene(paper(), "/data/scenes/a.toml");
+  const std::string text = toml_from_scene(scene);
+  const Scene again = parse_scene(text, "/elsewhere/b.toml");
+  EXPECT_EQ(toml_from_scene(again), text);
+  EXPECT_EQ(again.name, scene.name);
+  EXPECT_EQ(again.background.mask, scene.background.mask);
+  EXPECT_EQ(again.intruders[1].aircraft, scene.intruders[1].aircraft);
+  EXPECT_EQ(again.intruders[1].times_s, scene.intruders[1].times_s);
+  EXPECT_EQ(again.intruders[0].waypoints_ned_m, scene.intruders[0].waypoints_ned_m);
+  EXPECT_EQ(again.camera.position_ned_m, scene.camera.position_ned_m);
+}
+
+TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
+  Scene scene = parse_scene(paper(), "/data/a.toml");
+  scene.name = "quote \" back \\ \xc3\xa9 #";
+  scene.background.video = "/data/it's \"here\".mp4";
+  scene.light.exposure = 1e4;
+  scene.light.sky_colour = {0.1, 1.0 / 3.0, 1e-17};
+  scene.light.ground_albedo = 0.7;
+  scene.lens = Lens{};
+  scene.lens.model = lens::ModelKind::kBrownConrady;
+  scene.lens.focal_px = {480.25, 1e6};
+  scene.lens.principal_point_px = {-0.5, 1e-16};
+  scene.lens.distortion = {-0.3, 0.1, 0.0, 1e-9, 5};
+  scene.camera.path_file = "/data/own.csv";
+  scene.intruders[0].yaw_deg = -179.9999999999;
+  scene.intruders[1].path_file = "/data/p.csv";
+  const Scene again = parse_scene(toml_from_scene(scene), "/elsewhere/b.toml");
+  EXPECT_EQ(again.name, scene.name);
+  EXPECT_EQ(again.background.video, scene.background.video);
+  EXPECT_EQ(again.light.exposure, scene.light.exposure);
+  EXPECT_EQ(again.light.sky_colour, scene.light.sky_colour);
+  EXPECT_EQ(again.light.ground_albedo, scene.light.ground_albedo);
+  EXPECT_EQ(again.lens.focal_px, scene.lens.focal_px);
+  EXPECT_EQ(again.lens.principal_point_px, scene.lens.principal_point_px);
+  EXPECT_EQ(again.lens.distortion, scene.lens.distortion);
+  EXPECT_EQ(again.camera.path_file, scene.camera.path_file);
+  EXPECT_EQ(again.intruders[0].yaw_deg, scene.intruders[0].yaw_deg);
+  EXPECT_EQ(again.intruders[1].path_file, scene.intruders[1].path_file);
+  EXPECT_TRUE(again.intruders[1].waypoints_ned_m.empty());
+  EXPECT_EQ(toml_from_scene(again), toml_from_scene(scene));
+}
+
+// The shipped examples are valid scenes, and the first names every key that exists.
+TEST(Scene, ExamplesAreGood) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(AIRTRUTH_SOURCE_DIR) / "examples")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Scene scene = read_scene(entry.path());
+    EXPECT_EQ(toml_from_scene(parse_scene(toml_from_scene(scene), "/x.toml")),
+              toml_from_scene(scene));
+    ++count;
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
+  const fs::path root = AIRTRUTH_SOURCE_DIR;
+  const std::string manual = read_file(root / "docs/formats/scene.md");
+  const std::string example = read_file(root / "examples/render.toml");
+  for (const char* const key : {"kind",
+                                "size_m",
+                                "plumage",
+                                "aspect_ratio",
+                                "flap_hz",
+                                "flap_phase",
+                                "glide",
+                                "count",
+                                "spread_m",
+                                "rotors",
+                                "colour",
+                                "offset_ned_m",
+                                "along",
+                                "velocity_px_s",
+                                "size_px",
+                                "length_px",
+                                "softness",
+                                "opacity",
+                                "begin_s",
+                                "end_s",
+                                "name",
+                                "seed",
+                                "video",
+                                "mask",
+                                "first_frame",
+                                "frame_count",
+                                "model",
+                                "vertical_fov_deg",
+                                "focal_px",
+                                "principal_point_px",
+                                "distortion",
+                                "file",
+                                "position_ned_m",
+                                "velocity_ned_mps",
+                                "attitude_yaw_pitch_roll_deg",
+                                "path_file",
+                                "reference",
+                                "smoothing_s",
+                                "sun_azimuth_deg",
+                                "sun_elevation_deg",
+                                "exposure",
+                                "sky_colour",
+                                "ground_colour",
+                                "ground_albedo",
+                                "id",
+                                "aircraft",
+                                "model_forward",
+                                "model_up",
+                                "model_scale",
+                                "waypoints_ned_m",
+                                "speed_mps",
+                                "times_s",
+                                "start_s",
+                                "yaw_deg",
+                                "pitch_deg",
+                                "roll_deg",
+                                "cpa_time_s",
+                                "cpa_right_m",
+                                "cpa_above_m",
+                                "course_deg",
+                                "climb_mps",
+                                "turn_rate_dps",
+                                "time_s",
+                                "pixel",
+                                "range_m",
+                                "width_px",
+                                "volumes",
+                                "lookahead_s",
+                                "quality",
+                                "method",
+                                "encoder",
+                                "masks"}) {
+    EXPECT_NE(manual.find(std::string("`") + key + "`"), std::string::npos) << key;
+    EXPECT_NE(example.find(std::string(key) + " = "), std::string::npos) << key;
+  }
+}
+
+TEST(CameraModel, IsReadAndWrittenBackTheSame) {
+  const std::string text =
+      "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n"
+      "[shutter]\nexposure_s = \"auto\"\nreadout_s = 0.016\nreadout = \"up\"\n"
+      "[air]\nextinction_per_km = [0.1, 0.2, 0.3]\nairlight = \"auto\"\n"
+      "[optics]\npoint_spread_px = 0.7\n[sensor]\nnoise_gain = 4e-4\nchroma_spread_px = "
+      "2.5\ncodec_step = 8\ngamma = 2.2\n"
+      "[realism]\nfile = \"c.toml\"\nauto = true\nprofile = \"gopro-karma\"\nfallback = "
+      "true\n"
+      "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[1, 2, 3], [4, 5, 6]]\nspeed_mps "
+      "= 5\n";
+  const Scene scene = parse_scene(text, "/f/s.toml");
+  EXPECT_EQ(scene.camera_model.automatic,
+            (std::vector<std::string>{"shutter.exposure_s", "air.airlight"}));
+  EXPECT_FALSE(scene.camera_model.exposure_s);
+  EXPECT_EQ(scene.camera_model.readout_s, 0.016);
+  EXPECT_EQ(scene.camera_model.gamma, 2.2);
+  EXPECT_EQ(scene.realism.file, fs::path("/f/c.toml"));
+  EXPECT_EQ(scene.realism.profile, "gopro-karma");
+  const std::string written = toml_from_scene(scene);
+  EXPECT_EQ(toml_from_scene(parse_scene(written, "/f/s.toml")), written);
+}
+
+TEST(CameraModel, WhatIsOutOfRangeIsSaidAtItsPlace) {
+  const auto said = [](const std::string& more) {
+    try {
+      parse_scene(
+          "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n" + more +
+              "\n[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[1, 2, 3], [4, 5, "
+              "6]]\nspeed_mps = 5\n",
+          "s.toml");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(said("[shutter]\nexposure_s = 2"),
+            "s.toml:6:14: exposure_s is 2; expected seconds from 0 to 1");
+  EXPECT_EQ(said("[shutter]\nexposure_s = 0.1\nangle_deg = 90").substr(0, 10), "s.toml:7:1");
+  EXPECT_NE(said("[sensor]\nnoise_gian = 1").find("did you mean 'noise_gain'"), std::string::npos);
+  EXPECT_EQ(said("[sensor]\ngamma = 1"), "s.toml:6:9: gamma is 1; expected a number from 1.2 to 3");
+  EXPECT_NE(said("[optics]\npoint_spread_px = \"much\"").find("is a string"), std::string::npos);
+}
+
+TEST(CameraFile, IsReadStrictly) {
+  const CameraFile file = parse_camera_file(
+      "[clip]\nwidth = 640\nheight = 480\nlens = \"pinhole 500.0 px\"\ngamma = "
+      "1.8\n[optics]\npoint_spread_px = "
+      "1.2\n[light]\nsun_azimuth_deg = 30\nsun_elevation_deg = 20\n",
+      "c.toml");
+  EXPECT_EQ(file.width, 640);
+  EXPECT_EQ(file.model.point_spread_px, 1.2);
+  EXPECT_EQ(file.gamma, 1.8);
+  EXPECT_EQ(file.sun_azimuth_deg, 30);
+  EXPECT_THROW(parse_camera_file("[optics]\npoint_spread_px = 1\n", "c.toml"), Error);
+  EXPECT_THROW(parse_camera_file("[clip]\nwidth = 1\nheight = 1\n[optics]\nspread = 1\n", "c.toml"),
+               Error);
+}
+
+}  // namespace
+}  // namespace airtruth::scene

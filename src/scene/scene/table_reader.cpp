@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene/table_reader.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "scene/scene/key_log.h"
+
+namespace airtruth::scene {
+namespace {
+
+const toml::table kAbsent;
+
+const char* words_of(toml::node_type type) {
+  switch (type) {
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number with a fraction";
+    case toml::node_type::boolean:
+      return "a boolean";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
+  }
+}
+
+[[noreturn]] void fail_at(const Where& where,
+                          std::string_view name,
+                          std::string_view found,
+                          std::string_view expected) {
+  throw Error(fmt::format("{} is {}; expected {}", name, found, expected), where);
+}
+
+// Joins words as "a, b or c".
+std::string listed(const std::vector<std::string>& words) {
+  std::string result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) result += i + 1 == words.size() ? " or " : ", ";
+    result += words[i];
+  }
+  return result;
+}
+
+// The user's text in quotes, shortened to fit one line and without control characters.
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text.substr(0, 60)) {
+    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    result += control ? '?' : c;
+  }
+  while (text.size() > 60 && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80)
+    result.pop_back();
+  if (text.size() > 60) {
+    if (static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
+    result += "...";
+  }
+  return result + "'";
+}
+
+bool has_control_character(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+}
+
+std::string element_name(std::string_view key, std::size_t i) {
+  return fmt::format("{}[{}]", key, i);
+}
+
+}  // namespace
+
+bool is_plain_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= 200 && name != "." && name != ".." &&
+         name.find('/') == std::string_view::npos && !has_control_character(name);
+}
+
+std::string shown(double number) { return fmt::format("{}", number); }
+
+TableReader::TableReader(const toml::table& table,
+                         std::string title,
+                         const std::string& file,
+                         const Keys& keys,
+                         std::string path)
+    : table_(&table),
+      title_(std::move(title)),
+      path_(std::move(path)),
+      file_(file),
+      keys_(keys.begin(), keys.end()) {
+  for (const std::string& key : keys_) KeyLog::note_known(path_of(key));
+  refuse_unknown();
+}
+
+void TableReader::refuse_unknown() const {
+  const toml::key* first = nullptr;
+  for (const auto& [key, value] : *table_) {
+    if (std::find(keys_.begin(), keys_.end(), key.str()) != keys_.end()) continue;
+    if (!first || key.source().begin < first->source().begin) first = &key;
+  }
+  if (!first) return;
+  const auto near = nearest_spelling(first->str().substr(0, 60), keys_);
+  const std::string advice =
+      near ? fmt::format("did you mean '{}'?", *near) : "expected " + listed(keys_);
+  const auto begin = first->source().begin;
+  throw Error(fmt::format("unknown key {} in {}; {}", in_quotes(first->str()), title_, advice),
+              {file_, static_cast<int>(begin.line), static_cast<int>(begin.column)});
+}
+
+const toml::node* TableReader::node(std::string_view key) const {
+  check(std::find(keys_.begin(), keys_.end(), key) != keys_.end(),
+        "a key that is read is a key that is known");
+  KeyLog::note_read(path_of(key));
+  return table_->get(key);
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+Where TableReader::place(const toml::node& node) const {
+  const auto begin = node.source().begin;
+  return {file_, static_cast<int>(begin.line), static_cast<int>(begin.column)};
+}
+
+bool TableReader::has(std::string_view key) const { return node(key) != nullptr; }
+bool TableReader::says(std::string_view key, std::string_view word) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_string() && value->value_or(std::string_view()) == word;
+}
+
+bool TableReader::is_array(std::string_view key) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_array();
+}
+
+bool TableReader::is_table(std::string_view key) const {
+  const toml::node* value = node(key);
+  return value != nullptr && value->is_table();
+}
+
+Where TableReader::where() const { return place(*table_); }
+
+Where TableReader::where(std::string_view key) const {
+  const toml::node* const value = node(key);
+  return value ? place(*value) : where();
+}
+
+Where TableReader::where(std::string_view key, std::size_t i) const {
+  const toml::node* const value = node(key);
+  const toml::array* const array = value ? value->as_array() : nullptr;
+  return array && i < array->size() ? place((*array)[i]) : where(key);
+}
+
+void TableReader::fail(std::string_view key, std::string_view message) const {
+  throw Error(message, where(key));
+}
+
+double TableReader::checked_number(const toml::node& node,
+                                   const std::string& name,
+                                   const Limits& limits) const {
+  if (!node.is_number()) fail_at(place(node), name, words_of(node.type()), limits.expected);
+  // toml++ returns no double for an integer that a double cannot represent exactly.
+  const double value =
+      node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
+  if (!limits.holds(value)) fail_at(place(node), name, shown(value), limits.expected);
+  // Adding 0 turns -0 into 0.
+  return value + 0.0;
+}
+
+std::optional<double> TableReader::number(std::string_view key, const Limits& limits) const {
+  const toml::node* const value = node(key);
+  KeyLog::note_numbers(path_of(key), NumberShape::kOne, {limits});
+  if (!value) return std::nullopt;
+  return checked_number(*value, std::string(key), limits);
+}
+
+std::optional<std::int64_t> TableReader::whole(std::string_view key,
+                                               std::int64_t low,
+                                               std::int64_t high) const {
+  const toml::node* const value = node(key);
+  KeyLog::note_whole(path_of(key), low, high);
+  if (!value) return std::nullopt;
+  const std::string expected = high == std::numeric_limits<std::int64_t>::max()
+                                   ? fmt::format("a whole number not below {}", low)
+                                   : fmt::format("a whole number from {} to {}", low, high);
+  if (!value->is_integer()) {
+    const std::string found =
+        value->is_floating_point() ? shown(**value->as_floating_point()) : words_of(value->type());
+    fail_at(place(*value), key, found, expected);
+  }
+  const std::int64_t number = **value->as_integer();
+  if (number < low || number > high)
+    fail_at(place(*value), key, fmt::format("{}", number), expected);
+  return number;
+}
+
+std::optional<bool> TableReader::truth(std::string_view key) const {
+  const toml::node* const value = node(key);
+  if (!value) return std::nullopt;
+  if (!value->is_boolean()) fail_at(place(*value), key, words_of(value->type()), "true or false");
+  return **value->as_boolean();
+}
+
+std::optional<std::string> TableReader::text(std::string_view key) const {
+  const toml::node* const value = node(key);
+  if (!value) return std::nullopt;
+  if (!value->is_string()) fail_at(place(*value), key, words_of(value->type()), "a string");
+  const std::string& text = **value->as_string();
+  if (text.empty()) fail_at(place(*value), key, "empty", "a text");
+  if (has_control_character(text))
+    fail_at(place(*value), key, in_quotes(text), "a text without control characters");
+  return text;
+}
+
+std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) const {
+  const toml::node* const value = node(key);
+  if (!value) return std::nullopt;
+  const toml::array& elements = array(key, "an array of strings");
+  if (elements.empty()) fail_at(place(*value), key, "an empty array", "at least one string");
+  std::vector<std::string> result;
+  for (const toml::node& element : elements) {
+    if (!element.is_string())
+      fail_at(place(element), key, words_of(element.type()), "an array of strings");
+    const std::string& text = **element.as_string();
+    if (text.empty() || has_control_character(text))
+      fail_at(place(element),
+              key,
+              text.empty() ? "an empty string" : in_quotes(text),
+              "strings that are not empty and hold no control characters");
+    result.push_back(text);
+  }
+  return result;
+}
+
+std::optional<std::string> TableReader::file_name(std::string_view key) const {
+  const auto name = text(key);
+  if (name && !is_plain_file_name(*name))
+    fail_at(where(key),
+            key,
+            in_quotes(*name),
+            "a plain file name: no slash, not '.' or '..', at most 200 bytes");
+  return name;
+}
+
+std::optional<std::string> TableReader::choice(std::string_view key,
+                                               const std::vector<std::string>& choices) const {
+  const auto word = text(key);
+  if (!word || std::find(choices.begin(), choices.end(), *word) != choices.end()) return word;
+  const auto near = nearest_spelling(word->substr(0, 60), choices);
+  fail_at(where(key),
+          key,
+          in_quotes(*word),
+          listed(choices) + (near ? "; did you mean '" + *near + "'?" : ""));
+}
+
+std::optional<std::filesystem::path> TableReader::path(std::string_view key) const {
+  const auto name = text(key);
+  if (!name) return std::nullopt;
+  auto path = (std::filesystem::path(file_).parent_path() / *name).lexically_normal();
+  // The record of a sequence contains the full path.
+  require_utf8(std::filesystem::absolute(path));
+  return path;
+}
+
+const toml::array& TableReader::array(std::string_view key, std::string_view expected) const {
+  const toml::node* const value = node(key);
+  if (!value->is_array()) fail_at(place(*value), key, words_of(value->type()), expected);
+  return *value->as_array();
+}
+
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key,
+                                                        const Limits& each) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kList, {each});
+  if (!has(key)) return std::nullopt;
+  const toml::array& values = array(key, "an array of numbers");
+  std::vector<double> result;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result.push_back(checked_number(values[i], element_name(key, i), each));
+  return result;
+}
+
+std::vector<double> TableReader::tuple_of(const toml::array& values,
+                                          const std::string& name,
+                                          const std::vector<Limits>& limits) const {
+  if (values.size() != limits.size())
+    fail_at(place(values),
+            name,
+            fmt::format("an array of {}", values.size()),
+            fmt::format("an array of {} numbers", limits.size()));
+  std::vector<double> result;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result.push_back(checked_number(values[i], element_name(name, i), limits[i]));
+  return result;
+}
+
+std::optional<std::vector<double>> TableReader::tuple(std::string_view key,
+                                                      const std::vector<Limits>& limits) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kTuple, limits);
+  if (!has(key)) return std::nullopt;
+  return tuple_of(
+      array(key, fmt::format("an array of {} numbers", limits.size())), std::string(key), limits);
+}
+
+std::optional<Vector3> TableReader::vector(std::string_view key, const Limits& each) const {
+  const auto values = tuple(key, {each, each, each});
+  if (!values) return std::nullopt;
+  return Vector3((*values)[0], (*values)[1], (*values)[2]);
+}
+
+std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
+                                                        const Limits& each) const {
+  KeyLog::note_numbers(path_of(key), NumberShape::kPoints, {each, each, each});
+  if (!has(key)) return std::nullopt;
+  const toml::array& values = array(key, "an array of [north, east, down]");
+  std::vector<Vector3> result;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string name = element_name(key, i);
+    if (!values[i].is_array())
+      fail_at(place(values[i]), name, words_of(values[i].type()), "an array of 3 numbers");
+    const auto point = tuple_of(*values[i].as_array(), name, {each, each, each});
+    result.emplace_back(point[0], point[1], point[2]);
+  }
+  return result;
+}
+
+TableReader TableReader::table(std::string_view key, const Keys& keys) const {
+  const toml::node* const value = node(key);
+  const std::string title = fmt::format("[{}]", key);
+  if (!value) return TableReader(kAbsent, title, file_, keys, path_of(key));
+  if (value->is_array_of_tables())
+    fail_at(place(*value), key, "an array of tables", title + ", with single brackets");
+  if (!value->is_table()) fail_at(place(*value), key, words_of(value->type()), "a table: " + title);
+  return TableReader(*value->as_table(), title, file_, keys, path_of(key));
+}
+
+std::vector<TableReader> TableReader::tables(std::string_view key, const Keys& keys) const {
+  const toml::node* const value = node(key);
+  if (!value) return {};
+  const std::string title = fmt::format("[[{}]]", key);
+  if (!value->is_array())
+    fail_at(place(*value), key, words_of(value->type()), title + ", with double brackets");
+  std::vector<TableReader> result;
+  for (const toml::node& element : *value->as_array()) {
+    if (!element.is_table())
+      fail_at(place(element), key, words_of(element.type()), "a table: " + title);
+    result.emplace_back(
+        *element.as_table(), title, file_, keys, element_name(path_of(key), result.size()));
+  }
+  return result;
+}
+
+void TableReader::exclude(std::string_view key, const Keys& others) const {
+  if (!has(key)) return;
+  for (const std::string_view other : others) {
+    if (!has(other)) continue;
+    throw Error(fmt::format("{} and {} exclude each other; keep one of them", key, other),
+                where(other));
+  }
+}
+
+}  // namespace airtruth::scene

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "foundation/base/enum_names.h"
+#include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
+#include "scene/scene/limits.h"
+
+// Reads a table of a TOML file strictly: every key must be known, of the right type and in range.
+// Otherwise an Error names the line and column. Only readers of TOML files use this header; it is
+// not installed.
+namespace airtruth::scene {
+
+class TableReader {
+ public:
+  using Keys = std::vector<std::string_view>;
+
+  // Throws where the table holds a key that is not in `keys`. `title` is the table's name in
+  // messages: "[lens]". `path` is the table's place in the file, as KeyLog uses it:
+  // "background[0].lens", "" at the top.
+  TableReader(const toml::table& table,
+              std::string title,
+              const std::string& file,
+              const Keys& keys,
+              std::string path = "");
+
+  bool has(std::string_view key) const;
+  // True where the value is exactly this string.
+  bool says(std::string_view key, std::string_view word) const;
+  // True where the value is an array; a table.
+  bool is_array(std::string_view key) const;
+  bool is_table(std::string_view key) const;
+  // The place of the table; without a line where the file lacks the table.
+  Where where() const;
+  // The place of the value.
+  Where where(std::string_view key) const;
+
+  // Each of the following readers returns empty where the key is absent.
+  std::optional<double> number(std::string_view key, const Limits& limits) const;
+  std::optional<std::int64_t> whole(std::string_view key,
+                                    std::int64_t low,
+                                    std::int64_t high) const;
+  std::optional<bool> truth(std::string_view key) const;
+  // A string that is not empty and holds no control characters.
+  std::optional<std::string> text(std::string_view key) const;
+  // An array of at least one such string.
+  std::optional<std::vector<std::string>> texts(std::string_view key) const;
+  // A string without a folder in it.
+  std::optional<std::string> file_name(std::string_view key) const;
+  std::optional<std::string> choice(std::string_view key,
+                                    const std::vector<std::string>& choices) const;
+  // A word that names a value of the enum (foundation/base/enum_names.h).
+  template <typename Enum>
+  std::optional<Enum> choice(std::string_view key) const {
+    const auto word = choice(key, all_enum_names<Enum>());
+    return word ? enum_named<Enum>(*word) : std::nullopt;
+  }
+  // A file path. A relative path is resolved against the folder of the scene file.
+  std::optional<std::filesystem::path> path(std::string_view key) const;
+  std::optional<std::vector<double>> numbers(std::string_view key, const Limits& each) const;
+  // An array of exactly one number for each element of `limits`.
+  std::optional<std::vector<double>> tuple(std::string_view key,
+                                           const std::vector<Limits>& limits) const;
+  std::optional<Vector3> vector(std::string_view key, const Limits& each) const;
+  std::optional<std::vector<Vector3>> points(std::string_view key, const Limits& each) const;
+
+  // The table at `key`; an empty table where it is absent.
+  TableReader table(std::string_view key, const Keys& keys) const;
+  // The tables of the array [[key]].
+  std::vector<TableReader> tables(std::string_view key, const Keys& keys) const;
+
+  // Throws where the table holds both `key` and any of `others`.
+  void exclude(std::string_view key, const Keys& others) const;
+  [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+  // The place of element i of the array at `key`.
+  Where where(std::string_view key, std::size_t i) const;
+
+ private:
+  const toml::node* node(std::string_view key) const;
+  std::string path_of(std::string_view key) const;
+  Where place(const toml::node& node) const;
+  double checked_number(const toml::node& node,
+                        const std::string& name,
+                        const Limits& limits) const;
+  const toml::array& array(std::string_view key, std::string_view expected) const;
+  std::vector<double> tuple_of(const toml::array& array,
+                               const std::string& name,
+                               const std::vector<Limits>& limits) const;
+  void refuse_unknown() const;
+
+  const toml::table* table_;
+  std::string title_;
+  std::string path_;
+  std::string file_;
+  std::vector<std::string> keys_;
+};
+
+// True where a file in any folder could have this name: it is not empty, not "." and not "..", and
+// holds no slash and no control character.
+bool is_plain_file_name(std::string_view name);
+
+// The number as messages show it: the shortest text that parses to the same number.
+std::string shown(double number);
+
+}  // namespace airtruth::scene

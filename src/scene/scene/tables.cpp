@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene/tables.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/line_of.h"
+#include "scene/scene/camera_keys.h"
+#include "scene/scene/toml_guard.h"
+
+namespace airtruth::scene {
+namespace {
+
+std::optional<std::array<double, 2>> pair_from(const TableReader& table,
+                                               std::string_view key,
+                                               const Limits& limits) {
+  const auto values = table.tuple(key, {limits, limits});
+  if (!values) return std::nullopt;
+  return std::array<double, 2>{(*values)[0], (*values)[1]};
+}
+
+void check_distortion(const TableReader& table, lens::ModelKind model, std::size_t count) {
+  if (model == lens::ModelKind::kPinhole && count > 0)
+    table.fail("distortion",
+               "distortion is not for a pinhole; expected model brown_conrady or fisheye, or no "
+               "distortion");
+  if (model == lens::ModelKind::kBrownConrady && count != 0 && count != 4 && count != 5 &&
+      count != 8)
+    table.fail("distortion",
+               fmt::format("distortion has {} numbers; brown_conrady takes 4, 5 or 8", count));
+  if (model == lens::ModelKind::kFisheye && count > 4)
+    table.fail("distortion",
+               fmt::format("distortion has {} numbers; fisheye takes at most 4", count));
+}
+
+std::optional<std::array<double, 3>> three_from(const TableReader& table,
+                                                std::string_view key,
+                                                const Limits& each) {
+  const auto values = table.tuple(key, {each, each, each});
+  if (!values) return std::nullopt;
+  return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+}  // namespace
+
+toml::table parsed_toml(std::string_view text, const std::string& file) {
+  if (text.size() > kLargestToml)
+    throw Error(fmt::format("is {} bytes long; expected at most 16 MiB", text.size()), {file});
+  if (const std::size_t fault = utf8_fault(text); fault != std::string_view::npos)
+    throw Error("is not UTF-8; expected a text file in UTF-8",
+                {file, line_of(text, static_cast<std::ptrdiff_t>(fault))});
+  refuse_deep_nesting(text, file);
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    std::string reason(error.description());
+    std::replace_if(
+        reason.begin(), reason.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    const auto begin = error.source().begin;
+    throw Error("is not TOML: " + reason,
+                {file, static_cast<int>(begin.line), static_cast<int>(begin.column)});
+  }
+}
+
+Lens lens_in(const TableReader& parent) {
+  const TableReader table = parent.table(
+      "lens",
+      {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion", "file"});
+  Lens lens;
+  lens.where = table.where();
+  table.exclude("file",
+                {"model", "vertical_fov_deg", "focal_px", "principal_point_px", "distortion"});
+  table.exclude("vertical_fov_deg", {"focal_px"});
+  lens.file = table.path("file");
+  if (lens.file) return lens;
+  lens.model = table.choice<lens::ModelKind>("model").value_or(lens.model);
+  lens.vertical_fov_deg = table.number(
+      "vertical_fov_deg", lens.model == lens::ModelKind::kFisheye ? kFisheyeView : kPinholeView);
+  lens.focal_px = pair_from(table, "focal_px", kFocal);
+  lens.principal_point_px = pair_from(table, "principal_point_px", kPrincipalPoint);
+  lens.distortion = table.numbers("distortion", kDistortion).value_or(std::vector<double>{});
+  check_distortion(table, lens.model, lens.distortion.size());
+  if (!lens.vertical_fov_deg && !lens.focal_px)
+    throw Error("[lens] has no focal length; expected vertical_fov_deg, focal_px or file",
+                table.where());
+  return lens;
+}
+
+namespace {
+
+void read_log(const TableReader& table, std::int64_t first_frame, Camera& camera) {
+  table.exclude("log", {"path_file", "velocity_ned_mps"});
+  camera.log = table.path("log");
+  camera.log_offset_s = table.number("log_offset_s", kTime);
+  camera.position_is_stated = table.has("position_ned_m");
+  camera.attitude_is_stated = table.has("attitude_yaw_pitch_roll_deg");
+  if (!camera.log && camera.log_offset_s)
+    table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
+  if (camera.log && first_frame > 0 && !camera.log_offset_s)
+    table.fail("log",
+               fmt::format("first_frame is {} and the log has no log_offset_s; expected the log's "
+                           "time at that frame",
+                           first_frame));
+}
+
+}  // namespace
+
+Camera camera_in(const TableReader& parent, const Motion& motion, std::int64_t first_frame) {
+  const TableReader table = parent.table("camera",
+                                         {"position_ned_m",
+                                          "velocity_ned_mps",
+                                          "attitude_yaw_pitch_roll_deg",
+                                          "path_file",
+                                          "log",
+                                          "log_offset_s"});
+  Camera camera;
+  camera.where = table.where();
+  table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
+  camera.path_file = table.path("path_file");
+  read_log(table, first_frame, camera);
+  camera.follows_log_attitude = motion.reference == MotionReference::kSmoothed;
+  camera.position_ned_m = table.vector("position_ned_m", kPosition).value_or(camera.position_ned_m);
+  camera.velocity_ned_mps =
+      table.vector("velocity_ned_mps", kVelocity).value_or(camera.velocity_ned_mps);
+  if (const auto angles = table.tuple("attitude_yaw_pitch_roll_deg", {kTurn, kPitch, kTurn}))
+    camera.attitude_yaw_pitch_roll_deg = {(*angles)[0], (*angles)[1], (*angles)[2]};
+  return camera;
+}
+
+Motion motion_in(const TableReader& parent) {
+  const TableReader table = parent.table("motion", {"model", "reference", "smoothing_s"});
+  Motion motion;
+  motion.where = table.where();
+  motion.model = table.choice<MotionModel>("model").value_or(motion.model);
+  motion.reference = table.choice<MotionReference>("reference").value_or(motion.reference);
+  motion.smoothing_s = table.number("smoothing_s", kSmoothing).value_or(motion.smoothing_s);
+  return motion;
+}
+
+namespace {
+
+TableReader::Keys keys_of_table(std::string_view table) {
+  TableReader::Keys keys;
+  for (const CameraKey& key : kCameraModelKeys)
+    if (key.table() == table) keys.push_back(key.key());
+  return keys;
+}
+
+void read(const TableReader& table, const CameraKey& key, std::optional<double>& value) {
+  value = table.number(key.key(), key.limits);
+}
+
+void read(const TableReader& table,
+          const CameraKey& key,
+          std::optional<std::array<double, 3>>& value) {
+  value = three_from(table, key.key(), key.limits);
+}
+
+void read(const TableReader& table, const CameraKey& key, std::optional<Readout>& value) {
+  value = table.choice<Readout>(key.key());
+}
+
+}  // namespace
+
+CameraModel camera_model_in(const TableReader& parent) {
+  CameraModel model;
+  for (const std::string_view name : kCameraTables) {
+    const TableReader table = parent.table(name, keys_of_table(name));
+    for (const CameraKey& key : kCameraModelKeys)
+      if (key.table() == name && !key.excluded_by.empty())
+        table.exclude(key.excluded_by, {key.key()});
+    for (const CameraKey& key : kCameraModelKeys) {
+      if (key.table() != name) continue;
+      if (key.is_measured() && table.says(key.key(), kAutomaticWord))
+        model.automatic.emplace_back(key.name);
+      else
+        std::visit([&](auto member) { read(table, key, model.*member); }, key.member);
+    }
+  }
+  return model;
+}
+
+TableReader::Keys with_camera_tables(TableReader::Keys before, const TableReader::Keys& after) {
+  before.insert(before.end(), kCameraTables.begin(), kCameraTables.end());
+  before.insert(before.end(), after.begin(), after.end());
+  return before;
+}
+
+Realism realism_in(const TableReader& parent) {
+  const TableReader table = parent.table("realism", {"file", "auto", "profile", "fallback"});
+  Realism realism;
+  realism.where = table.where();
+  realism.file = table.path("file");
+  realism.automatic = table.truth("auto").value_or(false);
+  realism.profile = table.text("profile");
+  realism.fallback = table.truth("fallback").value_or(false);
+  return realism;
+}
+
+Light light_in(const TableReader& parent) {
+  const TableReader table = parent.table("light",
+                                         {"sun_azimuth_deg",
+                                          "sun_elevation_deg",
+                                          "exposure",
+                                          "sky_colour",
+                                          "ground_colour",
+                                          "ground_albedo"});
+  table.exclude("ground_colour", {"ground_albedo"});
+  Light light;
+  light.where = table.where();
+  light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);
+  light.sun_elevation_deg =
+      table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
+  light.sun_is_stated = table.has("sun_azimuth_deg") || table.has("sun_elevation_deg");
+  light.exposure = table.number("exposure", kExposureFactor);
+  light.sky_colour = three_from(table, "sky_colour", kLinearLight);
+  light.ground_colour = three_from(table, "ground_colour", kLinearLight);
+  light.ground_albedo = table.number("ground_albedo", kAlbedo);
+  return light;
+}
+
+namespace {
+
+void take_encoder(Output& output, const TableReader& table) {
+  if (!table.has("encoder")) return;
+  output.encoder = table.choice<OutputEncoder>("encoder").value_or(output.encoder);
+  output.encoder_where = table.where("encoder");
+  const bool is_hardware =
+      output.encoder != OutputEncoder::kX264 && output.encoder != OutputEncoder::kAuto;
+  if (is_hardware && output.video != OutputVideo::kMp4)
+    throw Error(std::string("encoder is ") + enum_name(output.encoder) +
+                    ", which writes H.264; expected video = \"mp4\"",
+                output.encoder_where);
+}
+
+TruthVolume truth_volume_from(const TableReader& table) {
+  TruthVolume volume;
+  const auto name = table.file_name("name");
+  const auto horizontal_m = table.number("horizontal_m", kThreshold);
+  const auto vertical_m = table.number("vertical_m", kThreshold);
+  if (!name || !horizontal_m || !vertical_m)
+    throw Error(
+        fmt::format("[[truth.volume]] has no {}; expected name, horizontal_m and vertical_m",
+                    !name           ? "name"
+                    : !horizontal_m ? "horizontal_m"
+                                    : "vertical_m"),
+        table.where());
+  volume.name = *name;
+  volume.horizontal_m = *horizontal_m;
+  volume.vertical_m = *vertical_m;
+  volume.tau_s = table.number("tau_s", kThresholdTime).value_or(0);
+  volume.coaltitude_s = table.number("coaltitude_s", kThresholdTime).value_or(0);
+  return volume;
+}
+
+}  // namespace
+
+Truth truth_in(const TableReader& parent) {
+  const TableReader table = parent.table("truth", {"volumes", "volume", "lookahead_s"});
+  Truth truth;
+  truth.where = table.where();
+  truth.volumes = table.texts("volumes").value_or(std::vector<std::string>{});
+  std::set<std::string> taken;
+  for (const std::string& name : truth.volumes)
+    if (!taken.insert(name).second)
+      table.fail("volumes", fmt::format("volumes has '{}' twice; expected each once", name));
+  for (const TableReader& own :
+       table.tables("volume", {"name", "horizontal_m", "vertical_m", "tau_s", "coaltitude_s"})) {
+    truth.own_volumes.push_back(truth_volume_from(own));
+    const std::string& name = truth.own_volumes.back().name;
+    if (!taken.insert(name).second)
+      own.fail("name", fmt::format("name '{}' is taken by another volume; expected another", name));
+  }
+  truth.lookahead_s = table.number("lookahead_s", kLookahead).value_or(truth.lookahead_s);
+  return truth;
+}
+
+Output output_in(const TableReader& parent) {
+  const TableReader table = parent.table("output", {"video", "quality", "encoder", "masks"});
+  Output output;
+  output.video = table.choice<OutputVideo>("video").value_or(output.video);
+  output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
+  take_encoder(output, table);
+  output.masks = table.truth("masks").value_or(output.masks);
+  return output;
+}
+
+Render render_in(const TableReader& parent) {
+  const TableReader table = parent.table("render", {"quality"});
+  Render render;
+  render.quality = static_cast<int>(table.whole("quality", 1, 5).value_or(render.quality));
+  return render;
+}
+
+Composite composite_in(const TableReader& parent) {
+  const TableReader table = parent.table("composite", {"method"});
+  Composite composite;
+  composite.method = table.choice<CompositeMethod>("method").value_or(composite.method);
+  return composite;
+}
+
+}  // namespace airtruth::scene

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/synthetic/flight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/seed.h"
+#include "scene/synthetic/flight_path.h"
+#include "scene/synthetic/row_painter.h"
+#include "scene/synthetic/sensor.h"
+
+namespace airtruth::synthetic {
+namespace {
+
+void require(bool good, std::string_view name, double value, std::string_view expected) {
+  if (!good)
+    throw Error(fmt::format("virtual flight: {} is {}; expected {}", name, value, expected));
+}
+
+void check_lens(const FlightOptions& o) {
+  if (o.lens && !(o.lens->size() == lens::ImageSize{o.width, o.height}))
+    throw Error(
+        fmt::format("virtual flight: the lens is for {} x {} px; expected the picture's {} x {}",
+                    o.lens->size().width,
+                    o.lens->size().height,
+                    o.width,
+                    o.height));
+}
+
+const FlightOptions& validated(const FlightOptions& o) {
+  require(o.width >= 16 && o.width <= 16384, "width", o.width, "16 to 16384 px");
+  require(o.height >= 16 && o.height <= 16384, "height", o.height, "16 to 16384 px");
+  require(o.frame_rate_hz > 0 && o.frame_rate_hz <= 1000,
+          "frame rate",
+          o.frame_rate_hz,
+          "more than 0, at most 1000 Hz");
+  require(o.frame_count >= 1, "frame count", o.frame_count, "at least 1");
+  require(o.altitude_m >= 20 && o.altitude_m <= 900,
+          "altitude",
+          o.altitude_m,
+          "20 to 900 m (below the clouds)");
+  require(o.speed_mps >= 0 && o.speed_mps <= 400, "speed", o.speed_mps, "0 to 400 m/s");
+  require(std::isfinite(o.heading_deg), "heading", o.heading_deg, "a number");
+  require(std::isfinite(o.sun_azimuth_deg), "sun azimuth", o.sun_azimuth_deg, "a number");
+  require(o.sun_elevation_deg >= 2 && o.sun_elevation_deg <= 90,
+          "sun elevation",
+          o.sun_elevation_deg,
+          "2 to 90 deg");
+  require(o.cloud_cover >= 0 && o.cloud_cover <= 1, "cloud cover", o.cloud_cover, "0 to 1");
+  require(o.hills_deg >= 0 && o.hills_deg <= 5, "hills", o.hills_deg, "0 to 5 deg");
+  require(o.extinction_per_km >= 0 && o.extinction_per_km <= 10,
+          "extinction",
+          o.extinction_per_km,
+          "0 to 10 per km");
+  require(o.shake_deg >= 0 && o.shake_deg <= 5, "shake", o.shake_deg, "0 to 5 deg");
+  require(std::abs(o.roll_deg) <= 45, "roll", o.roll_deg, "-45 to 45 deg");
+  require(o.noise >= 0 && o.noise <= 20, "noise", o.noise, "0 to 20");
+  require(o.clutter >= 0 && o.clutter <= 1, "clutter", o.clutter, "0 to 1");
+  check_lens(o);
+  return o;
+}
+
+lens::Lens lens_of(const FlightOptions& o) {
+  return o.lens ? *o.lens
+                : lens::pinhole_from_vertical_fov(o.vertical_fov_deg, {o.width, o.height});
+}
+
+std::uint32_t stream(const FlightOptions& o, std::string_view name) {
+  return static_cast<std::uint32_t>(Seed(o.seed).stream(name)());
+}
+
+constexpr double kPanoramaOversampling = 1.25;
+constexpr int kRowsPerTask = 8;
+
+}  // namespace
+
+struct Flight::Impl {
+  explicit Impl(const FlightOptions& o)
+      : options(validated(o)),
+        lens(lens_of(o)),
+        path(o),
+        sky(sun_in_world(o.sun_azimuth_deg, o.sun_elevation_deg)),
+        own(draw_own_aircraft(lens,
+                              sun_in_world(o.sun_azimuth_deg - o.heading_deg, o.sun_elevation_deg),
+                              sky,
+                              o.own_aircraft)),
+        view(lens, !o.linear_light),
+        panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
+        sensor(o, stream(o, "sensor")),
+        clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
+        ground(make_world()) {}
+
+  Ground make_world();
+  Moment moment(int index) const;
+  void check_index(int index) const {
+    check(index >= 0 && index < options.frame_count, "a frame outside the flight was asked for");
+  }
+
+  FlightOptions options;
+  lens::Lens lens;
+  FlightPath path;
+  Sky sky;
+  OwnAircraft own;
+  RayTable view;
+  Panorama panorama;
+  Sensor sensor;
+  Clutter clutter;
+  Vector3 start_in_land_m = Vector3::Zero();
+  float veil = 0;
+  Ground ground;
+};
+
+// Draws sky and clouds in the directions that some frame looks at, and passes the clouds' shadow to
+// the ground.
+Ground Flight::Impl::make_world() {
+  for (int k = 0; k < options.frame_count; ++k)
+    for (const RayNode& d : view.directions_in_world(path.shaken(k).world_from_body, 4))
+      panorama.want(d[0], d[1], -d[2]);
+  const Clouds clouds(sky, options.cloud_cover, stream(options, "clouds"));
+  panorama.draw(
+      sky, clouds, {options.hills_deg, options.extinction_per_km}, stream(options, "hills"));
+  Random random = Seed(options.seed).stream("start");
+  start_in_land_m = {random.uniform(0, kLand_m), random.uniform(0, kLand_m), 0};
+  const double pixel_rad = 1 / lens.focal_px();
+  return {options.altitude_m * pixel_rad * 4,
+          pixel_rad,
+          options.extinction_per_km,
+          sky,
+          clouds,
+          stream(options, "ground")};
+}
+
+Moment Flight::Impl::moment(int index) const {
+  const trajectory::State state = path.shaken(index);
+  const Vector3 eye = start_in_land_m + state.position_in_world;
+  return {view.directions_in_world(state.world_from_body, 1),
+          {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
+          clutter.at(index / options.frame_rate_hz)};
+}
+
+Flight::Flight(const FlightOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Flight::~Flight() = default;
+Flight::Flight(Flight&&) noexcept = default;
+
+image::Picture Flight::frame(int index) const {
+  impl_->check_index(index);
+  const int width = impl_->options.width;
+  const int height = impl_->options.height;
+  image::Picture picture = image::make_picture(width, height, image::Colour{});
+  const Moment moment = impl_->moment(index);
+  const Scenery scenery{impl_->view,
+                        impl_->panorama,
+                        impl_->ground,
+                        impl_->own,
+                        width,
+                        static_cast<float>(impl_->lens.focal_px())};
+  Sensor::Exposure exposure = impl_->sensor.start();
+  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
+  tbb::parallel_for(0, tasks, [&](int task) {
+    RowPainter painter(scenery);
+    LightRow upper(width);
+    LightRow lower(width);
+    for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
+      painter.paint(y, moment, upper);
+      if (y + 1 < height) painter.paint(y + 1, moment, lower);
+      impl_->sensor.expose(index, y, upper, y + 1 < height ? lower : upper, exposure, picture);
+    }
+  });
+  tbb::parallel_for(0, height, [&](int y) { impl_->sensor.sharpen(exposure, y, picture); });
+  return picture;
+}
+
+trajectory::State Flight::camera(int index) const { return impl_->path.shaken(index); }
+trajectory::State Flight::nominal_camera(int index) const { return impl_->path.nominal(index); }
+const image::Mask& Flight::own_aircraft() const { return impl_->own.mask; }
+const lens::Lens& Flight::lens() const { return impl_->lens; }
+const FlightOptions& Flight::options() const { return impl_->options; }
+
+Homography Flight::frame_from_first(int index) const {
+  const auto* pinhole = std::get_if<lens::Pinhole>(&impl_->lens.model());
+  check(pinhole != nullptr, "frame_from_first needs a pinhole");
+  Matrix3 pixel_from_cam = Matrix3::Identity();
+  pixel_from_cam(0, 0) = pinhole->focal_px.x();
+  pixel_from_cam(1, 1) = pinhole->focal_px.y();
+  pixel_from_cam(0, 2) = pinhole->principal_point_px.x();
+  pixel_from_cam(1, 2) = pinhole->principal_point_px.y();
+  const auto cam_from_world = [&](int k) {
+    return (cam_from_body() * camera(k).world_from_body.conjugate()).toRotationMatrix();
+  };
+  const Homography h = pixel_from_cam * cam_from_world(index) * cam_from_world(0).transpose() *
+                       pixel_from_cam.inverse();
+  return h / h(2, 2);
+}
+
+std::string csv_from_flight(const Flight& flight) {
+  std::string text =
+      "frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg,"
+      "nominal_north_m,nominal_east_m,nominal_down_m,nominal_yaw_deg,nominal_pitch_deg,nominal_"
+      "roll_deg\n";
+  const auto append = [&](const trajectory::State& s) {
+    const YawPitchRoll a = yaw_pitch_roll(s.world_from_body);
+    text += fmt::format(",{},{},{},{},{},{}",
+                        s.position_in_world.x(),
+                        s.position_in_world.y(),
+                        s.position_in_world.z(),
+                        a.yaw_deg,
+                        a.pitch_deg,
+                        a.roll_deg);
+  };
+  for (int k = 0; k < flight.options().frame_count; ++k) {
+    text += fmt::format("{},{}", k, k / flight.options().frame_rate_hz);
+    append(flight.camera(k));
+    append(flight.nominal_camera(k));
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace airtruth::synthetic

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/trajectory/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "foundation/base/error.h"
+#include "scene/trajectory/path_impl.h"
+#include "scene/trajectory/spline.h"
+
+namespace airtruth::trajectory {
+namespace {
+
+constexpr double kGravityMps2 = 9.80665;
+// Below this horizontal speed, in metres a second, the velocity defines no heading.
+constexpr double kHorizontalMps = 1e-6;
+constexpr double kSamePointM = 1e-6;
+// Largest coordinate, in metres. It keeps squares and lengths far from overflow.
+constexpr double kFarthestM = 1e9;
+
+std::string text_of(const Vector3& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "[%g, %g, %g]", p.x(), p.y(), p.z());
+  return text;
+}
+
+std::string text_of(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
+bool has_heading(const Vector3& v) {
+  return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
+}
+
+// The heading to keep where the path goes straight up or down or the object stands still: the last
+// defined heading before u, else the first one after it.
+double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
+  constexpr int kSteps = 1024;
+  const double step = (spline.end() - spline.begin()) / kSteps;
+  const auto here = static_cast<int>((u - spline.begin()) / step);
+  const auto heading = [&](int i) -> std::optional<double> {
+    const Vector3 v = spline.at(spline.begin() + step * i, 1);
+    if (!has_heading(v)) return std::nullopt;
+    return degrees(std::atan2(v.y(), v.x()));
+  };
+  for (int i = std::min(here, kSteps); i >= 0; --i)
+    if (const auto before = heading(i)) return *before;
+  for (int i = std::max(here, 0); i <= kSteps; ++i)
+    if (const auto after = heading(i)) return *after;
+  return 0;
+}
+
+// Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
+// turn rate / g.
+YawPitchRoll attitude_along(const Vector3& velocity,
+                            const Vector3& acceleration,
+                            double kept_yaw_deg) {
+  const double horizontal = std::hypot(velocity.x(), velocity.y());
+  YawPitchRoll attitude;
+  attitude.pitch_deg = velocity.norm() > 0 ? degrees(std::atan2(-velocity.z(), horizontal)) : 0.0;
+  attitude.yaw_deg = kept_yaw_deg;
+  if (!has_heading(velocity)) return attitude;
+  attitude.yaw_deg = degrees(std::atan2(velocity.y(), velocity.x()));
+  const double turn_rate = (velocity.x() * acceleration.y() - velocity.y() * acceleration.x()) /
+                           (horizontal * horizontal);
+  attitude.roll_deg = degrees(std::atan2(horizontal * turn_rate, kGravityMps2));
+  return attitude;
+}
+
+State state_with(const Vector3& position,
+                 const Vector3& velocity,
+                 YawPitchRoll attitude,
+                 const AttitudeOverride& stated) {
+  attitude.yaw_deg = stated.yaw_deg.value_or(attitude.yaw_deg);
+  attitude.pitch_deg = stated.pitch_deg.value_or(attitude.pitch_deg);
+  attitude.roll_deg = stated.roll_deg.value_or(attitude.roll_deg);
+  return {position, velocity, world_from_body(attitude)};
+}
+
+State state_along(const Vector3& position,
+                  const Vector3& velocity,
+                  const Vector3& acceleration,
+                  const AttitudeOverride& stated,
+                  const CubicSpline<Vector3>& spline,
+                  double u) {
+  const double kept_yaw_deg = has_heading(velocity) ? 0.0 : heading_near_deg(spline, u);
+  return state_with(
+      position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
+}
+
+class AtTimes : public Path::Impl {
+ public:
+  AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
+      : spline_(std::move(times), std::move(points)), stated_(stated) {}
+  double start_s() const override { return spline_.begin(); }
+  double end_s() const override { return spline_.end(); }
+  State at(double t) const override {
+    return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, spline_, t);
+  }
+
+ private:
+  CubicSpline<Vector3> spline_;
+  AttitudeOverride stated_;
+};
+
+// A path at constant speed. The arc length comes from five-point Gauss-Legendre quadrature on equal
+// parts of each span (Abramowitz and Stegun, eq. 25.4.30).
+class AtSpeed : public Path::Impl {
+ public:
+  AtSpeed(std::vector<double> knots,
+          std::vector<Vector3> points,
+          double speed,
+          const AttitudeOverride& stated)
+      : spline_(std::move(knots), std::move(points)), speed_(speed), stated_(stated) {
+    constexpr int kParts = 64;
+    u_.push_back(spline_.begin());
+    length_.push_back(0);
+    for (std::size_t i = 0; i + 1 < spline_.knots().size(); ++i) {
+      const double a = spline_.knots()[i];
+      const double h = (spline_.knots()[i + 1] - a) / kParts;
+      for (int part = 0; part < kParts; ++part) {
+        length_.push_back(length_.back() + arc(a + h * part, a + h * (part + 1)));
+        u_.push_back(a + h * (part + 1));
+      }
+    }
+  }
+  double start_s() const override { return 0; }
+  double end_s() const override { return length_.back() / speed_; }
+  State at(double t) const override {
+    const double u = parameter(t * speed_);
+    const Vector3 slope = spline_.at(u, 1);
+    const Vector3 bend = spline_.at(u, 2);
+    const double rate = slope.norm();
+    if (rate < 1e-12)
+      return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, spline_, u);
+    const Vector3 tangent = slope / rate;
+    const Vector3 curvature =
+        // The derivative of the unit tangent by arc length.
+        (bend - tangent * tangent.dot(bend)) / (rate * rate);
+    return state_along(
+        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, spline_, u);
+  }
+
+ private:
+  double arc(double a, double b) const {
+    constexpr double kNode[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    const double middle = 0.5 * (a + b);
+    const double half = 0.5 * (b - a);
+    double sum = kWeight[0] * spline_.at(middle, 1).norm();
+    for (int i = 1; i < 3; ++i)
+      sum += kWeight[i] * (spline_.at(middle - half * kNode[i], 1).norm() +
+                           spline_.at(middle + half * kNode[i], 1).norm());
+    return half * sum;
+  }
+  // The spline's parameter at an arc length: the table gives the first guess and Newton's method
+  // refines it.
+  double parameter(double length) const {
+    const auto after = std::upper_bound(length_.begin() + 1, length_.end() - 1, length);
+    const auto i = static_cast<std::size_t>(after - length_.begin()) - 1;
+    const double span = length_[i + 1] - length_[i];
+    double u = u_[i] + (span > 0 ? (length - length_[i]) / span : 0.0) * (u_[i + 1] - u_[i]);
+    for (int n = 0; n < 8; ++n) {
+      const double rate = spline_.at(u, 1).norm();
+      if (rate < 1e-12) break;
+      const double step = (length - length_[i] - arc(u_[i], u)) / rate;
+      u = std::clamp(u + step, u_[i], u_[i + 1]);
+      if (std::abs(step) < 1e-14 * (1 + std::abs(u))) break;
+    }
+    return u;
+  }
+
+  CubicSpline<Vector3> spline_;
+  double speed_;
+  AttitudeOverride stated_;
+  std::vector<double> u_;
+  std::vector<double> length_;
+};
+
+class Uniform : public Path::Impl {
+ public:
+  Uniform(const Vector3& position, const Vector3& velocity, const YawPitchRoll& attitude)
+      : position_(position), velocity_(velocity), attitude_(world_from_body(attitude)) {}
+  double start_s() const override { return -std::numeric_limits<double>::infinity(); }
+  double end_s() const override { return std::numeric_limits<double>::infinity(); }
+  State at(double t) const override { return {position_ + t * velocity_, velocity_, attitude_}; }
+
+ private:
+  Vector3 position_;
+  Vector3 velocity_;
+  Quaternion attitude_;
+};
+
+class Steady : public Path::Impl {
+ public:
+  Steady(const SteadyFlight& flight, const AttitudeOverride& stated)
+      : flight_(flight), stated_(stated) {}
+  double start_s() const override { return -std::numeric_limits<double>::infinity(); }
+  double end_s() const override { return std::numeric_limits<double>::infinity(); }
+  State at(double t) const override {
+    const double after_s = t - flight_.time_s;
+    const double rate = radians(flight_.turn_rate_dps);
+    const double course = radians(flight_.course_deg);
+    const double speed_mps = flight_.ground_speed_mps;
+    // The chord of a turn by an angle has the direction of half the angle and the length of the arc
+    // times sin(angle / 2) / (angle / 2).
+    const double half_angle = 0.5 * rate * after_s;
+    const double share = std::abs(half_angle) < 1e-6 ? 1 - half_angle * half_angle / 6
+                                                     : std::sin(half_angle) / half_angle;
+    const double chord_m = speed_mps * after_s * share;
+    const Vector3 moved(chord_m * std::cos(course + half_angle),
+                        chord_m * std::sin(course + half_angle),
+                        -flight_.climb_mps * after_s);
+    const double now = course + 2 * half_angle;
+    const Vector3 velocity(
+        speed_mps * std::cos(now), speed_mps * std::sin(now), -flight_.climb_mps);
+    const Vector3 acceleration(-velocity.y() * rate, velocity.x() * rate, 0);
+    return state_with(flight_.position_ned_m + moved,
+                      velocity,
+                      attitude_along(velocity, acceleration, degrees(now)),
+                      stated_);
+  }
+
+ private:
+  SteadyFlight flight_;
+  AttitudeOverride stated_;
+};
+
+class Shifted : public Path::Impl {
+ public:
+  Shifted(Path path, double by) : path_(std::move(path)), by_(by) {}
+  double start_s() const override { return path_.start_s() + by_; }
+  double end_s() const override { return path_.end_s() + by_; }
+  State at(double t) const override {
+    return *path_.at(std::clamp(t - by_, path_.start_s(), path_.end_s()));
+  }
+
+ private:
+  Path path_;
+  double by_;
+};
+
+class Displaced : public Path::Impl {
+ public:
+  Displaced(Path path, const Vector3& by) : path_(std::move(path)), by_(by) {}
+  double start_s() const override { return path_.start_s(); }
+  double end_s() const override { return path_.end_s(); }
+  State at(double t) const override {
+    State state = *path_.at(t);
+    state.position_in_world += by_;
+    return state;
+  }
+
+ private:
+  Path path_;
+  Vector3 by_;
+};
+
+void check_waypoints(std::span<const Vector3> points) {
+  if (points.size() < 2)
+    throw Error("waypoints_ned_m has " + std::to_string(points.size()) +
+                "; expected at least two waypoints");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestM) || !points[i].allFinite())
+      throw Error("waypoint " + std::to_string(i + 1) + " is " + text_of(points[i]) +
+                  "; expected finite numbers within 1e9 m");
+    if (i > 0 && (points[i] - points[i - 1]).norm() < kSamePointM)
+      throw Error("waypoints " + std::to_string(i) + " and " + std::to_string(i + 1) +
+                  " are the same point " + text_of(points[i]) + "; expected different points");
+  }
+}
+
+}  // namespace
+
+std::optional<State> Path::at(double time_s) const {
+  // Slack at both ends, in seconds. A frame's time is rounded to the clock of its stream, and the
+  // ends belong to the path.
+  constexpr double kClock = 1e-9;
+  if (!std::isfinite(time_s)) return std::nullopt;
+  if (!(time_s >= start_s() - kClock && time_s <= end_s() + kClock)) return std::nullopt;
+  return impl_->at(std::clamp(time_s, start_s(), end_s()));
+}
+double Path::start_s() const { return impl_->start_s(); }
+double Path::end_s() const { return impl_->end_s(); }
+
+Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
+                     double speed_mps,
+                     const AttitudeOverride& attitude) {
+  check_waypoints(waypoints_ned_m);
+  if (!std::isfinite(speed_mps) || speed_mps <= 0)
+    throw Error("speed_mps is " + text_of(speed_mps) + "; expected a positive number");
+  // The knots are the cumulative chord lengths.
+  std::vector<double> knots = {0};
+  for (std::size_t i = 1; i < waypoints_ned_m.size(); ++i)
+    knots.push_back(knots.back() + (waypoints_ned_m[i] - waypoints_ned_m[i - 1]).norm());
+  return Path(std::make_shared<AtSpeed>(
+      std::move(knots),
+      std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
+      speed_mps,
+      attitude));
+}
+
+Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
+                     std::span<const double> times_s,
+                     const AttitudeOverride& attitude) {
+  check_waypoints(waypoints_ned_m);
+  if (times_s.size() != waypoints_ned_m.size())
+    throw Error("times_s has " + std::to_string(times_s.size()) + " numbers for " +
+                std::to_string(waypoints_ned_m.size()) + " waypoints; expected one each");
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const std::string name = "times_s[" + std::to_string(i) + "] = " + text_of(times_s[i]);
+    if (!std::isfinite(times_s[i])) throw Error(name + " is not finite; expected a number");
+    if (i > 0 && !(times_s[i] - times_s[i - 1] >= kShortestStep_s))
+      throw Error(name + " is not after times_s[" + std::to_string(i - 1) +
+                  "] = " + text_of(times_s[i - 1]) + "; expected times that increase");
+  }
+  return Path(std::make_shared<AtTimes>(
+      std::vector<double>(times_s.begin(), times_s.end()),
+      std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
+      attitude));
+}
+
+Path uniform(const Vector3& position_ned_m,
+             const Vector3& velocity_ned_mps,
+             const YawPitchRoll& attitude) {
+  return Path(std::make_shared<Uniform>(position_ned_m, velocity_ned_mps, attitude));
+}
+
+Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
+  return Path(std::make_shared<Steady>(flight, attitude));
+}
+
+std::shared_ptr<const Path::Impl> path_through(std::vector<double> times_s,
+                                               std::vector<Vector3> positions,
+                                               const AttitudeOverride& attitude) {
+  return std::make_shared<AtTimes>(std::move(times_s), std::move(positions), attitude);
+}
+
+Path displaced(const Path& path, const Vector3& offset_ned_m) {
+  return Path(std::make_shared<Displaced>(path, offset_ned_m));
+}
+
+Path shifted(const Path& path, double start_s) {
+  return Path(std::make_shared<Shifted>(path, start_s));
+}
+
+}  // namespace airtruth::trajectory

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "foundation/base/csv.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "scene/trajectory/path.h"
+
+namespace airtruth::trajectory {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+const std::vector<std::string> kColumns = {
+    "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
+constexpr std::size_t kRequired = 4;
+// Largest number of a path file, in metres, seconds or degrees. Its square stays far from overflow.
+constexpr double kLargest = 1e9;
+
+// The cell of each known column; npos where the header lacks the column.
+using Places = std::array<std::size_t, 7>;
+Places columns_of(const std::string& header, const std::string& file) {
+  Places place;
+  place.fill(std::string::npos);
+  const auto names = cells_of(header);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = std::find(kColumns.begin(), kColumns.end(), names[i]);
+    if (at == kColumns.end()) {
+      const auto near = nearest_spelling(names[i], kColumns);
+      throw Error(
+          "unknown column '" + names[i].substr(0, 60) + "'" +
+              (near ? "; did you mean '" + *near + "'?"
+                    : "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]"),
+          {file, 1});
+    }
+    auto& slot = place[static_cast<std::size_t>(at - kColumns.begin())];
+    if (slot != std::string::npos) throw Error("column '" + names[i] + "' stands twice", {file, 1});
+    slot = i;
+  }
+  for (std::size_t i = 0; i < kRequired; ++i)
+    if (place[i] == std::string::npos)
+      throw Error("has no column " + kColumns[i] +
+                      "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]",
+                  {file, 1});
+  return place;
+}
+
+double number_of(const std::string& cell, const std::string& column, const Where& where) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
+  if (failed != std::errc() || rest != end || !(std::abs(value) <= kLargest))
+    throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a number up to 1e9", where);
+  return value;
+}
+
+// The columns of a file: where each known column stands, and how many there are.
+struct Header {
+  Places place;
+  std::size_t columns = 0;
+};
+
+// Adds the values of one row, which must follow those before in time.
+void add_row(const std::vector<std::string>& cells,
+             const Header& header,
+             const Where& where,
+             Samples& samples) {
+  if (cells.size() > header.columns)
+    throw Error("has " + std::to_string(cells.size()) + " cells for " +
+                    std::to_string(header.columns) + " columns; expected one each",
+                where);
+  const auto value = [&](std::size_t column) {
+    const std::size_t place = header.place[column];
+    if (place == std::string::npos) return 0.0;
+    if (place >= cells.size()) throw Error("has no value for " + kColumns[column], where);
+    return number_of(cells[place], kColumns[column], where);
+  };
+  const double time = value(0);
+  if (!samples.times_s.empty() && time - samples.times_s.back() < kShortestStep_s)
+    throw Error("time_s is " + cells[header.place[0]] +
+                    ", not after the row before; expected times that increase",
+                where);
+  const Vector3 angle(value(4), value(5), value(6));
+  samples.times_s.push_back(time);
+  // The values are read in this order, so that an error names the first bad column.
+  const double north = value(1);
+  const double east = value(2);
+  const double down = value(3);
+  samples.positions_ned_m.emplace_back(north, east, down);
+  samples.angles_deg.push_back(angle);
+}
+
+Samples read_samples(std::string_view text, const std::string& file) {
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  if (!std::getline(lines, line))
+    throw Error("is empty; expected a header and at least two rows", {file});
+  if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
+  const Header header{columns_of(line, file), cells_of(line).size()};
+  Samples samples;
+  for (std::size_t i = 0; i < 3; ++i)
+    samples.has_angle[i] = header.place[kRequired + i] != std::string::npos;
+  int number = 1;
+  while (std::getline(lines, line)) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    add_row(cells_of(line), header, {file, number}, samples);
+  }
+  if (samples.times_s.size() < 2)
+    throw Error("holds " + std::to_string(samples.times_s.size()) + " rows; expected at least two",
+                {file, number});
+  return samples;
+}
+
+}  // namespace
+
+Path parse_path_csv(std::string_view text,
+                    const std::filesystem::path& name,
+                    const AttitudeOverride& attitude) {
+  return path_through_samples(read_samples(text, name.string()), attitude);
+}
+
+Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude) {
+  return parse_path_csv(read_file(path, kMaxBytes), path, attitude);
+}
+
+}  // namespace airtruth::trajectory
