@@ -92,6 +92,7 @@ function(add_module_test target label module sources libraries)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE airtruth_${module} ${libraries} GTest::gmock GTest::gtest_main)
   target_compile_options(${target} PRIVATE ${airtruth_light_optimisation})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)  # for <support/...>
   if(AIRTRUTH_PCH)
     target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
   endif()

@@ -16,6 +16,8 @@ target_compile_options(airtruth_options INTERFACE
   # The same sums everywhere: no fused multiply-add that one compiler contracts and another does not.
   -ffp-contract=off)
 target_link_libraries(airtruth_options INTERFACE fmt::fmt)
+# What is kept on the disk is named by the build that computed it (foundation/disk_cache).
+target_link_options(airtruth_options INTERFACE -Wl,--build-id=sha1)
 # The public headers (include/airtruth) mark what the libraries export; everything else stays private.
 configure_file(${PROJECT_SOURCE_DIR}/include/airtruth/version.h.in ${PROJECT_BINARY_DIR}/include/airtruth/version.h @ONLY)
 target_include_directories(airtruth_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
