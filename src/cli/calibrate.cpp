@@ -8,16 +8,16 @@
 
 #include <fmt/format.h>
 
+#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/join.h"
+#include "calibration/camera_file/plot.h"
+#include "calibration/camera_file/profile.h"
+#include "calibration/own_aircraft/own_aircraft.h"
 #include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
-#include "measure/calibration/calibration.h"
-#include "measure/calibration/join.h"
-#include "measure/calibration/plot.h"
-#include "measure/calibration/profile.h"
-#include "measure/own_aircraft/own_aircraft.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/frame/mask_picture.h"

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "calibration/camera_file/cache.h"
+#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/profile.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "measure/calibration/cache.h"
-#include "measure/calibration/calibration.h"
-#include "measure/calibration/profile.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/frame/paint.h"
 #include "sequence/setup/from_scene.h"

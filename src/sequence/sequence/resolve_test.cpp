@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "calibration/camera_file/cache.h"
+#include "calibration/camera_file/profile.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "measure/calibration/cache.h"
-#include "measure/calibration/profile.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/air/ground_seen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "calibration/air/extinction.h"
+#include "calibration/air/rays.h"
+#include "foundation/image/colour.h"
+
+namespace airtruth::calibration {
+namespace {
+
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
+// Least range of a square, heights.
+constexpr double kMinSeenRange = 2.5;
+// Least share of the pixels of a square that a view shows, and the least number
+// of pixels of a square.
+constexpr double kMinShareSeen = 0.6;
+constexpr double kMinPixels = 3;
+// Largest number of pixels that are sampled in a view: it bounds the time.
+constexpr double kMaxSampledPixels = 1.5e6;
+
+// Borders of the bands of far ground, degrees below the horizon. Bands within one pixel of the
+// horizon are not used.
+constexpr std::array kBordersDeg{0.15, 0.3, 0.45, 0.6, 0.8, 1.05, 1.35, 1.7, 2.1, 2.6, 3.2};
+constexpr std::size_t kBands = kBordersDeg.size() - 1;
+// Least number of pixels of a band, over all views.
+constexpr double kMinPixelsInBand = 1000;
+
+struct Sum {
+  double count = 0, range = 0;
+  Eigen::Vector2d way = Eigen::Vector2d::Zero();
+  std::array<double, 3> light{};
+
+  void add(const Eigen::Vector2d& to_pixel, double range_of_it, const image::Rgb& linear) {
+    count += 1, range += range_of_it;
+    way += to_pixel;
+    for (std::size_t c = 0; c < 3; ++c) light[c] += double(linear[c]);
+  }
+  std::array<double, 3> mean_light() const {
+    return {light[0] / count, light[1] / count, light[2] / count};
+  }
+};
+
+// The pixels of a band, and the sum of their depressions.
+struct BandSum : Sum {
+  double depression_rad = 0;
+};
+
+int sector_of_way(const Eigen::Vector2d& way) {
+  return calibration::sector_of(std::atan2(way.y(), way.x()));
+}
+
+// Collects the squares and bands, one view after the other.
+class Gatherer {
+ public:
+  Gatherer(const lens::Lens& lens, const image::Mask* own_aircraft, const image::ToneCurve& tone)
+      : tone_(tone), bands_(kSectors * kBands) {
+    const double pixels = double(lens.size().width) * lens.size().height;
+    const int step =
+        std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMaxSampledPixels))));
+    step_rad_ = step / lens.focal_px();
+    rays_ = pixel_rays(lens, own_aircraft, step / 2, step);
+    for (std::size_t i = 0; i <= kBands; ++i) {
+      const double border_rad = radians(kBordersDeg[i]);
+      borders_[i] = border_rad * lens.focal_px() < 1 ? 0 : 1 / std::sin(border_rad);
+    }
+  }
+
+  void add(const GroundView& view, const Quaternion& level_from_world, const Eigen::Vector2d& at) {
+    const double farthest = std::sqrt(1 / step_rad_);
+    const image::ColourCode code(view.picture->colour);
+    const Quaternion level_from_cam = level_from_world * view.cam_from_world.conjugate();
+    std::map<Place, Sum> sums;
+    auto last = sums.end();
+    for (const PixelRay& ray : rays_) {
+      const auto way = place_on_ground(level_from_cam * ray.in_cam);
+      if (!way) continue;
+      const double range = std::sqrt(way->squaredNorm() + 1);
+      const auto band = band_of(range);
+      const bool in_square = range >= kMinSeenRange && range <= farthest;
+      if (!band && !in_square) continue;
+      const image::Rgb linear = image::linear_at(*view.picture, code, ray.x, ray.y, tone_);
+      if (band) {
+        BandSum& sum = bands_[static_cast<std::size_t>(sector_of_way(*way)) * kBands + *band];
+        sum.add(*way, range, linear);
+        sum.depression_rad += std::asin(1 / range);
+      }
+      if (!in_square) continue;
+      const Eigen::Vector2d place = at + *way;
+      const Place square{static_cast<int>(std::floor(place.x())),
+                         static_cast<int>(std::floor(place.y()))};
+      // Neighbouring pixels mostly show the same square.
+      if (last == sums.end() || last->first != square) last = sums.try_emplace(square).first;
+      last->second.add(*way, range, linear);
+    }
+    add_squares(sums);
+  }
+
+  GroundSeen seen() {
+    std::stable_sort(seen_.squares.begin(),
+                     seen_.squares.end(),
+                     [](const SquareSeen& a, const SquareSeen& b) { return a.square < b.square; });
+    for (std::size_t i = 0; i < bands_.size(); ++i)
+      if (const BandSum& band = bands_[i]; band.count >= kMinPixelsInBand)
+        seen_.far.push_back({static_cast<int>(i / kBands),
+                             1 / std::sin(band.depression_rad / band.count),
+                             band.mean_light()});
+    return std::move(seen_);
+  }
+
+ private:
+  using Place = std::pair<int, int>;
+
+  // Adds the squares of one view of which enough is seen.
+  void add_squares(const std::map<Place, Sum>& sums) {
+    for (const auto& [place, sum] : sums) {
+      const double range = sum.range / sum.count;
+      const double whole = 1 / (range * range * range * step_rad_ * step_rad_);
+      if (sum.count < std::max(kMinPixels, kMinShareSeen * whole)) continue;
+      const int square = numbers_.emplace(place, static_cast<int>(numbers_.size())).first->second;
+      seen_.squares.push_back({square, sector_of_way(sum.way), range, sum.mean_light()});
+    }
+  }
+
+  std::optional<std::size_t> band_of(double range) const {
+    for (std::size_t i = kBands; i > 0 && range >= borders_[i]; --i)
+      if (range < borders_[i - 1]) return i - 1;
+    return std::nullopt;
+  }
+
+  image::ToneCurve tone_;
+  double step_rad_ = 0;
+  std::vector<PixelRay> rays_;
+  std::map<Place, int> numbers_;
+  // Ranges of the borders, heights; 0 for a border within a pixel of the horizon.
+  std::array<double, kBands + 1> borders_{};
+  // The bands of one sector after those of the other.
+  std::vector<BandSum> bands_;
+  GroundSeen seen_;
+};
+
+}  // namespace
+
+GroundSeen ground_seen(const std::vector<GroundView>& views,
+                       const GroundTrack& track,
+                       const lens::Lens& lens,
+                       const image::Mask* own_aircraft,
+                       const image::ToneCurve& tone) {
+  Gatherer gatherer(lens, own_aircraft, tone);
+  for (std::size_t k = 0; k < track.places.size(); ++k)
+    gatherer.add(views[track.first + k], track.level_from_world, track.places[k]);
+  return gatherer.seen();
+}
+
+}  // namespace airtruth::calibration

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <string_view>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "calibration/camera_file/calibration.h"
+#include "scene/scene/camera_keys.h"
+
+namespace airtruth::calibration {
+namespace {
+
+// A number as text, with four significant digits.
+std::string shown(double value) { return fmt::format("{:.4g}", value); }
+
+// The origin of the value in words.
+std::string source_words(const Calibration& c, const Quantity& quantity) {
+  if (!quantity.source.empty()) return quantity.source;
+  return c.clips > 1 ? "the clips' own" : "the clip's own";
+}
+
+std::string array_of(const std::vector<Estimate>& values, bool errors) {
+  std::string text;
+  for (const Estimate& e : values)
+    text += (text.empty() ? "" : ", ") + shown(errors ? e.sigma : e.value);
+  return values.size() == 1 ? text : "[" + text + "]";
+}
+
+// If not every frame gives a horizon: the reason.
+std::string horizon_line(const Calibration& c) {
+  if (!c.no_horizon.empty()) return "# horizon: not measured: " + c.no_horizon + "\n";
+  if (!c.horizon_note.empty()) return "# horizon: " + c.horizon_note + "\n";
+  return "";
+}
+
+// The table [clip] with the comments above it.
+std::string head_of(const Calibration& c) {
+  std::string text =
+      "# Measured by airtruth calibrate. Values stand for [realism] file = \"...\" of a scene.\n";
+  std::string quoted;
+  for (const char ch : c.video.filename().string())
+    quoted += ch == '"' || ch == '\\' || static_cast<unsigned char>(ch) < 0x20 ? '_' : ch;
+  text += fmt::format("[clip]\nvideo = \"{}\"\nwidth = {}\nheight = {}\nframes = {}\n",
+                      quoted,
+                      c.width,
+                      c.height,
+                      c.frames);
+  if (!c.lens.empty()) text += fmt::format("lens = \"{}\"\n", c.lens);
+  if (c.tone.gamma != 0) text += fmt::format("gamma = {}\n", c.tone.gamma);
+  return text + horizon_line(c);
+}
+
+// The lines of one quantity.
+std::string lines_of(const Calibration& c, const QuantityKey& key) {
+  const Quantity& quantity = c.quantities.*key.member;
+  if (!quantity.is_measured())
+    return fmt::format("# {}: not measured: {}\n", key.key(), quantity.missing);
+  std::string text;
+  if (!quantity.note.empty()) text += "# " + quantity.note + "\n";
+  if (!quantity.doubt.empty()) text += "# doubtful: " + quantity.doubt + "\n";
+  text += fmt::format("{} = {}  # +- {}; {}; {}\n",
+                      key.key(),
+                      array_of(quantity.values, false),
+                      array_of(quantity.values, true),
+                      key.words,
+                      source_words(c, quantity));
+  if (key.member == &Quantities::readout && quantity.value().value > 0)
+    text += fmt::format("readout = \"{}\"\n", c.readout_direction);
+  return text;
+}
+
+}  // namespace
+
+std::string toml_from(const Calibration& c) {
+  std::string text = head_of(c);
+  std::string_view table;
+  for (const QuantityKey& key : kQuantityKeys) {
+    const Quantity& quantity = c.quantities.*key.member;
+    if (!quantity.is_measured() && quantity.missing.empty()) continue;
+    if (table != key.table()) text += fmt::format("\n[{}]\n", table = key.table());
+    text += lines_of(c, key);
+  }
+  return text;
+}
+
+scene::CameraModel model_of(const Calibration& c) {
+  scene::CameraModel model;
+  scene::for_each_camera_key(
+      [&](const char* key, auto& member) {
+        const std::vector<Estimate>& values = c.quantities.at(key).values;
+        if (values.empty()) return;
+        if constexpr (std::is_same_v<decltype(member), std::optional<double>&>)
+          member = values[0].value;
+        else
+          member = {values[0].value, values[1].value, values[2].value};
+      },
+      model);
+  if (model.readout_s) model.readout = enum_named<Readout>(c.readout_direction);
+  return model;
+}
+
+}  // namespace airtruth::calibration

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calibration/measured/measured.h"
+#include "calibration/optics/chroma.h"
+#include "calibration/optics/edge_line.h"
+#include "calibration/optics/edge_profile.h"
+#include "calibration/optics/step_response.h"
+#include "foundation/geometry/transform.h"
+#include "foundation/image/layer.h"
+#include "foundation/image/picture.h"
+#include "foundation/image/tone_curve.h"
+
+namespace airtruth::calibration {
+
+struct StraightStep;
+
+// Measures the camera's step response from the sharp straight edges of a clip. It samples the
+// profiles across them to a fraction of a pixel (the slanted-edge method of ISO 12233). The width
+// of a profile comes from the lens's point spread, the pixels and the codec together, and from the
+// softness of the edge in the world. An overshoot on both sides of the step is sharpening. An
+// overshoot on one side is a line in the world, and such edges are left out.
+class EdgeMeter {
+ public:
+  EdgeMeter(const image::Mask* own_aircraft, const image::ToneCurve& tone)
+      : own_aircraft_(own_aircraft), tone_(tone) {}
+  // Adds the edges of one frame. `frame_from_before`: motion of the picture since the previous
+  // frame, by which edges blurred by motion are recognised; empty if it is not known.
+  void add(const image::Picture& frame, const std::optional<Homography>& frame_from_before);
+
+  // The step response of the camera. Not measured where there are too few sharp edges.
+  //
+  // The error of the spread includes the chance that the sharpest of few edges is soft in the
+  // world. The number of different edges is that of one frame: the edges of other frames may be the
+  // same ones again, as those of one aircraft against the sky are.
+  //
+  // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
+  // softens weak edges. Where enough edges are high compared with the step, only those are used.
+  Measured<StepResponse> result(double codec_step = 0);
+  // The extra spread of chroma beyond luma (chroma.h) across edges that are as sharp as `response`.
+  // `response` must be the answer of result() with the same `codec_step`.
+  Measured<Estimate> chroma(const StepResponse& response, double codec_step = 0) const;
+  // The mean profile of the edges that the last result() used.
+  const EdgeProfile& profile() const { return profile_; }
+
+ private:
+  struct Edge {
+    EdgeLine line;
+    double width_px = 0;   // standard deviation of the derivative of the profile
+    double asymmetry = 0;  // rms difference between the two halves of the profile, as heights
+    double height = 0;     // of the step, code values
+    double moved_px = 0;   // motion across the edge since the previous frame; NaN: not known
+    bool is_long = false;
+    StepEdge step;
+    std::vector<ChromaStep> chroma;
+  };
+  // The edge of a step, without its motion and chroma. `dark`, `unit`: luma of black, and of white
+  // above black, code values.
+  static Edge edge_of(StraightStep found, double dark, double unit);
+  // Whether the edge was added before. An edge that stays at its place in the picture, such as one
+  // of the own aircraft, is the same edge in all frames.
+  bool is_known(const Edge& edge) const;
+  std::vector<const Edge*> usable(double codec_step) const;
+  std::vector<const StepEdge*> sharp_ones(double codec_step) const;
+  const image::Mask* own_aircraft_;
+  image::ToneCurve tone_;
+  std::vector<Edge> edges_;
+  // The largest number of edges in one frame, and of those with a step of chroma.
+  int most_at_once_ = 0;
+  std::size_t most_chroma_at_once_ = 0;
+  EdgeProfile profile_;
+};
+
+}  // namespace airtruth::calibration

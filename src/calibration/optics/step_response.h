@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "calibration/measured/measured.h"
+#include "foundation/image/tone_curve.h"
+
+// The step response of a camera: a Gaussian point spread in linear light, the tone curve and an
+// unsharp mask on coded luma, each integrated over whole pixels (step_model.h). It is fitted to the
+// edges of a clip.
+namespace airtruth::calibration {
+
+// Samples across one straight edge.
+struct StepEdge {
+  // Coded luma on the two sides, 0 to 1.
+  double low = 0, high = 0;
+  // Pairs of the place, in px from the middle, and the height, 0 to 1.
+  std::vector<std::pair<double, double>> samples;
+};
+
+struct StepResponse {
+  // Standard deviation of the point spread.
+  Estimate point_spread_px;
+  // Amount of the unsharp mask; 0 if it does not differ significantly from 0.
+  Estimate sharpening;
+  // Standard deviation of the Gaussian of the unsharp mask.
+  Estimate sharpening_px;
+  // The spread of each edge: that of the camera and that of the edge in the world together.
+  std::vector<double> edge_spreads_px;
+};
+
+// Fits the step response to one edge or more. Each edge has its own two levels, since the tone
+// curve bends each step differently, and its own spread, since edges in the world are softer than a
+// step by different amounts. Each edge alone therefore gives a spread and, for a given radius, an
+// amount of sharpening (edge_fit.h). The unsharp mask belongs to the camera and is the same on all
+// edges: its amount is the median of theirs, and its radius is the one that fits all edges best.
+// The spread of the camera is the lower bound of the edges' spreads, apart from random errors. It
+// is estimated as a stochastic frontier: an exponential excess (Meeusen and van den Broeck 1977)
+// plus a symmetric error (Aigner, Lovell and Schmidt 1977).
+StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
+                               const image::ToneCurve& tone);
+
+// The heights, 0 to 1, that `response` gives at `places_px` for a step between two levels of coded
+// luma.
+std::vector<double> step_heights(const StepResponse& response,
+                                 double low,
+                                 double high,
+                                 const std::vector<double>& places_px,
+                                 const image::ToneCurve& tone);
+
+// The distance in px between the last place below 10 % of the height of that step and the first
+// place above 90 %.
+double edge_spread_px(const StepResponse& response,
+                      double low,
+                      double high,
+                      const image::ToneCurve& tone);
+
+}  // namespace airtruth::calibration

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "calibration/optics/edge_line.h"
+
+// Finds straight steps of luma in one picture and samples the profile across them to a fraction of
+// a pixel (the slanted-edge method of ISO 12233). Pixels have integer centres.
+namespace airtruth::calibration {
+
+// Half the lengths of edges that are sought, px. The profile of a long edge is less affected by
+// what happens to lie beside the edge, but not every clip has enough long edges.
+inline constexpr int kLongEdgePx = 15, kShortEdgePx = 5;
+
+// A place with a steep gradient of luma.
+struct SteepPlace {
+  cv::Point at;
+  cv::Point2d slope;  // of the 3 x 3 Sobel filter, code values
+};
+
+// The places of a picture of 8-bit luma with a steep gradient, the steepest first.
+std::vector<SteepPlace> steep_places(const cv::Mat& grey);
+
+// A straight step between two even levels.
+struct StraightStep {
+  // Its normal points to the bright side.
+  EdgeLine line;
+  double low = 0, high = 0;                        // code values
+  double width_px = 0;                             // standard deviation of the derivative
+  double asymmetry = 0;                            // rms difference of the two halves, heights
+  std::vector<std::pair<double, double>> samples;  // place, px from the middle; height 0 to 1
+};
+
+// The step at a place, over the longer of the two lengths over which it is clean and straight;
+// empty if it is over neither.
+std::optional<StraightStep> straight_step_at(const cv::Mat& grey, const SteepPlace& place);
+
+}  // namespace airtruth::calibration

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/sensor/blur.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "camera/motion/corners.h"
+#include "camera/motion/differentiator.h"
+
+namespace airtruth::calibration {
+namespace {
+
+// Where a constant of this file states no origin, it was chosen on the virtual flights of
+// camera_slow_test.cpp, whose figures are in docs/realism.md.
+
+// Frames whose crops are kept, and the size of a crop, px: they bound memory to 300 x 448 x 336
+// bytes.
+constexpr std::size_t kMaxFrames = 300;
+constexpr int kCropWidth = 448;
+constexpr int kCropHeight = 336;
+// Least speed of a frame in motion, px per frame.
+constexpr double kMinMovingSpeed = 4;
+// Largest speed of a frame at rest, as a share of the speed of the frame in motion.
+constexpr double kMaxRestSpeedShare = 0.35;
+// Largest distance between the two, frames.
+constexpr std::size_t kMaxFramesApart = 4;
+// Largest and least number of pairs of a frame in motion and a frame at rest: the largest bounds
+// the time.
+constexpr std::size_t kMaxPairs = 60;
+constexpr std::size_t kMinPairs = 8;
+// Largest length of a blur that is tried, as a multiple of the motion in one frame interval.
+constexpr double kMaxLengthShare = 1.3;
+// Least share of the interval that is measured, absolute and in standard errors: below them the
+// frames in motion are as sharp as those at rest.
+constexpr double kMinShare = 0.04;
+constexpr double kMinShareInErrors = 2;
+
+// The picture without the detail that noise dominates.
+cv::Mat softened(const cv::Mat& grey) {
+  cv::Mat soft;
+  cv::GaussianBlur(grey, soft, {}, 1.0);
+  return soft;
+}
+
+// Energy of the gradients of a softened picture along a direction divided by that across it.
+double slope_ratio(const cv::Mat& soft, const Pixel& along) {
+  cv::Mat gx, gy;
+  cv::Sobel(soft, gx, CV_32F, 1, 0);
+  cv::Sobel(soft, gy, CV_32F, 0, 1);
+  const double xx = gx.dot(gx), xy = gx.dot(gy), yy = gy.dot(gy);
+  const double c = along.x(), s = along.y();
+  return (c * c * xx + 2 * c * s * xy + s * s * yy) /
+         std::max(1e-6, c * c * yy - 2 * c * s * xy + s * s * xx);
+}
+
+// Weights of cubic convolution (Keys 1981, a = -1/2) for four pixels, from the one before the place
+// to the second one after it. Linear interpolation would blur.
+std::array<double, 4> cubic(double f) {
+  return {((-0.5 * f + 1) * f - 0.5) * f,
+          (1.5 * f - 2.5) * f * f + 1,
+          ((-1.5 * f + 2) * f + 0.5) * f,
+          (0.5 * f - 0.5) * f * f};
+}
+
+// The picture blurred along a straight line of the given length.
+cv::Mat blurred(const cv::Mat& grey, const Pixel& along, double length_px) {
+  if (length_px < 0.05) return grey;
+  const int half = static_cast<int>(std::ceil(length_px / 2)) + 2;
+  cv::Mat kernel(2 * half + 1, 2 * half + 1, CV_32F, cv::Scalar(0));
+  // Points along the line.
+  constexpr int kPoints = 64;
+  for (int i = 0; i < kPoints; ++i) {
+    const Pixel p = along * length_px * ((i + 0.5) / kPoints - 0.5);
+    const int x = static_cast<int>(std::floor(p.x()));
+    const int y = static_cast<int>(std::floor(p.y()));
+    const std::array<double, 4> wx = cubic(p.x() - x), wy = cubic(p.y() - y);
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 4; ++k)
+        kernel.at<float>(half + y + j - 1, half + x + k - 1) += static_cast<float>(
+            wx[static_cast<std::size_t>(k)] * wy[static_cast<std::size_t>(j)] / kPoints);
+  }
+  cv::Mat result;
+  cv::filter2D(grey, result, CV_32F, kernel);
+  return result;
+}
+
+// The length of the blur that gives the softened still picture the gradient ratio of the moving
+// one; empty if no length up to `most_px` does. The method is the false position of Dowell and
+// Jarratt (1971, "Illinois") in the square of the length, of which the ratio is nearly a linear
+// function.
+std::optional<double> length_of(const cv::Mat& still,
+                                const cv::Mat& moving,
+                                const Pixel& along,
+                                double most_px) {
+  // Largest error of the length as a share of `most_px`, and the number of rounds, which ends an
+  // iteration that does not converge.
+  constexpr double kMaxError = 1.0 / 512;
+  constexpr int kMaxRounds = 9;
+  const double wanted = slope_ratio(moving, along);
+  const auto excess = [&](double squared_px) {
+    return slope_ratio(blurred(still, along, std::sqrt(squared_px)), along) - wanted;
+  };
+  double low = 0, above = excess(0);
+  if (above <= 0) return 0.0;
+  double high = most_px * most_px, below = excess(high);
+  if (below > 0) return std::nullopt;
+  double found = high;
+  for (int round = 0, same = 0; round < kMaxRounds && below < 0; ++round) {
+    const double before = found;
+    found = low + (high - low) * above / (above - below);
+    if (std::abs(std::sqrt(found) - std::sqrt(before)) < kMaxError * most_px) break;
+    const double here = excess(found);
+    const int side = here > 0 ? 1 : -1;
+    if (side > 0) {
+      low = found, above = here;
+      if (same == side) below /= 2;
+    } else {
+      high = found, below = here;
+      if (same == side) above /= 2;
+    }
+    same = side;
+  }
+  return std::sqrt(found);
+}
+
+}  // namespace
+
+std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
+  // Half the length of the differentiator, frames.
+  constexpr int kReach = 12;
+  if (k < kReach || k + kReach >= places.size()) return std::nullopt;
+  Pixel rate = Pixel::Zero();
+  for (int j = 1; j <= kReach; ++j) {
+    rate += motion::differentiator_weight(j, kReach) *
+            (places[k + static_cast<std::size_t>(j)] - places[k - static_cast<std::size_t>(j)]);
+  }
+  return rate;
+}
+
+void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& moved) {
+  if (frames_++ >= kMaxFrames) return;
+  Shot& shot = shots_.back();
+  const Pixel before = shot.places.empty() ? Pixel(0, 0) : shot.places.back();
+  shot.places.push_back(before + moved.value_or(Pixel(0, 0)));
+  shot.known.push_back(moved.has_value());
+  const cv::Mat luma = motion::luma_of(frame);
+  const int width = std::min(kCropWidth, luma.cols);
+  const int height = std::min(kCropHeight, luma.rows);
+  const int x0 = (luma.cols - width) / 2;
+  const int y0 = (luma.rows - height) / 2;
+  cv::Mat crop = luma(cv::Rect(x0, y0, width, height)).clone();
+  const double sum = cv::sum(crop)[0];
+  // The shake of the camera does not blur the own aircraft, so its pixels are set to the mean.
+  if (own_aircraft_ != nullptr)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        if (!own_aircraft_->is_free(x0 + x, y0 + y))
+          crop.at<unsigned char>(y, x) = static_cast<unsigned char>(sum / width / height);
+  shot.crops.push_back(crop);
+}
+
+void BlurMeter::cut() {
+  if (!shots_.back().places.empty()) shots_.emplace_back();
+}
+
+std::size_t BlurMeter::add_shares(const Shot& shot, std::vector<double>& shares) {
+  std::size_t tried = 0;
+  for (std::size_t k = 1; k < shot.crops.size() && shares.size() < kMaxPairs; ++k) {
+    const auto fast = rate_at(shot.places, k);
+    if (!fast || !shot.known[k] || fast->norm() < kMinMovingSpeed) continue;
+    const Pixel along = fast->normalized();
+    std::optional<std::size_t> partner;
+    double slowest = kMaxRestSpeedShare * fast->norm();
+    for (std::size_t j = k > kMaxFramesApart ? k - kMaxFramesApart : 0;
+         j <= k + kMaxFramesApart && j < shot.crops.size();
+         ++j) {
+      const auto rate = rate_at(shot.places, j);
+      if (j == k || !rate || !shot.known[j] || rate->norm() >= slowest) continue;
+      slowest = rate->norm();
+      partner = j;
+    }
+    if (!partner) continue;
+    ++tried;
+    cv::Mat still, moving;
+    shot.crops[*partner].convertTo(still, CV_32F);
+    shot.crops[k].convertTo(moving, CV_32F);
+    const auto length =
+        length_of(softened(still), softened(moving), along, kMaxLengthShare * fast->norm());
+    if (!length) continue;
+    // The neighbour is slightly blurred as well; variances add.
+    const double own = slowest * slowest / fast->squaredNorm();
+    shares.push_back(*length / fast->norm() / std::sqrt(std::max(0.2, 1 - own)));
+  }
+  return tried;
+}
+
+Measured<Estimate> BlurMeter::share() const {
+  std::vector<double> shares;
+  std::size_t tried = 0;
+  for (const Shot& shot : shots_) tried += add_shares(shot, shares);
+  if (shares.size() < kMinPairs) {
+    return NotMeasured{
+        tried < kMinPairs
+            ? "too few frames in fast motion have a neighbour at rest"
+            : "moving frames have lost more detail than a whole frame's exposure would take"};
+  }
+  std::sort(shares.begin(), shares.end());
+  const std::size_t n = shares.size();
+  const double spread = (shares[n * 84 / 100] - shares[n * 16 / 100]) / 2;
+  const Estimate result{shares[n / 2], 1.25 * spread / std::sqrt(double(n))};
+  if (result.value < kMinShare || result.value < kMinShareInErrors * result.sigma) {
+    return NotMeasured{
+        "frames in motion are as sharp as others: the exposure is too short to be measured"};
+  }
+  return result;
+}
+
+}  // namespace airtruth::calibration
