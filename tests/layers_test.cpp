@@ -5,8 +5,10 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,10 +17,15 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kSource = fs::path(AIRTRUTH_SOURCE_DIR) / "src";
 
-// The rank of every module, "wing/module", or "cli" for a wing that is one module: higher wings and
-// higher ranks within a wing have higher numbers.
-std::map<std::string, int> ranks() {
-  std::map<std::string, int> result;
+struct Layer {
+  std::string wing;
+  std::string module;
+  int rank = 0;  // higher wings and higher ranks within a wing have higher numbers
+};
+
+// src/LAYERS from the lowest module to the highest.
+std::vector<Layer> layers() {
+  std::vector<Layer> result;
   std::ifstream file(kSource / "LAYERS");
   int rank = 0;
   for (std::string line; std::getline(file, line);) {
@@ -32,9 +39,19 @@ std::map<std::string, int> ranks() {
       if (word == "<")
         ++rank;
       else
-        result[word == wing && fs::exists(kSource / wing / "main.cpp") ? wing : wing + "/" + word] =
-            rank;
+        result.push_back({wing, word, rank});
     }
+  }
+  return result;
+}
+
+// The rank of every module, "wing/module", or "cli" for a wing that is one module.
+std::map<std::string, int> ranks() {
+  std::map<std::string, int> result;
+  for (const Layer& layer : layers()) {
+    const bool is_whole_wing =
+        layer.module == layer.wing && fs::exists(kSource / layer.wing / "main.cpp");
+    result[is_whole_wing ? layer.wing : layer.wing + "/" + layer.module] = layer.rank;
   }
   return result;
 }
@@ -50,6 +67,47 @@ std::string module_of(const fs::path& path) {
 bool is_source(const fs::path& path) {
   const std::string name = path.filename().string();
   return (name.ends_with(".h") || name.ends_with(".cpp")) && !name.ends_with("_test.cpp");
+}
+
+// "wing/module" of every row of the table in docs/architecture.md, whose first column is empty
+// where the wing is that of the row above.
+std::vector<std::string> described_modules() {
+  std::vector<std::string> result;
+  std::ifstream file(fs::path(AIRTRUTH_SOURCE_DIR) / "docs" / "architecture.md");
+  const std::regex row(R"re(^\| (`([a-z_0-9]+)`)? ?\| `([a-z_0-9]+)` \|.*)re");
+  std::string wing;
+  std::smatch match;
+  for (std::string line; std::getline(file, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    if (match[2].matched) wing = match[2].str();
+    result.push_back(wing + "/" + match[3].str());
+  }
+  return result;
+}
+
+// The wings of a list of modules, in its order.
+std::vector<std::string> wings_of(const std::vector<std::string>& modules) {
+  std::vector<std::string> result;
+  for (const std::string& module : modules) {
+    const std::string wing = module.substr(0, module.find('/'));
+    if (result.empty() || result.back() != wing) result.push_back(wing);
+  }
+  return result;
+}
+
+TEST(Layers, ArchitectureDescribesTheSameModules) {
+  std::vector<std::string> ranked;
+  for (const Layer& layer : layers()) ranked.push_back(layer.wing + "/" + layer.module);
+  const std::vector<std::string> described = described_modules();
+  const std::set<std::string> in_layers(ranked.begin(), ranked.end());
+  const std::set<std::string> in_page(described.begin(), described.end());
+  for (const std::string& module : in_layers)
+    EXPECT_TRUE(in_page.contains(module)) << "docs/architecture.md has no row for " << module;
+  for (const std::string& module : in_page)
+    EXPECT_TRUE(in_layers.contains(module))
+        << "docs/architecture.md has a row for " << module << ", which src/LAYERS does not name";
+  EXPECT_EQ(described.size(), in_page.size()) << "docs/architecture.md has two rows for one module";
+  EXPECT_EQ(wings_of(described), wings_of(ranked)) << "the order of the wings differs";
 }
 
 TEST(Layers, EveryModuleHasARank) {

@@ -14,7 +14,7 @@ namespace airtruth {
 
 // These are plain threads and not tasks of oneTBB. A job may wait for a tracker in a child process,
 // or limit oneTBB while it renders; even then as many jobs run as the user asked for
-// (docs/decisions/0022).
+// (docs/decisions/0002).
 void in_parallel(std::size_t count,
                  int jobs,
                  const std::function<void(std::size_t)>& each,

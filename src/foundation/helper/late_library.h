@@ -2,7 +2,7 @@
 #pragma once
 
 // A shared library of ours that is loaded when it is first needed. The libraries that it depends on
-// would otherwise be loaded at the start of every command (docs/decisions/0048).
+// would otherwise be loaded at the start of every command (docs/optimisations.md).
 namespace airtruth::helper {
 
 struct LateLibrary {

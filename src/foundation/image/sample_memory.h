@@ -8,7 +8,7 @@
 
 // The memory of planes. What one plane gives back, the next of that size takes, whichever threads
 // the two belong to: malloc() keeps memory for each thread by itself, so that a run would come to
-// hold several times what its frames in flight need (docs/decisions/0048).
+// hold several times what its frames in flight need (docs/optimisations.md).
 namespace airtruth::image {
 
 class GiveBack {

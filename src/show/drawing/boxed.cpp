@@ -14,7 +14,7 @@ namespace {
 constexpr int kRimmedPx = 2;
 
 // The decoded pixels with the top row first. OpenCV's imgcodecs would decode them too, but loading
-// that library takes 0.1 s at the start of every command (docs/decisions/0026).
+// that library takes 0.1 s at the start of every command (docs/optimisations.md).
 cv::Mat decoded(const std::string& jpeg) {
   aircraft::Picture rows_from_below = aircraft::read_picture(jpeg);
   const cv::Mat rgba(
