@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Untrusted models, read in the child process airtruth-model-reader.
+#include "aircraft/confined/child.h"
+
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -143,12 +145,16 @@ TEST_F(Strangers, AReaderThatBreaksLiesOrHangsIsOneLine) {
 TEST_F(Strangers, AModelIsReadOnceAndAgainWhenAnyFileChanges) {
   write_file(folder_ / "below/b.ac", kPlainAc);
   write_file(folder_ / "w.xml", "<PropertyList><path>below/b.ac</path></PropertyList>");
-  EXPECT_EQ(said("w.xml"), "1");
-  const std::string reader = reader_;
+  // A reader that is the same program throughout, and breaks where it is told to.
+  const fs::path reader = outside_ / "reader";
   const fs::path broken = outside_ / "broken";
-  write_file(broken, "#!/bin/sh\nexit 3\n");
-  fs::permissions(broken, fs::perms::owner_all);
-  ::setenv("AIRTRUTH_MODEL_READER", broken.c_str(), 1);
+  write_file(reader,
+             "#!/bin/sh\n[ -e " + broken.string() + " ] && exit 3\nexec " +
+                 model_reader_program().string() + " \"$@\"\n");
+  fs::permissions(reader, fs::perms::owner_all);
+  ::setenv("AIRTRUTH_MODEL_READER", reader.c_str(), 1);
+  EXPECT_EQ(said("w.xml"), "1");
+  write_file(broken, "");
   EXPECT_EQ(said("w.xml"), "1");  // from the cache: no reader is started
   EXPECT_EQ(load_aircraft((folder_ / "w.xml").string()).sources.size(), 2u);
   EXPECT_THAT(said("w.xml", {.airspeed_kt = 100}), testing::HasSubstr("code 3"));

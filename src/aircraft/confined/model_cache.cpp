@@ -3,17 +3,17 @@
 
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/confined/channel.h"
+#include "aircraft/confined/child.h"
 #include "aircraft/confined/model_wire.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_stamp.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::aircraft {
 namespace {
 
-constexpr int kReaderVersion = 3;  // increase it when the arrays of a reader change
-constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
-constexpr std::size_t kMaxQuestionsKept = 10'000;
-constexpr std::size_t kMaxKeptText = 65536;
+constexpr std::size_t kMaxQuestionsKept = 10'000;  // files; a model asks for some tens
+constexpr std::size_t kMaxKeptText = 65536;        // bytes of a path
 constexpr std::size_t kShaDigits = 64;
 
 std::string bytes_of_asked(const std::vector<DiskFiles::Asked>& asked) {
@@ -49,47 +49,37 @@ bool still_answered(DiskFiles& files, const std::vector<DiskFiles::Asked>& asked
   return true;
 }
 
+disk_cache::Cache models() { return disk_cache::Cache(disk_cache::user_folder() / "models"); }
+
 }  // namespace
 
-ModelCache model_cache(DiskFiles& files, const fs::path& file, const LoadOptions& options) {
+std::optional<disk_cache::Key> model_key(DiskFiles& files,
+                                         const fs::path& file,
+                                         const LoadOptions& options) {
   try {
-    const std::string model = sha256_of(files.read(file, kMaxModelBytes));
     const ReaderJob job{
         file.string(), files.shown_folder().string(), files.in_data_root().string(), options};
-    return {cache_folder() / "models",
-            sha256_of(std::to_string(kReaderVersion) + ' ' + model + ' ' + bytes_of(job))};
+    // The reader is another program than this one, whose build is in every key.
+    const FileStamp reader = file_stamp(model_reader_program());
+    disk_cache::Key key("model");
+    key.add(sha256_of(files.read(file, kMaxModelBytes))).add(bytes_of(job));
+    return key.add(reader.inode).add(reader.bytes).add(reader.changed_ns);
   } catch (const Error&) {  // the reader reports the fault
-    return {};
-  }
-}
-
-std::optional<RawModel> cached_model(const ModelCache& cache, DiskFiles& files) {
-  std::error_code ignored;
-  const fs::path entry = cache.folder / cache.name;
-  if (cache.name.empty() || !fs::is_regular_file(entry, ignored)) return std::nullopt;
-  try {
-    const std::string bytes = read_file(entry, kMaxKeptBytes);
-    const std::string_view all = bytes;
-    if (all.size() < kShaDigits || sha256_of(all.substr(kShaDigits)) != all.substr(0, kShaDigits))
-      return std::nullopt;
-    WireReader in(all.substr(kShaDigits));
-    const std::vector<DiskFiles::Asked> asked = asked_from(in);
-    if (!still_answered(files, asked)) return std::nullopt;
-    return model_from_bytes(in.rest());
-  } catch (const Error&) {  // an incomplete or foreign entry, or a missing file: the model is read
     return std::nullopt;
   }
 }
 
-void keep_model(const ModelCache& cache, const DiskFiles& files, const RawModel& model) {
-  if (cache.name.empty() || files.asked().size() > kMaxQuestionsKept) return;
-  const std::string body = bytes_of_asked(files.asked()) + bytes_of(model);
-  if (body.size() + kShaDigits > kMaxKeptBytes) return;
-  try {
-    fs::create_directories(cache.folder);
-    write_file(cache.folder / cache.name, sha256_of(body) + body, Flush::kLater);
-  } catch (const std::exception&) {  // without a writable disk the model is read again next time
-  }
+std::optional<RawModel> cached_model(const disk_cache::Key& key, DiskFiles& files) {
+  return models().find(key, [&](const std::string& body) {
+    WireReader in(body);
+    if (!still_answered(files, asked_from(in))) throw Error("a file has changed");
+    return model_from_bytes(in.rest());
+  });
+}
+
+void keep_model(const disk_cache::Key& key, const DiskFiles& files, const RawModel& model) {
+  if (files.asked().size() <= kMaxQuestionsKept)
+    models().keep(key, bytes_of_asked(files.asked()) + bytes_of(model));
 }
 
 }  // namespace airtruth::aircraft

@@ -61,14 +61,14 @@ RawModel read_source(const Source& source,
     return model;
   }
   DiskFiles before(source.folder, source.in_data_root, true);
-  const ModelCache cache = model_cache(before, source.file, options);
-  if (auto kept = cached_model(cache, before)) {
+  const auto key = model_key(before, source.file, options);
+  if (auto kept = key ? cached_model(*key, before) : std::nullopt) {
     sources = before.sources();
     return std::move(*kept);
   }
   DiskFiles files(source.folder, source.in_data_root, true);
   RawModel model = read_in_child(files, source.file, options);
-  keep_model(cache, files, model);
+  if (key) keep_model(*key, files, model);
   sources = files.sources();
   return model;
 }

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/camera_file/cache.h"
 
-#include <memory>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
-#include "foundation/base/file_lock.h"
-#include "foundation/base/files.h"
 
 namespace airtruth::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Version of the methods. It must be increased whenever the values of a calibration change.
-constexpr int kCalibrationVersion = 6;
 // Keys of texts that belong to no quantity alone.
 constexpr const char* kHorizon = "horizon";
 // The key that a cached calibration has beyond those of kQuantityKeys.
@@ -49,7 +42,7 @@ Json json_of(const Calibration& c) {
           {"yaw_from_first_deg", c.yaw_from_first_deg}};
 }
 
-Calibration calibration_from(const Json& json) {
+Calibration calibration_from_json(const Json& json) {
   Calibration c;
   c.width = json.at("width");
   c.height = json.at("height");
@@ -71,73 +64,43 @@ Calibration calibration_from(const Json& json) {
   return c;
 }
 
-// A lock that is held while a clip is measured; null if the folder cannot be written.
-std::unique_ptr<WaitingLock> lock_in(const fs::path& folder,
-                                     const CacheKey& key,
-                                     const std::stop_token& stop) {
+Calibration calibration_from(const std::string& body) {
   try {
-    return std::make_unique<WaitingLock>(folder / ("." + key.file_name() + ".lock"), stop);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const std::exception&) {
-    return nullptr;
+    return calibration_from_json(Json::parse(body));
+  } catch (const Json::exception& error) {
+    throw Error(error.what());
   }
 }
 
 }  // namespace
 
-std::string CacheKey::file_name() const {
-  return sha256_of(fmt::format("{} {} {} {} {} {}",
-                               kCalibrationVersion,
-                               video_sha256,
-                               mask_sha256,
-                               lens,
-                               altitude_m ? fmt::format("{}", *altitude_m) : "none",
-                               tone.gamma)) +
-         ".json";
+disk_cache::Key CacheKey::entry() const {
+  disk_cache::Key key("calibration");
+  key.add(video_sha256).add(mask_sha256).add(lens).add(altitude_m.has_value());
+  key.add(altitude_m.value_or(0)).add(tone.gamma);
+  return key;
 }
 
-std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key) {
-  const fs::path file = folder / key.file_name();
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return std::nullopt;
-  try {
-    // The first line is the SHA-256 of the rest of the file.
-    const std::string text = read_file(file);
-    const auto line = text.find('\n');
-    if (line == std::string::npos) return std::nullopt;
-    const std::string body = text.substr(line + 1);
-    if (text.compare(0, line, sha256_of(body)) != 0) return std::nullopt;
-    return calibration_from(Json::parse(body));
-  } catch (const Error&) {
-    return std::nullopt;
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  }
+std::optional<Calibration> cached(const disk_cache::Cache& cache, const CacheKey& key) {
+  return cache.find(key.entry(), calibration_from);
 }
 
-void store(const fs::path& folder, const CacheKey& key, const Calibration& calibration) {
-  fs::create_directories(folder);
-  const std::string body = json_of(calibration).dump() + "\n";
-  write_file(folder / key.file_name(), sha256_of(body) + "\n" + body);
+void store(const disk_cache::Cache& cache, const CacheKey& key, const Calibration& calibration) {
+  cache.keep(key.entry(), json_of(calibration).dump());
 }
 
 Calibration calibrate_once(const fs::path& video,
                            const Options& options,
-                           const fs::path& folder,
+                           const disk_cache::Cache& cache,
                            const CacheKey& key) {
   check(options.first_frame == 0 && !options.frame_count && options.heading_deg == 0,
         "the whole clip is calibrated, from its first frame's heading");
-  if (folder.empty() || key.video_sha256.empty()) return calibrate(video, options);
-  if (auto found = cached(folder, key)) return std::move(*found);
-  const auto lock = lock_in(folder, key, options.stop);
-  if (auto found = cached(folder, key)) return std::move(*found);
+  if (!cache.keeps() || key.video_sha256.empty()) return calibrate(video, options);
+  if (auto found = cached(cache, key)) return std::move(*found);
+  const auto lock = cache.lock(key.entry(), options.stop);
+  if (auto found = cached(cache, key)) return std::move(*found);
   Calibration measured = calibrate(video, options);
-  try {
-    store(folder, key, measured);
-  } catch (const std::exception&) {
-    // The folder is read-only or the disk is full: the next run measures again.
-  }
+  store(cache, key, measured);
   return measured;
 }
 

@@ -6,12 +6,11 @@
 #include <string>
 
 #include "calibration/camera_file/calibration.h"
+#include "foundation/disk_cache/disk_cache.h"
 
 namespace airtruth::calibration {
 
-// The key of a cached calibration: everything that the measured values depend on. The version of
-// the methods is part of the file name too. A cache file that is incomplete or fails its checksum
-// is ignored.
+// The key of a cached calibration: everything that the measured values depend on.
 struct CacheKey {
   // SHA-256 of the video; "" if the video has no checksum, and then nothing is cached.
   std::string video_sha256;
@@ -22,26 +21,22 @@ struct CacheKey {
   std::optional<double> altitude_m;
   image::ToneCurve tone;
 
-  // A hash of all fields, with the extension ".json".
-  std::string file_name() const;
+  disk_cache::Key entry() const;
 };
 
-// Reads a calibration from the cache in `folder`. The result has the picture size, the number of
-// frames, the quantities with their notes, and `yaw_from_first_deg`. Empty if the cache has no
-// valid file for the key.
-std::optional<Calibration> cached(const fs::path& folder, const CacheKey& key);
-// Writes a calibration into the cache in `folder`.
-void store(const fs::path& folder, const CacheKey& key, const Calibration& calibration);
+// A calibration in the cache. It has the picture size, the number of frames, the quantities with
+// their notes, and `yaw_from_first_deg`.
+std::optional<Calibration> cached(const disk_cache::Cache& cache, const CacheKey& key);
+void store(const disk_cache::Cache& cache, const CacheKey& key, const Calibration& calibration);
 
 // Returns the calibration of the whole clip, from the cache if it is there; otherwise measures it
 // and stores it. If several threads or processes ask for the same calibration at once, one of them
-// measures and the others wait for its result. A cache that cannot be written is no error: the next
-// run measures again. `options` must agree with `key`, and its first frame and its heading must
-// be 0. An empty `folder` means that there is no cache. Throws as calibrate() does, and Interrupted
-// when options.stop is requested.
+// measures and the others wait for its result. `options` must agree with `key`, and its first frame
+// and its heading must be 0. Throws as calibrate() does, and Interrupted when options.stop is
+// requested.
 Calibration calibrate_once(const fs::path& video,
                            const Options& options,
-                           const fs::path& folder,
+                           const disk_cache::Cache& cache,
                            const CacheKey& key);
 
 }  // namespace airtruth::calibration

@@ -6,25 +6,19 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "camera/lens/lens.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/writer.h"
 #include "scene/synthetic/flight.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::calibration {
 namespace {
 
 class CalibrationCache : public testing::Test {
  protected:
-  CalibrationCache()
-      : root_(fs::temp_directory_path() / ("airtruth_calibration_" + std::to_string(::getpid()))) {
-    fs::create_directories(root_);
-  }
-  ~CalibrationCache() override { fs::remove_all(root_); }
-
   // 12 frames of 96 x 72 pixels.
   fs::path clip() const {
     synthetic::FlightOptions how;
@@ -52,7 +46,8 @@ class CalibrationCache : public testing::Test {
     return file;
   }
 
-  fs::path root_;
+  const test_support::TemporaryFolder root_;
+  const disk_cache::Cache cache_{root_.path()};
 };
 
 // For numbers without a finite decimal fraction the cached value equals the measured one to the
@@ -81,9 +76,9 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   c.readout_direction = "up";
   c.yaw_from_first_deg = {0, 1.0 / 7, -179.9};
   const CacheKey key{"v", "m", "lens", 150, {}};
-  EXPECT_FALSE(cached(root_, key));
-  store(root_, key, c);
-  const auto found = cached(root_, key);
+  EXPECT_FALSE(cached(cache_, key));
+  store(cache_, key, c);
+  const auto found = cached(cache_, key);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->frames, 300);
   EXPECT_EQ(found->frame_rate_hz, c.frame_rate_hz);
@@ -103,20 +98,20 @@ TEST_F(CalibrationCache, EverythingThatTheNumbersDependOnIsInTheKey) {
   others[3].altitude_m = 151;
   others[4].altitude_m.reset();
   others[5].tone.gamma = 2.2;
-  for (const CacheKey& other : others) EXPECT_NE(other.file_name(), key.file_name());
+  for (const CacheKey& other : others) EXPECT_NE(other.entry().name(), key.entry().name());
 }
 
 TEST_F(CalibrationCache, ADamagedFileIsNotTrusted) {
   const CacheKey key{"v", "", "lens", std::nullopt, {}};
-  store(root_, key, {});
-  const fs::path file = root_ / key.file_name();
+  store(cache_, key, {});
+  const fs::path file = root_ / key.entry().name();
   const std::string text = read_file(file);
   for (const std::string& bad : {text.substr(0, text.size() / 2), std::string(), text + " "}) {
     write_file(file, bad);
-    EXPECT_FALSE(cached(root_, key));
+    EXPECT_FALSE(cached(cache_, key));
   }
-  write_file(file, sha256_of("[1]\n") + "\n[1]\n");  // whole, and not ours
-  EXPECT_FALSE(cached(root_, key));
+  cache_.keep(key.entry(), "[1]\n");  // whole, and not ours
+  EXPECT_FALSE(cached(cache_, key));
 }
 
 TEST_F(CalibrationCache, OfManyThatAskAtOnceOneMeasures) {
@@ -130,7 +125,7 @@ TEST_F(CalibrationCache, OfManyThatAskAtOnceOneMeasures) {
         Options options;
         options.lens = lens::pinhole_from_vertical_fov(75, {96, 72});
         options.progress = [&](std::int64_t done, std::int64_t) { passes += done == 1 ? 1 : 0; };
-        mine = calibrate_once(video, options, root_ / "cache", {"v", "", "lens", {}, {}});
+        mine = calibrate_once(video, options, cache_, {"v", "", "lens", {}, {}});
       });
   }
   EXPECT_EQ(passes, 1);
@@ -144,8 +139,8 @@ TEST_F(CalibrationCache, OfManyThatAskAtOnceOneMeasures) {
 TEST_F(CalibrationCache, AFolderThatTakesNoFileCostsTheMeasurementAlone) {
   const fs::path video = clip();
   write_file(root_ / "file", "no folder");
-  const Calibration found =
-      calibrate_once(video, {}, root_ / "file" / "cache", {"v", "", "lens", {}, {}});
+  const Calibration found = calibrate_once(
+      video, {}, disk_cache::Cache(root_ / "file" / "cache"), {"v", "", "lens", {}, {}});
   EXPECT_EQ(found.frames, 12);
 }
 

@@ -7,13 +7,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
-#include <unistd.h>
 
 #include "camera/motion/cache.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 #include "foundation/base/median.h"
 #include "foundation/base/seed.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::motion {
 namespace {
@@ -271,22 +270,20 @@ TEST(Csv, GivesTheSameNumbersBack) {
   EXPECT_THROW(motion_from_csv(text.substr(0, text.size() - 4) + "cat\n", "m.csv"), Error);
 }
 
-TEST(Cache, TrustsOnlyWhatIsWhole) {
-  const fs::path folder =
-      fs::temp_directory_path() / ("airtruth_cache_" + std::to_string(::getpid()));
+TEST(Cache, KnowsTheFramesItHolds) {
+  const test_support::TemporaryFolder folder;
+  const disk_cache::Cache cache(folder.path());
   CacheKey key;
   key.video_sha256 = "a";
-  EXPECT_FALSE(cached(folder, key));
-  store(folder, key, shaking(1, 1, 5));
-  ASSERT_TRUE(cached(folder, key));
-  EXPECT_EQ(cached(folder, key)->size(), 5u);
+  EXPECT_FALSE(cached(cache, key));
+  store(cache, key, shaking(1, 1, 5));
+  ASSERT_TRUE(cached(cache, key));
+  EXPECT_EQ(cached(cache, key)->size(), 5u);
   CacheKey other = key;
   other.options.ransac_px = 2;
-  EXPECT_FALSE(cached(folder, other));
-  const std::string text = read_file(folder / key.file_name());
-  write_file(folder / key.file_name(), text.substr(0, text.size() - 30));
-  EXPECT_FALSE(cached(folder, key));
-  fs::remove_all(folder);
+  EXPECT_FALSE(cached(cache, other));
+  cache.keep(key.entry(), "to the end\nno motion");
+  EXPECT_FALSE(cached(cache, key));
 }
 
 }  // namespace

@@ -185,12 +185,4 @@ void require_utf8(const fs::path& path) {
         {path.string()});
 }
 
-fs::path cache_folder() {
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')
-    return fs::path(xdg) / "airtruth";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return fs::path(home) / ".cache" / "airtruth";
-  return fs::temp_directory_path() / ("airtruth-cache-" + std::to_string(::getuid()));
-}
-
 }  // namespace airtruth

@@ -41,7 +41,4 @@ std::size_t utf8_fault(std::string_view text);
 // Throws Error where a path is not UTF-8: records are JSON and TOML, which hold UTF-8 only.
 void require_utf8(const fs::path& path);
 
-// $XDG_CACHE_HOME/airtruth, else ~/.cache/airtruth, else a folder under the temporary directory.
-fs::path cache_folder();
-
 }  // namespace airtruth

@@ -93,7 +93,7 @@ class Previewer {
                         !world_.shutter.is_instant(),
                         sha256_of_video(scene_.background.video, &inputs_),
                         own_aircraft(),
-                        motion_cache(options_));
+                        cache_of(options_, "motion"));
     if (!motion.from_cache()) return std::nullopt;
     return motion;
   }

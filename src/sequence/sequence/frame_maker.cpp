@@ -51,12 +51,7 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
 
 fs::path openness_cache(const Options& options) {
   if (!options.use_cache) return {};
-  return (options.cache.empty() ? cache_folder() : options.cache) / "openness";
-}
-
-fs::path motion_cache(const Options& options) {
-  if (!options.use_cache) return {};
-  return options.cache.empty() ? cache_folder() / "motion" : options.cache;
+  return (options.cache.empty() ? disk_cache::user_folder() : options.cache) / "openness";
 }
 
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
@@ -112,7 +107,7 @@ void FrameMaker::measure() {
                   !setting_.world.shutter.is_instant(),
                   video_sha256_,
                   setting_.own_aircraft(),
-                  motion_cache(options_));
+                  cache_of(options_, "motion"));
   const bool has_seen = is_given_by_what_is_seen(setting_.scene);
   if (motion_->needs_pass() || (has_seen && !motion_->knows_all())) {
     motion_->measure(reader_, options_.stop, {});

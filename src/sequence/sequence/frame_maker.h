@@ -115,9 +115,6 @@ FramePose frame_near(const MotionSource& motion,
                      const video::StreamInfo& info,
                      const scene::Seen& seen);
 
-// The folder in which motion is kept; empty: motion is not kept.
-fs::path motion_cache(const Options& options);
-
 // The folder that keeps the openness of aircraft; empty: none.
 fs::path openness_cache(const Options& options);
 

@@ -44,12 +44,6 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
   return file;
 }
 
-// The folder of the cached calibrations; empty: none are cached.
-fs::path calibrations_of(const Options& options) {
-  if (!options.use_cache) return {};
-  return (options.cache.empty() ? cache_folder() : options.cache) / "calibration";
-}
-
 // Measures the whole clip, so that all scenes over one clip have the same camera.
 calibration::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
@@ -72,7 +66,8 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   key.lens = words_of(*how.lens);
   key.altitude_m = how.altitude_m;
   key.tone = how.tone;
-  return calibration::calibrate_once(scene.background.video, how, calibrations_of(options), key);
+  return calibration::calibrate_once(
+      scene.background.video, how, cache_of(options, "calibration"), key);
 }
 
 // From north, where the calibration has it from the heading of the camera in the clip's first

@@ -43,7 +43,7 @@ class Resolve : public testing::Test {
     key.lens = words_of(lens_of(scene_.lens, {640, 480}));
     key.altitude_m = 150;
     key.tone = tone_of(scene_.camera_model);
-    calibration::store(root_ / "calibration", key, calibration);
+    calibration::store(disk_cache::Cache(root_ / "calibration"), key, calibration);
   }
 
   scene::Scene resolve() const {

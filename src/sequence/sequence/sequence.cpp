@@ -187,6 +187,12 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   return summary;
 }
 
+disk_cache::Cache cache_of(const Options& options, const char* kind) {
+  if (!options.use_cache) return {};
+  return disk_cache::Cache((options.cache.empty() ? disk_cache::user_folder() : options.cache) /
+                           kind);
+}
+
 void measure_ahead(const scene::Scene& scene, const Options& options) {
   if (scene.motion.model == scene::MotionModel::kNone) return;
   video::Reader reader = open_background(scene, options);
@@ -197,7 +203,7 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
                       false,
                       sha256_of_video(scene.background.video, options.shared.get()),
                       mask ? &*mask : nullptr,
-                      motion_cache(options));
+                      cache_of(options, "motion"));
   if (source.from_cache()) return;
   const std::int64_t total =
       scene.background.frame_count.value_or(reader.info().frame_count_estimate);

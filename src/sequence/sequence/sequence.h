@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/base/log.h"
+#include "foundation/disk_cache/disk_cache.h"
 #include "scene/scene/scene.h"
 
 // Renders one video from beginning to end: read, move, render, composite, annotate, write.
@@ -37,7 +38,7 @@ struct Options {
   int threads = 0;
   bool use_cache = true;
   // Folder of the cache for motion, calibrations and openness; empty: the user's own
-  // (foundation/base/files.h).
+  // (disk_cache::user_folder).
   fs::path cache;
   // Inputs that runs of one process have in common (sequence/setup/shared_inputs.h); nullptr: this
   // run reads its own.
@@ -49,6 +50,9 @@ struct Options {
   std::function<void(const Progress&)> progress;
   std::stop_token stop;
 };
+
+// The part of the cache for one kind of result, "motion" or "calibration".
+disk_cache::Cache cache_of(const Options& options, const char* kind);
 
 // Time of a stage in seconds, summed over its frames. The stages overlap, so the sum of their wall
 // times exceeds that of the run. CPU time is that of the stage's own thread: the threads of the

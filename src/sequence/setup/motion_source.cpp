@@ -63,7 +63,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
                            bool needs_change,
                            const std::string& video_sha256,
                            const image::Mask* mask,
-                           const fs::path& cache)
+                           const disk_cache::Cache& cache)
     : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
   const scene::MotionModel model = motion_model(scene);
   none_ = model == scene::MotionModel::kNone;
@@ -81,7 +81,7 @@ MotionSource::MotionSource(const scene::Scene& scene,
   key_.frame_count = scene.background.frame_count.value_or(-1);
   if (lens_) key_.lens = words_of(*lens_);
   key_.options = options_;
-  if (cache_.empty()) return;
+  if (!cache_.keeps()) return;
   if (auto found = motion::cached(cache_, key_)) {
     from_cache_ = true;
     set_pass(std::move(*found));
@@ -154,11 +154,7 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
 }
 
 void MotionSource::store() const {
-  if (!is_to_be_stored()) return;
-  try {
-    motion::store(cache_, key_, against_first_);
-  } catch (const std::exception&) {  // read-only home, full disk: the next run measures again
-  }
+  if (is_to_be_stored()) motion::store(cache_, key_, against_first_);
 }
 
 std::vector<motion::GyroSample> gyro_of(const fs::path& video) {

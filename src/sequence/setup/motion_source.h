@@ -40,7 +40,7 @@ class MotionSource {
                bool needs_change,
                const std::string& video_sha256,
                const image::Mask* mask,
-               const fs::path& cache);  // empty: none
+               const disk_cache::Cache& cache);
 
   // True where a preceding pass over the frames is required (reference kSmoothed, a shutter or a
   // gyroscope, and no entry in the cache).
@@ -63,8 +63,7 @@ class MotionSource {
   Measured next(const video::Frame& frame);
   // The frame nearest to a time; only where knows_all() and the clip has a frame.
   Measured nearest(double time_s) const;
-  // Stores the measured motion for the next run, after the last frame. A cache that cannot be
-  // written is no error.
+  // Stores the measured motion for the next run, after the last frame.
   void store() const;
   bool from_cache() const { return from_cache_; }
 
@@ -73,7 +72,7 @@ class MotionSource {
   motion::FrameMotion measured(const video::Frame& frame);
   // Frame k, where all are known.
   Measured known(std::size_t k) const;
-  bool is_to_be_stored() const { return !cache_.empty() && !from_cache_; }
+  bool is_to_be_stored() const { return cache_.keeps() && !from_cache_; }
 
   motion::Estimator estimator(int width, int height) const;
 
@@ -84,7 +83,7 @@ class MotionSource {
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
-  fs::path cache_;
+  disk_cache::Cache cache_;
   motion::Options options_;
   motion::CacheKey key_;
   const image::Mask* mask_;
