@@ -13,7 +13,7 @@ namespace airtruth {
 // throws Error where the file cannot be created or locked, and Interrupted where `stop` is
 // requested while it waits.
 //
-//   const WaitingLock lock(cache_folder() / "models" / "b737.lock", stop);
+//   const WaitingLock lock(folder / "b737.lock", stop);
 //   if (!exists(result)) make(result);  // one process makes it, the others find it
 class WaitingLock {
  public:
