@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include "detection/detections/fault.h"
-#include "detection/detections/ignored_regions.h"
 #include "detection/detections/results_folder.h"
 #include "detection/external/protocol.h"
+#include "evaluation/detector_scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
@@ -52,7 +52,8 @@ void check_results() {
 }
 
 void check_regions() {
-  for (const IgnoredRegion& region : read_ignored_regions(folder() / "ignore.csv")) {
+  for (const detector_scores::IgnoredRegion& region :
+       detector_scores::read_ignored_regions(folder() / "ignore.csv")) {
     const Box& box = region.box_px;
     const bool is_finite = std::isfinite(box.x + box.y + box.width + box.height);
     if (!is_finite || !(box.width > 0 && box.height > 0) || region.first_frame < 0) std::abort();

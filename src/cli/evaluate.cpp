@@ -9,7 +9,7 @@
 #include "benchmark/experiment/figures.h"
 #include "cli/commands.h"
 #include "cli/evaluate_detections.h"
-#include "detection/detection_page/detection_page.h"
+#include "evaluation/detector_evaluation/page.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 
@@ -137,7 +137,7 @@ void set_options(Evaluate& arguments, Context& context) {
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("reading the videos", done, total, "sequences");
   };
-  detection::AssessOptions& detections = arguments.detections.options;
+  detector_evaluation::AssessOptions& detections = arguments.detections.options;
   detections.ignore = arguments.detections.ignore;
   detections.with_film = options.with_film;
   detections.jobs = options.jobs;
@@ -167,17 +167,17 @@ void evaluate_trackers(const Evaluate& arguments,
 void evaluate_detectors(const Evaluate& arguments,
                         const std::vector<fs::path>& results,
                         Console& console) {
-  const detection::Assessment assessment =
-      detection::assess(arguments.set, results, arguments.detections.options);
-  detection::write_tables(assessment, arguments.out);
+  const detector_scores::Assessment assessment =
+      detector_evaluation::assess(arguments.set, results, arguments.detections.options);
+  detector_evaluation::write_tables(assessment, arguments.out);
   if (arguments.options.with_film)
-    detection::write_page(assessment,
-                          arguments.out,
-                          {.jobs = arguments.options.jobs,
-                           .progress = arguments.options.progress,
-                           .stop = arguments.options.stop});
+    detector_evaluation::write_page(assessment,
+                                    arguments.out,
+                                    {.jobs = arguments.options.jobs,
+                                     .progress = arguments.options.progress,
+                                     .stop = arguments.options.stop});
   if (!arguments.figures.empty())
-    detection::write_figures(assessment, arguments.out, arguments.figures);
+    detector_evaluation::write_figures(assessment, arguments.out, arguments.figures);
   console.end_progress();
   print_detections(assessment, console);
 }

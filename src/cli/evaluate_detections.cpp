@@ -42,10 +42,11 @@ std::string row(const std::string& name,
                      per_hour);
 }
 
-std::string row_of(const detection::DetectorScore& detector) {
-  const detection::AveragePrecision& ap = detector.average_precision;
+std::string row_of(const detector_scores::DetectorScore& detector) {
+  const detection_measures::AveragePrecision& ap = detector.average_precision;
   const bool has_point = detector.point.has_value();
-  const detection::FrocPoint point = detector.point.value_or(detection::FrocPoint{});
+  const detection_measures::FrocPoint point =
+      detector.point.value_or(detection_measures::FrocPoint{});
   const bool has_trials = has_point && point.detection.trials > 0;
   return row(detector.name,
              std::to_string(detector.sequences.size()),
@@ -62,14 +63,14 @@ std::string row_of(const detection::DetectorScore& detector) {
                  : "-");
 }
 
-std::string share_of(const detection::Share& share) {
+std::string share_of(const statistics::Proportion& share) {
   return fmt::format("{:.3f} ({})", share.value, between(share.low, share.high));
 }
 
 void print_declarations(const char* kind,
                         const std::string& name,
-                        const detection::DeclarationSummary& summary,
-                        const detection::Assessment& assessment,
+                        const detector_scores::DeclarationSummary& summary,
+                        const detector_scores::Assessment& assessment,
                         Console& console) {
   if (!(summary.declared.trials > 0)) return;
   std::string line =
@@ -91,7 +92,7 @@ void print_declarations(const char* kind,
   console.result(line);
 }
 
-void print_weighted(const detection::DetectorScore& detector, Console& console) {
+void print_weighted(const detector_scores::DetectorScore& detector, Console& console) {
   if (!detector.weighted_detection || !(detector.weighted_detection->trials > 0)) return;
   console.result(
       fmt::format("{}: weighted, finds {} of the aircraft in frames; its {} sequences "
@@ -102,14 +103,14 @@ void print_weighted(const detection::DetectorScore& detector, Console& console) 
                   detector.weighted_detection->effective_clusters));
 }
 
-void print_tracks(const detection::DetectorScore& detector,
-                  const detection::Assessment& assessment,
+void print_tracks(const detector_scores::DetectorScore& detector,
+                  const detector_scores::Assessment& assessment,
                   Console& console) {
   if (!detector.tracks) return;
-  const detection::TrackScores& tracks = *detector.tracks;
+  const detector_scores::TrackScores& tracks = *detector.tracks;
   console.result(fmt::format("{}: HOTA {:.3f}, MOTA {:.3f}, IDF1 {:.3f}, {} false tracks{}",
                              detector.name,
-                             detection::Hota::mean(tracks.hota.hota),
+                             detection_measures::Hota::mean(tracks.hota.hota),
                              tracks.clear.mota(),
                              tracks.identity.idf1(),
                              tracks.false_tracks,
@@ -122,7 +123,7 @@ void print_tracks(const detection::DetectorScore& detector,
         "weighted, declares", detector.name, *tracks.weighted_declarations, assessment, console);
 }
 
-void print_false_alarms(const detection::DetectorScore& detector, Console& console) {
+void print_false_alarms(const detector_scores::DetectorScore& detector, Console& console) {
   if (detector.false_alarms_by.empty()) return;
   std::string line;
   for (const auto& [what, count] : detector.false_alarms_by)
@@ -133,7 +134,7 @@ void print_false_alarms(const detection::DetectorScore& detector, Console& conso
 }  // namespace
 
 void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
-  detection::AssessOptions& options = arguments.options;
+  detector_evaluation::AssessOptions& options = arguments.options;
   const auto group = "Detectors' results";
   command
       .add_option("--centre-px",
@@ -180,7 +181,7 @@ void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
       ->group(group);
 }
 
-void print_detections(const detection::Assessment& assessment, Console& console) {
+void print_detections(const detector_scores::Assessment& assessment, Console& console) {
   console.result(row("detector",
                      "sequences",
                      fmt::format("AP@{:g}px", assessment.centre_px),
@@ -192,9 +193,9 @@ void print_detections(const detection::Assessment& assessment, Console& console)
                      "95 %",
                      "FA/image",
                      "FA/hour"));
-  for (const detection::DetectorScore& detector : assessment.detectors)
+  for (const detector_scores::DetectorScore& detector : assessment.detectors)
     console.result(row_of(detector));
-  for (const detection::DetectorScore& detector : assessment.detectors) {
+  for (const detector_scores::DetectorScore& detector : assessment.detectors) {
     print_false_alarms(detector, console);
     print_weighted(detector, console);
     print_tracks(detector, assessment, console);

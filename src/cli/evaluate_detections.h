@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "detection/assessment/assess.h"
+#include "evaluation/detector_evaluation/assess.h"
 
 // The part of `airtruth evaluate` that is for detectors' results.
 namespace airtruth::cli {
 
 struct EvaluateDetections {
-  detection::AssessOptions options;
+  detector_evaluation::AssessOptions options;
   std::string ignore;
   // MOTChallenge text is a detector's, also where it has tracks.
   bool is_detections = false;
 
   // Which of the results are a detector's.
   bool holds(const std::filesystem::path& results) const {
-    return detection::holds_detections(results, is_detections);
+    return detector_evaluation::holds_detections(results, is_detections);
   }
 };
 
@@ -29,6 +29,6 @@ std::string number(const std::optional<double>& value, int digits);
 
 void add_detection_options(CLI::App& command, EvaluateDetections& arguments);
 
-void print_detections(const detection::Assessment& assessment, Console& console);
+void print_detections(const detector_scores::Assessment& assessment, Console& console);
 
 }  // namespace airtruth::cli

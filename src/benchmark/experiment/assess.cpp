@@ -50,7 +50,7 @@ void add_one_pass(const TruthClip& truth,
   if (until_loss && lost)
     for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
   scored.score = evaluation::score(pairs, truth.clip.width, truth.clip.height);
-  scored.outcomes = evaluation::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
+  scored.outcomes = tracker_measures::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
   for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
   if (lost) {
     const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
@@ -177,12 +177,12 @@ class Scoring {
   }
 
   void break_down(ScoredTracker& tracker) const {
-    std::vector<evaluation::Outcome> all;
+    std::vector<tracker_measures::Outcome> all;
     std::map<std::string, std::vector<std::optional<double>>> values;
-    std::map<std::string, std::vector<evaluation::Outcome>> by_background;
+    std::map<std::string, std::vector<tracker_measures::Outcome>> by_background;
     for (const ScoredSequence& sequence : tracker.sequences) {
       const TruthClip& truth = truths_[sequence.truth];
-      for (const evaluation::Outcome& outcome : sequence.outcomes) {
+      for (const tracker_measures::Outcome& outcome : sequence.outcomes) {
         all.push_back(outcome);
         values["range_m"].push_back(truth.range_m[outcome.frame]);
         values["size_px"].push_back(truth.size_px[outcome.frame]);
@@ -190,12 +190,12 @@ class Scoring {
         by_background[truth.background].push_back(outcome);
       }
     }
-    tracker.angle_mrad = evaluation::mean_of(all).angle_mrad;
-    tracker.bins["range_m"] = evaluation::breakdown(all, values["range_m"], kRangeEdges_m);
-    tracker.bins["size_px"] = evaluation::breakdown(all, values["size_px"], kSizeEdges_px);
-    tracker.bins["contrast"] = evaluation::breakdown(all, values["contrast"], kContrastEdges);
+    tracker.angle_mrad = tracker_measures::mean_of(all).angle_mrad;
+    tracker.bins["range_m"] = tracker_measures::breakdown(all, values["range_m"], kRangeEdges_m);
+    tracker.bins["size_px"] = tracker_measures::breakdown(all, values["size_px"], kSizeEdges_px);
+    tracker.bins["contrast"] = tracker_measures::breakdown(all, values["contrast"], kContrastEdges);
     for (const auto& [name, outcomes] : by_background)
-      tracker.backgrounds[name] = evaluation::mean_of(outcomes);
+      tracker.backgrounds[name] = tracker_measures::mean_of(outcomes);
   }
 
   const std::vector<TruthClip>& truths_;

@@ -14,9 +14,9 @@
 #include <airtruth/vot.h>
 
 #include "benchmark/experiment/truth.h"
+#include "evaluation/matching/boxes.h"
+#include "evaluation/tracker_measures/outcome.h"
 #include "foundation/base/log.h"
-#include "truth/evaluation/metrics.h"
-#include "truth/evaluation/outcome.h"
 
 namespace airtruth::experiment {
 
@@ -46,7 +46,7 @@ struct ScoredSequence {
   std::string name;
   std::vector<std::optional<Box>> answers;  // answers of the one-pass run; empty without one
   std::optional<evaluation::Score> score;
-  std::vector<evaluation::Outcome> outcomes;
+  std::vector<tracker_measures::Outcome> outcomes;
   std::optional<FirstLoss> loss;
   std::optional<evaluation::Restart> restart;
   std::optional<evaluation::MultiStart> multistart;
@@ -65,8 +65,8 @@ struct ScoredTracker {
   std::int64_t lost = 0;
   // `bins` has the keys "range_m", "size_px" and "contrast"; `backgrounds` has the backgrounds'
   // names.
-  std::map<std::string, std::vector<evaluation::Bin>> bins;
-  std::map<std::string, evaluation::Bin> backgrounds;
+  std::map<std::string, std::vector<tracker_measures::Bin>> bins;
+  std::map<std::string, tracker_measures::Bin> backgrounds;
   std::optional<evaluation::Restart> restart;
   std::optional<evaluation::MultiStart> multistart;
 };

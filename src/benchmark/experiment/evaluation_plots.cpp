@@ -19,7 +19,7 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 // The centre of a box; a gap without one.
 Pixel centre_or_gap(const std::optional<Box>& box) {
-  return box ? evaluation::centre_of(*box) : Pixel(kGap, kGap);
+  return box ? matching::centre_of(*box) : Pixel(kGap, kGap);
 }
 
 Plot curve(const Assessment& assessment, const std::string& x, double step, const auto& of) {
@@ -63,7 +63,7 @@ Plot eao_plot(const Assessment& assessment) {
   return plot;
 }
 
-std::string bin_name(const evaluation::Bin& bin) {
+std::string bin_name(const tracker_measures::Bin& bin) {
   return std::isfinite(bin.to) ? fmt::format("{}–{}", bin.from, bin.to)
                                : fmt::format("≥ {}", bin.from);
 }
@@ -72,7 +72,7 @@ Plot bins_plot(const Assessment& assessment, const std::string& key, const std::
   std::map<double, std::string> names;  // by the lower bound
   for (const ScoredTracker& tracker : assessment.trackers)
     if (const auto found = tracker.bins.find(key); found != tracker.bins.end())
-      for (const evaluation::Bin& bin : found->second) names[bin.from] = bin_name(bin);
+      for (const tracker_measures::Bin& bin : found->second) names[bin.from] = bin_name(bin);
   Plot plot{.x = {.label = x}, .y = {.label = "mean overlap", .min = 0}};
   for (const auto& [from, name] : names) plot.x.names.push_back(name);
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
@@ -81,7 +81,7 @@ Plot bins_plot(const Assessment& assessment, const std::string& key, const std::
     Series series{.name = assessment.trackers[k].name,
                   .mark = plot::Mark::kLineAndPoints,
                   .style = plot::style_of(k)};
-    for (const evaluation::Bin& bin : found->second) {
+    for (const tracker_measures::Bin& bin : found->second) {
       series.x.push_back(static_cast<double>(std::distance(names.begin(), names.find(bin.from))));
       series.y.push_back(bin.overlap);
     }

@@ -13,8 +13,8 @@ namespace airtruth::experiment {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using evaluation::Bin;
 using evaluation::Score;
+using tracker_measures::Bin;
 
 template <typename T>
 Json json_or_null(const std::optional<T>& value) {
@@ -145,7 +145,7 @@ std::string sequences_csv(const Assessment& assessment) {
   for (const ScoredTracker& tracker : assessment.trackers)
     for (const ScoredSequence& sequence : tracker.sequences) {
       text += csv_quoted(tracker.name) + "," + csv_quoted(sequence.name) +
-              score_cells(sequence.score, evaluation::mean_of(sequence.outcomes).angle_mrad) +
+              score_cells(sequence.score, tracker_measures::mean_of(sequence.outcomes).angle_mrad) +
               vot_cells(sequence.restart, sequence.multistart);
       text += sequence.loss ? fmt::format(",{}", sequence.loss->frame) +
                                   cell(sequence.loss->time_s) + cell(sequence.loss->range_m)
@@ -182,7 +182,7 @@ Json json_of(const ScoredSequence& sequence) {
   Json json = {{"name", sequence.name}};
   if (sequence.score) {
     json.update(json_of(*sequence.score));
-    json["angle_mrad"] = json_or_null(evaluation::mean_of(sequence.outcomes).angle_mrad);
+    json["angle_mrad"] = json_or_null(tracker_measures::mean_of(sequence.outcomes).angle_mrad);
     json["first_loss"] = sequence.loss ? json_of(*sequence.loss) : Json();
   }
   if (sequence.restart) json["restart"] = json_of(*sequence.restart);

@@ -13,13 +13,13 @@
 #include "benchmark/experiment/frames.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/labelled/labelled_set.h"
+#include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/json/settings_record.h"
 #include "labels/exchange/exchange.h"
-#include "truth/evaluation/metrics.h"
 
 namespace airtruth::experiment {
 namespace {

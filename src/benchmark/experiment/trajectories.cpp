@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include "benchmark/experiment/vot_regions.h"
+#include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/suggest.h"
 #include "labels/exchange/text.h"
-#include "truth/evaluation/metrics.h"
 
 namespace airtruth::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "truth/evaluation/assignment.h"
+#include "evaluation/matching/assignment.h"
 
 namespace airtruth::detection {
 namespace {
@@ -55,7 +55,7 @@ void solve(const std::vector<const GatedPair*>& pairs,
   for (Eigen::Index row = 0; row < row_count; ++row) {
     cost(row, column_count + row) = alone_cost;
   }
-  const auto solution = evaluation::least_cost_assignment(cost);
+  const auto solution = matching::least_cost_assignment(cost);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (*solution[row] < columns.size()) column_of_row[rows[row]] = columns[*solution[row]];
   }

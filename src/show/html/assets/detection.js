@@ -86,7 +86,7 @@
     sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1, fill);
   };
 
-  // The plots are described by the program (detection/detection_page/detection_plots.h). They have no legends: the
+  // The plots are described by the program (evaluation/detector_evaluation/plots.h). They have no legends: the
   // table says which style is whose.
   const drawPlots = () => {
     for (const span of document.querySelectorAll('.centre-px')) span.textContent = number(data.centre_px, 1);

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/detector_evaluation/assess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "detection/detections/results_folder.h"
+#include "evaluation/detector_evaluation/set_truth.h"
+#include "evaluation/detector_scores/detector_score.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+
+namespace airtruth::detector_evaluation {
+namespace {
+
+// The name of a folder or, without its ending, of a file.
+std::string name_of(const fs::path& results) {
+  const fs::path plain = fs::absolute(results).lexically_normal();
+  require_utf8(plain);
+  if (fs::is_regular_file(plain)) return plain.stem().string();
+  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+}
+
+std::vector<detection::ExpectedSequence> expected_of(
+    const std::vector<detector_scores::TruthSequence>& truths) {
+  std::vector<detection::ExpectedSequence> expected;
+  for (const detector_scores::TruthSequence& truth : truths)
+    expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
+  return expected;
+}
+
+std::vector<detector_scores::ScoredDetections> results_in(
+    const fs::path& source,
+    const std::vector<detector_scores::TruthSequence>& truths,
+    const Warn& warn) {
+  std::map<std::string, std::size_t> numbers;
+  for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
+  std::vector<detector_scores::ScoredDetections> results;
+  for (detection::SequenceDetections& read :
+       detection::read_detections(source, expected_of(truths))) {
+    const std::size_t truth = numbers.at(read.name);
+    if (read.frames.size() != truths[truth].frames.size())
+      throw Error(fmt::format("holds {} frames of '{}'; the data set has {}",
+                              read.frames.size(),
+                              read.name,
+                              truths[truth].frames.size()),
+                  {source.string()});
+    results.push_back({truth, std::move(read), {}});
+  }
+  if (results.empty())
+    throw Error("holds no detections of any sequence of the data set", {source.string()});
+  if (results.size() < truths.size())
+    airtruth::warn(warn,
+                   fmt::format("{}: has results for {} of {} sequences; its measures are of those",
+                               source.string(),
+                               results.size(),
+                               truths.size()));
+  return results;
+}
+
+// By name, each detector's results.
+using AllResults = std::map<std::string, std::vector<detector_scores::ScoredDetections>>;
+
+// Videos of sequences without results are not read.
+void add_films(std::vector<detector_scores::TruthSequence>& truths,
+               const AllResults& found,
+               const AssessOptions& options) {
+  std::set<std::size_t> with_results;
+  for (const auto& [name, results] : found)
+    for (const detector_scores::ScoredDetections& one : results) with_results.insert(one.truth);
+  const std::vector<std::size_t> wanted(with_results.begin(), with_results.end());
+  in_parallel(
+      wanted.size(),
+      options.jobs,
+      [&](std::size_t i) { measure_contrast(truths[wanted[i]], options.stop); },
+      options.progress,
+      options.stop);
+}
+
+// Comparisons with a limit let NaN pass.
+void expect_number(const char* option, const std::optional<double>& value) {
+  if (value && !std::isfinite(*value))
+    throw Error(std::string(option) + " is not a number; expected a finite one");
+}
+
+void check_options(const AssessOptions& options) {
+  expect_number("--centre-px", options.centre_px);
+  expect_number("--score", options.point.score);
+  expect_number("--false-alarms", options.point.false_alarms_per_image);
+  expect_number("--manoeuvre-s", options.manoeuvre_s);
+  if (options.manoeuvre_s && options.volume.empty())
+    throw Error("--manoeuvre-s needs --volume: the volume that the manoeuvre is to avoid");
+}
+
+void say_who_has_no_tracks(detector_scores::Assessment& assessment) {
+  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+    if (!detector.tracks)
+      assessment.left_out.push_back(
+          detector.name +
+          " reports no tracks; declarations, false tracks, HOTA, CLEAR and Identity leave it out "
+          "(`airtruth detect --associate` makes tracks)");
+}
+
+}  // namespace
+
+detector_scores::Assessment assess(const fs::path& set,
+                                   const std::vector<fs::path>& results,
+                                   const AssessOptions& options) {
+  check_options(options);
+  detector_scores::Assessment assessment;
+  assessment.set = name_of(set);
+  assessment.centre_px = options.centre_px;
+  assessment.point = options.point;
+  assessment.manoeuvre_s = options.manoeuvre_s;
+  assessment.volume = options.volume;
+  SetTruth truth = set_truth(set, {options.volume, options.ignore, options.warn});
+  assessment.truths = std::move(truth.sequences);
+  assessment.is_weighted = truth.is_weighted;
+  assessment.left_out = std::move(truth.left_out);
+  // Results are read first, so that their faults are reported before minutes of video are read.
+  AllResults found;
+  for (const fs::path& source : results) {
+    const std::string name = name_of(source);
+    if (found.contains(name))
+      throw Error("is the second set of results called '" + name + "'", {source.string()});
+    found[name] = results_in(source, assessment.truths, options.warn);
+  }
+  if (options.with_film) add_films(assessment.truths, found, options);
+  std::vector<std::string> names;
+  for (const auto& [name, sequences] : found) names.push_back(name);
+  assessment.detectors.resize(names.size());
+  const detector_scores::ScoreOptions score_options{
+      options.centre_px, options.point, options.manoeuvre_s, assessment.is_weighted};
+  in_parallel(
+      names.size(),
+      options.jobs,
+      [&](std::size_t i) {
+        assessment.detectors[i] = detector_scores::score_detector(
+            names[i], std::move(found.at(names[i])), assessment.truths, score_options);
+      },
+      {},
+      options.stop);
+  std::stable_sort(
+      assessment.detectors.begin(),
+      assessment.detectors.end(),
+      [](const detector_scores::DetectorScore& a, const detector_scores::DetectorScore& b) {
+        return a.average_precision.ap_centre.value_or(-1) >
+               b.average_precision.ap_centre.value_or(-1);
+      });
+  say_who_has_no_tracks(assessment);
+  for (const std::string& sentence : assessment.left_out) airtruth::warn(options.warn, sentence);
+  return assessment;
+}
+
+namespace {
+
+bool has_ending(const fs::path& file, const char* ending) {
+  return file.extension() == ending && fs::is_regular_file(file);
+}
+
+// MOTChallenge's lines have an id as their second cell of seven or more; a detection without a
+// track has the id -1.
+bool is_mot(const fs::path& file, bool with_tracks) {
+  std::ifstream text(file);
+  std::string line;
+  while (std::getline(text, line)) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (std::count(line.begin(), line.end(), ',') < 6) return false;
+    const std::size_t first = line.find(',') + 1;
+    const std::size_t begin = line.find_first_not_of(" \t", first);
+    return with_tracks || (begin != std::string::npos && line.compare(begin, 2, "-1") == 0);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool holds_detections(const fs::path& results, bool is_mot_of_detector) {
+  std::error_code failed;
+  if (has_ending(results, ".json")) return true;
+  if (!fs::is_directory(results, failed) || fs::exists(results / "tracker.json")) return false;
+  if (fs::exists(results / "detector.json")) return true;
+  std::size_t json = 0;
+  bool has_det = false;
+  bool has_folder = false;
+  std::vector<fs::path> texts;
+  for (const fs::path& folder : {results, results / "data"})
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+      json += has_ending(entry.path(), ".json") ? 1 : 0;
+      if (has_ending(entry.path(), ".txt")) texts.push_back(entry.path());
+      has_det = has_det || fs::exists(entry.path() / "det" / "det.txt", failed);
+      has_folder = has_folder || entry.is_directory(failed);
+    }
+  if (has_det || (json == 1 && texts.empty() && !has_folder)) return true;
+  std::sort(texts.begin(), texts.end());
+  return std::any_of(texts.begin(), texts.end(), [&](const fs::path& file) {
+    return !file.stem().string().ends_with("_time") && is_mot(file, is_mot_of_detector);
+  });
+}
+
+}  // namespace airtruth::detector_evaluation

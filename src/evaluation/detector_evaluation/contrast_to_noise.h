@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "foundation/geometry/box.h"
+#include "foundation/image/picture.h"
+
+namespace airtruth::detector_evaluation {
+
+// How much a box stands out: the root mean square difference of its luma from the median of its
+// surroundings, over the standard deviation of the surroundings. These are a ring as wide as the
+// box's shorter side, at least kLeastRing_px, one pixel away from the box, where the point spread
+// ends for the most part. Values beyond three deviations are left out of the deviation once. It is
+// at least that of rounding to whole levels, 1 / sqrt(12). A box with nothing in it has about 1.
+// Empty where the ring has fewer than kLeastRingPixels.
+//
+// Example: an aircraft of 6 x 3 px is 12 levels darker than a sky whose noise is 1.5 levels, and
+// fills half of its box: sqrt(12^2 / 2) / 1.5 = 5.7.
+std::optional<double> contrast_to_noise(const image::Picture& picture, const PixelBox& box);
+
+constexpr int kLeastRing_px = 4;
+constexpr std::size_t kLeastRingPixels = 20;
+
+}  // namespace airtruth::detector_evaluation

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/detector_evaluation/json.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace airtruth::detector_evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<evaluation::Interval>& interval) {
+  return interval ? Json{interval->low, interval->high} : Json();
+}
+
+Json json_of(const std::optional<detection_measures::PrecisionCurve>& curve,
+             const std::optional<detection_measures::PrecisionBand>& band) {
+  if (!curve) return {};
+  Json json = {{"precision", curve->precision},
+               {"score", curve->score},
+               {"recall", curve->recall},
+               {"truths", curve->truths}};
+  if (band) {
+    json["low_95"] = band->low;
+    json["high_95"] = band->high;
+  }
+  return json;
+}
+
+Json json_of(const detection_measures::Spread& spread) {
+  Json json = {{"mean", spread.mean},
+               {"deviation", spread.deviation},
+               {"rms", spread.rms},
+               {"within_95", spread.within_95},
+               {"count", spread.count}};
+  const auto& intervals = spread.intervals;
+  const auto bounds = [&](evaluation::Interval detection_measures::Spread::Intervals::*of) {
+    return intervals ? Json{((*intervals).*of).low, ((*intervals).*of).high} : Json();
+  };
+  json["mean_interval_95"] = bounds(&detection_measures::Spread::Intervals::mean);
+  json["deviation_interval_95"] = bounds(&detection_measures::Spread::Intervals::deviation);
+  json["rms_interval_95"] = bounds(&detection_measures::Spread::Intervals::rms);
+  json["within_95_interval_95"] = bounds(&detection_measures::Spread::Intervals::within_95);
+  return json;
+}
+
+Json json_of(const detection_measures::AotRate& rate) {
+  return {{"rate", rate.total > 0 ? Json(rate.rate()) : Json()},
+          {"detected", rate.detected},
+          {"total", rate.total}};
+}
+
+}  // namespace
+
+Json json_of(const statistics::Proportion& share) {
+  if (!(share.trials > 0)) return {};
+  return {{"share", share.value},
+          {"interval_95", {share.low, share.high}},
+          {"successes", share.successes},
+          {"trials", share.trials},
+          {"sequences", share.clusters},
+          {"effective_sequences", share.effective_clusters}};
+}
+
+Json json_of(const std::optional<detector_scores::WeightedMean>& mean) {
+  if (!mean) return {};
+  return {{"mean", mean->mean}, {"interval_95", json_of(mean->interval)}, {"count", mean->count}};
+}
+
+Json json_of(const detection_measures::AveragePrecision& ap) {
+  return {{"ap", or_null(ap.ap)},
+          {"ap_50", or_null(ap.ap_50)},
+          {"ap_50_interval_95", json_of(ap.ap_50_interval)},
+          {"ap_75", or_null(ap.ap_75)},
+          {"ap_small", or_null(ap.ap_small)},
+          {"ap_medium", or_null(ap.ap_medium)},
+          {"ap_large", or_null(ap.ap_large)},
+          {"ar_1", or_null(ap.ar_1)},
+          {"ar_10", or_null(ap.ar_10)},
+          {"ar_100", or_null(ap.ar_100)},
+          {"ar_small", or_null(ap.ar_small)},
+          {"ar_medium", or_null(ap.ar_medium)},
+          {"ar_large", or_null(ap.ar_large)},
+          {"ap_centre", or_null(ap.ap_centre)},
+          {"ap_centre_interval_95", json_of(ap.ap_centre_interval)},
+          {"curve_50", json_of(ap.curve_50, ap.band_50)},
+          {"curve_centre", json_of(ap.curve_centre, ap.band_centre)}};
+}
+
+Json json_of(const detection_measures::FrocPoint& point, bool has_hours) {
+  return {{"score", point.score},
+          {"detection", json_of(point.detection)},
+          {"false_alarms_per_image", point.false_alarms_per_image},
+          {"false_alarms_per_hour", has_hours ? Json(point.false_alarms_per_hour) : Json()},
+          {"false_alarms_per_flight", point.false_alarms_per_flight}};
+}
+
+Json json_of(const detection_measures::Froc& froc) {
+  Json json = {{"images", froc.images},
+               {"flights", froc.flights},
+               {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
+               {"aircraft_in_images", froc.aircraft},
+               {"points", Json::array()}};
+  for (const detection_measures::FrocPoint& point : froc.points)
+    json["points"].push_back(json_of(point, froc.hours > 0));
+  return json;
+}
+
+Json json_of(const detector_scores::DetectionBin& bin) {
+  Json json = Json::object();
+  if (bin.name.empty()) {
+    json["from"] = bin.from;
+    json["to"] = std::isfinite(bin.to) ? Json(bin.to) : Json();
+  } else {
+    json["name"] = bin.name;
+  }
+  json.update(json_of(bin.detection));
+  if (bin.weighted) json["weighted"] = json_of(*bin.weighted);
+  return json;
+}
+
+Json json_of(const std::optional<detection_measures::BearingError>& error) {
+  if (!error) return {};
+  const auto rate = [](const std::optional<detection_measures::Spread>& spread) {
+    return spread ? json_of(*spread) : Json();
+  };
+  return {{"azimuth_mrad", json_of(error->azimuth)},
+          {"elevation_mrad", json_of(error->elevation)},
+          {"azimuth_rate_mradps", rate(error->azimuth_rate)},
+          {"elevation_rate_mradps", rate(error->elevation_rate)},
+          {"sc228_bearing_deviation_mrad", detection_measures::kSc228Bearing_mrad},
+          {"sc228_rate_deviation_mradps", detection_measures::kSc228Rate_mradps}};
+}
+
+Json json_of(const detection_measures::AotScore& aot, bool has_hours) {
+  return {{"score", aot.score},
+          {"edr", json_of(aot.edr_all)},
+          {"edr_below_horizon", json_of(aot.edr_below)},
+          {"edr_mixed", json_of(aot.edr_mixed)},
+          {"edr_above_horizon", json_of(aot.edr_above)},
+          {"edr_by_frames", json_of(aot.edr_frames_all)},
+          {"afdr", json_of(aot.afdr)},
+          {"max_range_m", or_null(aot.max_range_m)},
+          {"hfar", has_hours ? Json(aot.hfar) : Json()},
+          {"fppi", aot.fppi}};
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const detection_measures::Hota& hota) {
+  const auto curve = [](const detection_measures::Hota::Curve& values) {
+    return Json{{"mean", detection_measures::Hota::mean(values)}, {"at_overlaps", values}};
+  };
+  return {{"hota", curve(hota.hota)},
+          {"det_a", curve(hota.det_a)},
+          {"ass_a", curve(hota.ass_a)},
+          {"det_re", curve(hota.det_re)},
+          {"det_pr", curve(hota.det_pr)},
+          {"ass_re", curve(hota.ass_re)},
+          {"ass_pr", curve(hota.ass_pr)},
+          {"loc_a", curve(hota.loc_a)}};
+}
+
+Json json_of(const detection_measures::ClearMot& clear) {
+  return {{"mota", clear.mota()},
+          {"motp", clear.motp()},
+          {"recall", clear.recall()},
+          {"precision", clear.precision()},
+          {"true_positives", clear.true_positives},
+          {"false_negatives", clear.false_negatives},
+          {"false_positives", clear.false_positives},
+          {"identity_switches", clear.identity_switches},
+          {"fragmentations", clear.fragmentations},
+          {"mostly_tracked", clear.mostly_tracked},
+          {"partly_tracked", clear.partly_tracked},
+          {"mostly_lost", clear.mostly_lost}};
+}
+
+Json json_of(const detection_measures::Identity& identity) {
+  return {{"idf1", identity.idf1()},
+          {"recall", identity.recall()},
+          {"precision", identity.precision()},
+          {"true_positives", identity.true_positives},
+          {"false_negatives", identity.false_negatives},
+          {"false_positives", identity.false_positives}};
+}
+
+Json json_of(const detector_scores::DeclarationSummary& summary) {
+  return {{"declared", json_of(summary.declared)},
+          {"range_m", json_of(summary.range_m)},
+          {"to_closest_approach_s", json_of(summary.to_closest_approach_s)},
+          {"in_time", summary.in_time ? json_of(*summary.in_time) : Json()},
+          {"no_violation", summary.no_violation},
+          {"impossible", summary.impossible},
+          {"unknown", summary.unknown}};
+}
+
+const char* name(detector_scores::InTime in_time) {
+  switch (in_time) {
+    case detector_scores::InTime::kUnknown:
+      return "unknown";
+    case detector_scores::InTime::kNoViolation:
+      return "no violation";
+    case detector_scores::InTime::kImpossible:
+      return "impossible";
+    case detector_scores::InTime::kYes:
+      return "yes";
+    case detector_scores::InTime::kNo:
+      return "no";
+  }
+  return "unknown";
+}
+
+Json json_of(const detector_scores::EncounterScore& one,
+             const detector_scores::DetectorScore& detector,
+             const detector_scores::Assessment& assessment) {
+  const detector_scores::TruthSequence& truth =
+      assessment.truths[detector.sequences[one.sequence].truth];
+  const detector_scores::TruthEncounter* encounter = truth.encounter(one.object);
+  Json json = {{"sequence", truth.name},
+               {"object", one.object},
+               {"name", encounter != nullptr ? Json(encounter->name) : Json()},
+               {"weight", truth.weight},
+               {"first_seen_frame", truth.frames[one.first_seen].frame},
+               {"first_seen_s", truth.frames[one.first_seen].time_s},
+               {"first_seen_range_m", or_null(one.first_seen_range_m)},
+               {"frames_seen", one.frames_seen},
+               {"least_range_m", or_null(one.least_range_m)},
+               {"declaration", Json()},
+               {"in_time", name(one.in_time)}};
+  if (encounter != nullptr) {
+    json["closest_approach_s"] = or_null(encounter->closest_approach_s);
+    json["violation_s"] = or_null(encounter->violation_s);
+  }
+  if (one.declaration)
+    json["declaration"] = {
+        {"frame", truth.frames[one.declaration->frame].frame},
+        {"time_s", one.declaration->time_s},
+        {"track", one.declaration->track},
+        {"range_m", or_null(one.declaration->range_m)},
+        {"to_closest_approach_s", or_null(one.declaration->to_closest_approach_s)}};
+  return json;
+}
+
+Json json_of(const detector_scores::OperatingPoint& point, bool has_hours) {
+  return {{"score", point.score},
+          {"false_tracks_per_hour", has_hours ? Json(point.false_tracks_per_hour) : Json()},
+          {"declared", json_of(point.declared)},
+          {"range_m", json_of(point.range_m)},
+          {"range_all_m", json_of(point.range_all_m)}};
+}
+
+}  // namespace
+
+Json tracks_json_of(const detector_scores::DetectorScore& detector,
+                    const detector_scores::Assessment& assessment) {
+  if (!detector.tracks) return {};
+  const detector_scores::TrackScores& tracks = *detector.tracks;
+  const bool has_hours = detector.froc.hours > 0;
+  Json json = {{"hota", json_of(tracks.hota)},
+               {"clear", json_of(tracks.clear)},
+               {"identity", json_of(tracks.identity)},
+               {"false_tracks", tracks.false_tracks},
+               {"false_tracks_per_hour", has_hours ? Json(tracks.false_tracks_per_hour) : Json()},
+               {"declarations", json_of(tracks.declarations)},
+               {"weighted_declarations",
+                tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
+               {"encounters", Json::array()},
+               {"operating_curve", Json::array()}};
+  for (const detector_scores::EncounterScore& one : tracks.encounters)
+    json["encounters"].push_back(json_of(one, detector, assessment));
+  for (const detector_scores::OperatingPoint& point : tracks.operating_curve)
+    json["operating_curve"].push_back(json_of(point, has_hours));
+  return json;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const detector_scores::FalseAlarm& alarm,
+             const detector_scores::DetectorScore& detector,
+             const detector_scores::Assessment& assessment) {
+  const detector_scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
+  const detector_scores::TruthSequence& truth = assessment.truths[scored.truth];
+  const Box& box = scored.detections.frames[alarm.frame][alarm.detection].box_px;
+  return {{"sequence", truth.name},
+          {"frame", truth.frames[alarm.frame].frame},
+          {"score", alarm.score},
+          {"box_px", {box.x, box.y, box.width, box.height}},
+          {"what", alarm.what},
+          {"frames", alarm.frames},
+          {"sequences", alarm.sequences},
+          {"to_aircraft_px", or_null(alarm.to_aircraft_px)}};
+}
+
+Json json_of(const detector_scores::Miss& miss,
+             const detector_scores::DetectorScore& detector,
+             const detector_scores::Assessment& assessment) {
+  const detector_scores::TruthSequence& truth =
+      assessment.truths[detector.sequences[miss.sequence].truth];
+  const detector_scores::TruthObject& object = truth.frames[miss.frame].objects[miss.index];
+  const Box& box = object.box_px;
+  return {{"sequence", truth.name},
+          {"object", miss.object},
+          {"first_frame", truth.frames[miss.first_frame].frame},
+          {"frames", miss.frames},
+          {"frame", truth.frames[miss.frame].frame},
+          {"box_px", {box.x, box.y, box.width, box.height}},
+          {"range_m", or_null(object.range_m)},
+          {"contrast_to_noise", or_null(miss.contrast_to_noise)}};
+}
+
+}  // namespace
+
+Json json_of(const detector_scores::DetectorScore& detector,
+             const detector_scores::Assessment& assessment) {
+  const bool has_hours = detector.froc.hours > 0;
+  const auto aot = [&](const std::optional<detection_measures::AotScore>& score) {
+    return score ? json_of(*score, has_hours) : Json();
+  };
+  Json json = {{"name", detector.name},
+               {"sequences", detector.sequences.size()},
+               {"detections", detector.detections},
+               {"frames_per_second_median", or_null(detector.frames_per_second_median)},
+               {"average_precision", json_of(detector.average_precision)},
+               {"froc", json_of(detector.froc)},
+               {"point", detector.point ? json_of(*detector.point, has_hours) : Json()},
+               {"by", Json::object()},
+               {"false_alarms_by", detector.false_alarms_by},
+               {"mistaken_by", Json::object()},
+               {"bearing", json_of(detector.bearing)},
+               {"aot", json_of(detector.aot, has_hours)},
+               {"aot_at_hfar_0.5", has_hours ? aot(detector.aot_ranks.by_hfar) : Json()},
+               {"aot_at_fppi_0.0005", aot(detector.aot_ranks.by_fppi)},
+               {"tracks", tracks_json_of(detector, assessment)},
+               {"strongest_false_alarms", Json::array()},
+               {"misses", Json::array()}};
+  if (detector.point && detector.weighted_detection)
+    json["point"]["weighted_detection"] = json_of(*detector.weighted_detection);
+  for (const auto& [key, bins] : detector.by) {
+    json["by"][key] = Json::array();
+    for (const detector_scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
+  }
+  for (const auto& [what, share] : detector.mistaken_by) json["mistaken_by"][what] = json_of(share);
+  for (const detector_scores::FalseAlarm& alarm : detector.false_alarms)
+    json["strongest_false_alarms"].push_back(json_of(alarm, detector, assessment));
+  for (const detector_scores::Miss& miss : detector.misses)
+    json["misses"].push_back(json_of(miss, detector, assessment));
+  return json;
+}
+
+}  // namespace airtruth::detector_evaluation

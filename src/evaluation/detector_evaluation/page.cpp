@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/detector_evaluation/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include <airtruth/version.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/detector_evaluation/json.h"
+#include "evaluation/detector_evaluation/plots.h"
+#include "foundation/base/base64.h"
+#include "foundation/base/files.h"
+#include "show/html/page.h"
+#include "show/html/page_assets.h"
+#include "show/plot/plot_json.h"
+
+namespace airtruth::detector_evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// Of one detector in one frame, the strongest are drawn.
+constexpr std::size_t kMaxDrawn = 30;
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+Json rounded(const std::optional<double>& value, double unit) {
+  return value ? Json(rounded(*value, unit)) : Json();
+}
+
+// Boxes to hundredths, so that they print short.
+Json box_json(const Box& box) {
+  Json json = Json::array();
+  for (const double value : {box.x, box.y, box.width, box.height})
+    json.push_back(std::stod(fmt::format("{:.2f}", value)));
+  return json;
+}
+
+// What the plots show is not repeated in the detectors' own numbers.
+Json detector_json(const detector_scores::Assessment& assessment, std::size_t k) {
+  Json json = json_of(assessment.detectors[k], assessment);
+  json.erase("by");
+  json.erase("mistaken_by");
+  json["froc"].erase("points");
+  for (const char* curve : {"curve_50", "curve_centre"}) json["average_precision"].erase(curve);
+  if (json["tracks"].is_object()) {
+    json["tracks"].erase("operating_curve");
+    for (const char* part : {"hota", "clear", "identity"})
+      for (auto& [key, value] : json["tracks"][part].items())
+        if (value.is_object()) value.erase("at_overlaps");
+  }
+  json["style"] = plot::json_of(plot::style_of(k));
+  return json;
+}
+
+double point_score(const detector_scores::DetectorScore& detector) {
+  return detector.point ? detector.point->score : -std::numeric_limits<double>::infinity();
+}
+
+// The ids of the aircraft that detections of the operating point find in a frame.
+std::set<std::int64_t> found_in(const detector_scores::ScoredDetections& scored,
+                                std::size_t frame,
+                                double score) {
+  std::set<std::int64_t> found;
+  if (frame >= scored.matches.size()) return found;
+  for (std::size_t i = 0; i < scored.matches[frame].size(); ++i)
+    if (const detector_scores::Match& match = scored.matches[frame][i];
+        match.kind == detector_scores::MatchKind::kTruePositive && match.object &&
+        scored.detections.frames[frame][i].score >= score)
+      found.insert(*match.object);
+  return found;
+}
+
+// A letter for each frame: f where every aircraft that counts is found at the operating point, p
+// where some are, m where none is, . where there is none.
+std::string found_letters(const detector_scores::TruthSequence& truth,
+                          const detector_scores::ScoredDetections& scored,
+                          double score) {
+  std::string letters;
+  for (std::size_t i = 0; i < truth.frames.size(); ++i) {
+    const std::set<std::int64_t> found = found_in(scored, i, score);
+    std::size_t aircraft = 0, found_aircraft = 0;
+    for (const detector_scores::TruthObject& object : truth.frames[i].objects) {
+      if (!object.is_aircraft() || !object.counts) continue;
+      ++aircraft;
+      found_aircraft += found.count(object.id);
+    }
+    letters += aircraft == 0                ? '.'
+               : found_aircraft == aircraft ? 'f'
+               : found_aircraft > 0         ? 'p'
+                                            : 'm';
+  }
+  return letters;
+}
+
+// The frames with a false alarm at the operating point, as indices.
+Json false_alarm_frames(const detector_scores::ScoredDetections& scored, double score) {
+  Json frames = Json::array();
+  for (std::size_t i = 0; i < scored.matches.size(); ++i)
+    for (std::size_t n = 0; n < scored.matches[i].size(); ++n)
+      if (scored.matches[i][n].kind == detector_scores::MatchKind::kFalseAlarm &&
+          scored.detections.frames[i][n].score >= score) {
+        frames.push_back(i);
+        break;
+      }
+  return frames;
+}
+
+const char* name_of(detector_scores::MatchKind kind) {
+  switch (kind) {
+    case detector_scores::MatchKind::kTruePositive:
+      return "found";
+    case detector_scores::MatchKind::kIgnored:
+      return "ignored";
+    case detector_scores::MatchKind::kFalseAlarm:
+      return "false alarm";
+  }
+  return "";
+}
+
+Json detections_in(const detector_scores::ScoredDetections& scored, std::size_t frame) {
+  Json json = Json::array();
+  if (frame >= scored.detections.frames.size()) return json;
+  const auto& found = scored.detections.frames[frame];
+  std::vector<std::size_t> order(found.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return found[a].score > found[b].score;
+  });
+  order.resize(std::min(order.size(), kMaxDrawn));
+  for (const std::size_t i : order) {
+    const detector_scores::Match& match = scored.matches[frame][i];
+    json.push_back({box_json(found[i].box_px),
+                    found[i].score,
+                    found[i].track ? Json(*found[i].track) : Json(),
+                    name_of(match.kind),
+                    match.what});
+  }
+  return json;
+}
+
+Json objects_in(const detector_scores::TruthFrame& frame) {
+  Json json = Json::array();
+  for (const detector_scores::TruthObject& object : frame.objects)
+    json.push_back({{"id", object.id},
+                    {"class", object.object_class},
+                    {"counts", object.counts},
+                    {"box", box_json(object.box_px)},
+                    {"range_m", rounded(object.range_m, 0.1)},
+                    {"cnr", rounded(object.contrast_to_noise, 0.01)},
+                    {"to_closest_s", rounded(object.to_closest_approach_s, 0.01)}});
+  return json;
+}
+
+Json ignored_in(const detector_scores::TruthFrame& frame) {
+  Json json = Json::array();
+  for (const Box& box : frame.ignored_px) json.push_back(box_json(box));
+  return json;
+}
+
+Json cutout_json(const Cutout& cutout) {
+  return cutout.jpeg.empty() ? Json() : Json{cutout.x, cutout.y, cutout.px};
+}
+
+Json stills_json(const detector_scores::TruthSequence& truth, const SequenceFilm& film) {
+  Json stills = Json::array();
+  for (const SequenceFilm::Still& still : film.stills) {
+    const detector_scores::TruthFrame& frame = truth.frames[still.frame];
+    stills.push_back({{"index", still.frame},
+                      {"frame", frame.frame},
+                      {"time_s", rounded(frame.time_s, 0.001)},
+                      {"close", cutout_json(still.close)},
+                      {"objects", objects_in(frame)},
+                      {"ignored", ignored_in(frame)}});
+  }
+  return stills;
+}
+
+Json encounters_json(const detector_scores::TruthSequence& truth) {
+  Json json = Json::array();
+  for (const detector_scores::TruthEncounter& one : truth.encounters)
+    json.push_back({{"id", one.id},
+                    {"name", one.name},
+                    {"closest_s", rounded(one.closest_approach_s, 0.001)},
+                    {"closest_m", rounded(one.closest_approach_m, 0.01)},
+                    {"violation_s", rounded(one.violation_s, 0.001)}});
+  return json;
+}
+
+Json sequence_json(const detector_scores::Assessment& assessment,
+                   const Film& film,
+                   std::size_t index) {
+  const detector_scores::TruthSequence& truth = assessment.truths[index];
+  const SequenceFilm& pictures = film.sequences[index];
+  Json frame_numbers = Json::array();
+  for (const detector_scores::TruthFrame& frame : truth.frames)
+    frame_numbers.push_back(frame.frame);
+  Json detectors = Json::array();
+  for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
+    const detector_scores::DetectorScore& detector = assessment.detectors[k];
+    for (const detector_scores::ScoredDetections& scored : detector.sequences) {
+      if (scored.truth != index) continue;
+      Json drawn = Json::array();
+      for (const SequenceFilm::Still& still : pictures.stills)
+        drawn.push_back(detections_in(scored, still.frame));
+      detectors.push_back({{"detector", k},
+                           {"found", found_letters(truth, scored, point_score(detector))},
+                           {"false_alarms", false_alarm_frames(scored, point_score(detector))},
+                           {"drawn", drawn}});
+    }
+  }
+  return {{"name", truth.name},
+          {"background", truth.background},
+          {"width", std::max(1, truth.width)},
+          {"height", std::max(1, truth.height)},
+          {"weight", truth.weight},
+          {"frame", frame_numbers},
+          {"encounters", encounters_json(truth)},
+          {"stills", stills_json(truth, pictures)},
+          {"detectors", detectors}};
+}
+
+// Where the cutouts of the galleries lie in their frames, beside the entries of json_of.
+void add_cutouts(const Film& film, std::size_t k, Json& detector) {
+  const auto add = [](const std::vector<Cutout>& cutouts, Json& entries) {
+    for (std::size_t i = 0; i < cutouts.size(); ++i) entries[i]["cutout"] = cutout_json(cutouts[i]);
+  };
+  add(film.false_alarms[k], detector["strongest_false_alarms"]);
+  add(film.misses[k], detector["misses"]);
+}
+
+// All pictures, under the names by which the page finds them.
+std::vector<html::PageBlob> pictures_of(const Film& film) {
+  std::vector<html::PageBlob> pictures;
+  const auto add = [&](const std::string& name, const std::string& jpeg) {
+    if (!jpeg.empty()) pictures.push_back({name, base64_of(jpeg)});
+  };
+  for (std::size_t i = 0; i < film.sequences.size(); ++i)
+    for (std::size_t n = 0; n < film.sequences[i].stills.size(); ++n) {
+      add(fmt::format("whole-{}-{}", i, n), film.sequences[i].stills[n].whole);
+      add(fmt::format("close-{}-{}", i, n), film.sequences[i].stills[n].close.jpeg);
+    }
+  for (std::size_t k = 0; k < film.misses.size(); ++k) {
+    for (std::size_t i = 0; i < film.false_alarms[k].size(); ++i)
+      add(fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg);
+    for (std::size_t i = 0; i < film.misses[k].size(); ++i)
+      add(fmt::format("miss-{}-{}", k, i), film.misses[k][i].jpeg);
+  }
+  return pictures;
+}
+
+Json data_of(const detector_scores::Assessment& assessment, const Film& film) {
+  std::size_t frames = 0;
+  for (const detector_scores::TruthSequence& truth : assessment.truths)
+    frames += truth.frames.size();
+  Json plots = Json::object();
+  for (const auto& [name, plot] : detection_plots(assessment)) plots[name] = plot::json_of(plot);
+  Json data = {{"dataset", assessment.set},
+               {"version", kVersion},
+               {"frames", frames},
+               {"centre_px", assessment.centre_px},
+               {"manoeuvre_s", assessment.manoeuvre_s ? Json(*assessment.manoeuvre_s) : Json()},
+               {"volume", assessment.volume},
+               {"is_weighted", assessment.is_weighted},
+               {"left_out", assessment.left_out},
+               {"plots", plots},
+               {"detectors", Json::array()},
+               {"sequences", Json::array()}};
+  for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
+    data["detectors"].push_back(detector_json(assessment, k));
+    add_cutouts(film, k, data["detectors"].back());
+  }
+  for (std::size_t i = 0; i < assessment.truths.size(); ++i)
+    data["sequences"].push_back(sequence_json(assessment, film, i));
+  return data;
+}
+
+}  // namespace
+
+void write_page(const detector_scores::Assessment& assessment,
+                const fs::path& out,
+                const FilmOptions& options) {
+  const Film film = film_of(assessment, options);
+  write_file(
+      out / "detection.html",
+      html::page_of("airtruth evaluation of detectors",
+                    html::detection_body(),
+                    data_of(assessment, film).dump(-1, ' ', false, Json::error_handler_t::replace),
+                    pictures_of(film),
+                    std::string(html::detection_player_js()) + std::string(html::detection_js())));
+}
+
+}  // namespace airtruth::detector_evaluation

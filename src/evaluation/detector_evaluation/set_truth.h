@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "dataset/labelled/labelled_set.h"
+#include "evaluation/detector_scores/truth.h"
+#include "foundation/base/log.h"
+
+// The truth of a data set as the measures of detections take it.
+namespace airtruth::detector_evaluation {
+
+namespace fs = std::filesystem;
+
+struct SetTruthOptions {
+  // Name of a volume whose violation counts; empty: none.
+  std::string volume;
+  // File of ignored regions; empty: ignore.csv in the set's folder where it is there.
+  fs::path ignore;
+  Warn warn;
+};
+
+struct SetTruth {
+  std::vector<detector_scores::TruthSequence> sequences;  // sorted by name
+  bool is_weighted = false;                               // a sequence states a weight
+  // What the truth lacks, as sentences for people.
+  std::vector<std::string> left_out;
+};
+
+// An aircraft that is visible without a covered box is in the truth with its visible box and does
+// not count. Throws Error for a volume that is neither known nor any sequence's own, for a broken
+// file of regions, and for a region that fits no sequence.
+SetTruth set_truth(const fs::path& set, const SetTruthOptions& options);
+
+// Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
+// happens. Throws Error where the video ends before the truth does.
+void measure_contrast(detector_scores::TruthSequence& truth, const std::stop_token& stop);
+
+}  // namespace airtruth::detector_evaluation

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// The truth of a rendered set as the measures of detections take it, against its truth.jsonl and
+// against paths that are known.
+#include "evaluation/detector_evaluation/set_truth.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "detection/detections/results_folder.h"
+#include "evaluation/detector_evaluation/assess.h"
+#include "evaluation/detector_evaluation/json.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "scene/scene/scene.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/replay/finished.h"
+#include "sequence/sequence/sequence.h"
+
+namespace airtruth::detector_evaluation {
+namespace {
+
+constexpr int kFrames = 12;
+// The own aircraft flies north at 25 m/s, the intruder south at 55 m/s, 60 m to the right and 15 m
+// higher at the closest approach after 8 s.
+constexpr double kApproach_s = 8;
+
+class OfRenderedSet : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("airtruth_set_truth_test_" + std::to_string(::getpid()));
+    fs::create_directories(root_);
+    synthetic::FlightOptions options;
+    options.width = 320;
+    options.height = 240;
+    options.frame_count = kFrames;
+    options.own_aircraft = false;
+    sequence::VirtualFlightOptions how;
+    how.format = video::Format::kMkv;
+    sequence::write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
+    render("asked", "[truth]\nvolumes = [\"f3442\"]\n");
+    render("plain", "");
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  static void render(const std::string& name, const std::string& tables) {
+    const std::string text = "name = \"" + name + "\"\nweight = 3\n[background]\nvideo = " +
+                             "\"flight.mkv\"\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
+                             "[camera]\nposition_ned_m = [0, 0, -150]\n"
+                             "velocity_ned_mps = [25, 0, 0]\n[motion]\nmodel = \"none\"\n" +
+                             tables +
+                             "[[intruder]]\nid = \"him\"\naircraft = \"c172/g-boix\"\n"
+                             "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
+                             "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n"
+                             "[output]\nvideo = \"mkv\"\n";
+    sequence::Options options;
+    options.use_cache = false;
+    sequence::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "set", options);
+  }
+
+  static SetTruth truth(const std::string& volume = "") {
+    return set_truth(root_ / "set", {volume, {}, {}});
+  }
+
+  // A folder of results that are the truth, shifted to the right, as one track.
+  static fs::path answered(const std::string& name, double shift_px) {
+    const fs::path folder = root_ / name;
+    fs::create_directories(folder);
+    for (const detector_scores::TruthSequence& one : truth().sequences) {
+      detection::SequenceDetections detections{one.name, one.width, one.height, {}, {}};
+      for (const detector_scores::TruthFrame& frame : one.frames) {
+        auto& list = detections.frames.emplace_back();
+        for (const detector_scores::TruthObject& object : frame.objects) {
+          list.push_back({object.box_px, 1, "aircraft", 5});
+          list.back().box_px.x += shift_px;
+        }
+      }
+      write_sequence(folder, detections);
+    }
+    write_file(folder / "detector.json", "{}");
+    return folder;
+  }
+
+  static inline fs::path root_;
+};
+
+TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
+  const SetTruth set = truth();
+  ASSERT_EQ(set.sequences.size(), 2u);
+  EXPECT_TRUE(set.is_weighted);
+  const detector_scores::TruthSequence& one = set.sequences[0];
+  EXPECT_EQ(one.name, "asked");
+  EXPECT_EQ(one.weight, 3);
+  EXPECT_EQ(one.background, "flight.mkv");
+  EXPECT_EQ(one.width, 320);
+  const sequence::Finished finished = sequence::open_finished(root_ / "set" / "asked");
+  ASSERT_EQ(one.frames.size(), finished.truth.frames.size());
+  EXPECT_NEAR(one.duration_s, kFrames / 30.0, 1e-3);  // Matroska counts milliseconds
+  std::size_t counting = 0;
+  for (std::size_t i = 0; i < one.frames.size(); ++i) {
+    const annotation::Intruder& him = finished.truth.frames[i].intruders[0];
+    ASSERT_EQ(one.frames[i].objects.size(), him.visible_box_px ? 1u : 0u);
+    if (!him.visible_box_px) continue;
+    const detector_scores::TruthObject& object = one.frames[i].objects[0];
+    EXPECT_EQ(object.counts, him.covered_box_px.has_value());
+    const PixelBox box = him.covered_box_px.value_or(*him.visible_box_px);
+    EXPECT_EQ(object.box_px,
+              (Box{double(box.x), double(box.y), double(box.width), double(box.height)}));
+    EXPECT_EQ(object.range_m, him.range_m);
+    EXPECT_EQ(object.azimuth_deg, him.azimuth_deg);
+    EXPECT_TRUE(*object.above_horizon);
+    EXPECT_NEAR(*object.to_closest_approach_s, kApproach_s - one.frames[i].time_s, 1e-3);
+    counting += object.counts ? 1 : 0;
+  }
+  EXPECT_GT(counting, 0u);
+  ASSERT_EQ(one.encounters.size(), 1u);
+  EXPECT_EQ(one.encounters[0].name, "him");
+  EXPECT_NEAR(*one.encounters[0].closest_approach_m, std::hypot(60, 15), 0.1);
+  EXPECT_FALSE(one.encounters[0].has_volume);
+}
+
+// By hand: the horizontal distance is 2000 ft where 80 (8 - t) = sqrt(609.6^2 - 60^2); 15 m of
+// height are within 250 ft. One sequence states it in its record, of the other it follows from the
+// positions.
+TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePositions) {
+  const SetTruth set = truth("f3442");
+  const double by_hand_s = kApproach_s - std::sqrt(609.6 * 609.6 - 60 * 60) / 80;
+  for (const detector_scores::TruthSequence& one : set.sequences) {
+    ASSERT_TRUE(one.encounters.at(0).has_volume) << one.name;
+    EXPECT_NEAR(*one.encounters[0].violation_s, by_hand_s, 0.01) << one.name;
+  }
+}
+
+TEST_F(OfRenderedSet, RefusesAnUnknownVolume) {
+  try {
+    truth("f344");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.message(), testing::HasSubstr("did you mean 'f3442'?"));
+  }
+}
+
+// Exact answers with one track: everything is found, declared at once, and without a bearing error
+// but for the box's own centre.
+TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
+  const fs::path folder = answered("exact", 0);
+  ASSERT_TRUE(holds_detections(folder));
+  AssessOptions options;
+  options.manoeuvre_s = 0;
+  options.volume = "f3442";
+  const detector_scores::Assessment assessment = assess(root_ / "set", {folder}, options);
+  const detector_scores::DetectorScore& score = assessment.detectors.at(0);
+  EXPECT_NEAR(*score.average_precision.ap, 1, 1e-9);
+  EXPECT_NEAR(*score.average_precision.ap_centre, 1, 1e-9);
+  EXPECT_EQ(score.point->detection.value, 1);
+  EXPECT_EQ(score.point->false_alarms_per_image, 0);
+  EXPECT_NEAR(detection_measures::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
+  EXPECT_EQ(score.tracks->clear.mota(), 1);
+  EXPECT_EQ(score.tracks->declarations.declared.value, 1);
+  EXPECT_EQ(score.tracks->declarations.in_time->value, 1);
+  EXPECT_EQ(score.tracks->weighted_declarations->declared.trials, 6);
+  EXPECT_EQ(score.tracks->encounters[0].declaration->frame, score.tracks->encounters[0].first_seen);
+  ASSERT_TRUE(score.bearing);
+  // A pixel is 1.5 mrad; the box is of whole pixels.
+  EXPECT_LT(score.bearing->azimuth.rms, 2);
+  EXPECT_LT(score.bearing->elevation.rms, 2);
+  EXPECT_FALSE(score.by.at("contrast_to_noise").empty());
+  // Both sequences have a weight of 3.
+  ASSERT_TRUE(score.weighted_detection);
+  EXPECT_EQ(score.weighted_detection->value, 1);
+  EXPECT_EQ(score.weighted_detection->trials, 3 * score.point->detection.trials);
+  const nlohmann::ordered_json json = json_of(score, assessment);
+  EXPECT_EQ(json["point"]["weighted_detection"]["share"], 1);
+  for (const auto& bin : json["by"]["range_m"]) {
+    EXPECT_EQ(bin["share"], 1);
+    EXPECT_EQ(bin["weighted"]["share"], 1);
+    EXPECT_EQ(bin["weighted"]["trials"], 3 * bin["trials"].get<double>());
+    EXPECT_NEAR(bin["weighted"]["effective_sequences"].get<double>(), bin["sequences"], 1e-9);
+  }
+  EXPECT_EQ(json["bearing"]["azimuth_mrad"]["deviation_interval_95"].size(), 2u);
+}
+
+// A pixel to the right is 1000 / f mrad near the axis; the focal length of 240 px over 20 degrees
+// is 680.6 px. The aircraft is 8 degrees off the axis at the most, where it is 2 % less.
+TEST_F(OfRenderedSet, AShiftOfAPixelIsItsAngle) {
+  const detector_scores::Assessment assessment =
+      assess(root_ / "set", {answered("straight", 0), answered("shifted", 1)}, {});
+  const auto error = [&](const std::string& name) {
+    for (const detector_scores::DetectorScore& detector : assessment.detectors)
+      if (detector.name == name) return detector.bearing->azimuth.mean;
+    return 0.0;
+  };
+  EXPECT_NEAR(error("shifted") - error("straight"), 1000 / 680.6, 0.02 * 1000 / 680.6);
+}
+
+}  // namespace
+}  // namespace airtruth::detector_evaluation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/matching/boxes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace airtruth::matching {
+
+Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
+
+double centre_distance_px(const Box& a, const Box& b) {
+  return std::hypot(a.x + a.width / 2 - b.x - b.width / 2, a.y + a.height / 2 - b.y - b.height / 2);
+}
+
+double match_radius_px(const Box& truth_px, double centre_px) {
+  return std::max(centre_px, std::max(truth_px.width, truth_px.height) / 2);
+}
+
+bool centre_is_in(const Box& detection_px, const Box& region_px) {
+  const Pixel centre = centre_of(detection_px);
+  return centre.x() >= region_px.x && centre.y() >= region_px.y && centre.x() < region_px.right() &&
+         centre.y() < region_px.bottom();
+}
+
+std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box& b) {
+  const auto from = lens.ray_from_pixel(centre_of(a));
+  const auto to = lens.ray_from_pixel(centre_of(b));
+  if (!from || !to) return std::nullopt;
+  // This form is accurate for small angles, where the cosine alone loses its digits.
+  return 1000 * std::atan2(from->cross(*to).norm(), from->dot(*to));
+}
+
+}  // namespace airtruth::matching
+
+namespace airtruth::evaluation {
+
+double overlap(const Box& a, const Box& b) {
+  const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  if (!(width > 0) || !(height > 0)) return 0;
+  // By rounding, x + width - x differs from width. Equal boxes are therefore handled apart, and the
+  // quotient is bounded to 1.
+  if (a == b) return 1;
+  const double shared = width * height;
+  return std::min(1.0, shared / (a.area() + b.area() - shared));
+}
+
+}  // namespace airtruth::evaluation

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "evaluation/matching/boxes.h"
+
+namespace airtruth::evaluation {
+namespace {
+
+TEST(Overlap, ClosedForms) {
+  EXPECT_EQ(overlap({0, 0, 10, 10}, {0, 0, 10, 10}), 1);
+  EXPECT_EQ(overlap({0, 0, 10, 10}, {10, 0, 10, 10}), 0);
+  EXPECT_DOUBLE_EQ(overlap({0, 0, 10, 10}, {5, 0, 10, 10}), 50.0 / 150);
+  EXPECT_DOUBLE_EQ(overlap({0, 0, 10, 10}, {2, 2, 5, 5}), 0.25);
+  EXPECT_EQ(overlap({0, 0, 0, 0}, {0, 0, 0, 0}), 0);
+}
+
+// The overlap of each of these boxes with itself is 1 + 1e-15 in double precision. The GOT-10k
+// toolkit (0.1.3, rect_iou) bounds it to 1.
+const std::vector<Box> kRoundingBoxes = {{307.581, 570.328, 8.735, 56.924},
+                                         {187.787, 254.573, 49.679, 24.611},
+                                         {330.207, 17.508, 45.235, 32.335},
+                                         {81.291, 242.465, 12.287, 15.813}};
+
+TEST(Overlap, IsNeverAboveOne) {
+  for (const Box& box : kRoundingBoxes) {
+    EXPECT_EQ(overlap(box, box), 1);
+    EXPECT_LE(overlap(box, {box.x, box.y, std::nextafter(box.width, 0), box.height}), 1);
+    EXPECT_LE(overlap({std::nextafter(box.x, 0), box.y, box.width, box.height}, box), 1);
+  }
+}
+
+TEST(Overlap, AsTheGot10kToolkitHasIt) {
+  EXPECT_NEAR(overlap({100, 100, 20, 10}, {103, 104, 20, 10}), 0.3422818791946309, 1e-12);
+  EXPECT_NEAR(overlap({103.5, 98.25, 18, 12.5}, {100, 100, 20, 10}), 0.6346153846153846, 1e-12);
+  EXPECT_NEAR(overlap({0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}), 0.9999999999999989, 1e-12);
+}
+
+// No overlap exceeds the threshold of 1, so exact answers reach 20 of the 21 thresholds.
+TEST(Score, ExactAnswersGainNothingByRounding) {
+  std::vector<FramePair> frames;
+  for (const Box& box : kRoundingBoxes) frames.push_back({box, box, 0});
+  for (const auto& [width, height] : {std::pair(0, 0), std::pair(1280, 960)}) {
+    const Score s = score(frames, width, height);
+    EXPECT_EQ(s.success[20], 0);
+    EXPECT_DOUBLE_EQ(s.auc, 20.0 / 21);
+    EXPECT_EQ(s.average_overlap, 1);
+  }
+}
+
+// Perfect answers: the strict "more than" excludes the last of the 21 thresholds.
+TEST(Score, PerfectTracking) {
+  const Box box{10, 20, 30, 40};
+  const Score s = score(std::vector<FramePair>(5, {box, box, 0.01}), 640, 480);
+  EXPECT_DOUBLE_EQ(s.auc, 20.0 / 21);
+  EXPECT_EQ(s.precision[0], 1);
+  EXPECT_EQ(s.average_overlap, 1);
+  EXPECT_EQ(s.success_75, 1);
+  EXPECT_EQ(s.centre_mean_px, 0);
+  EXPECT_DOUBLE_EQ(s.frames_per_second, 100);
+}
+
+TEST(Score, ByHand) {
+  const Box truth{100, 100, 20, 10};
+  // The first frame counts as perfect for OTB and not at all for the other measures. The next
+  // answers are 3 px right and 4 px down, without a target, and missing.
+  const std::vector<FramePair> frames = {{truth, Box{0, 0, 1, 1}, 0},
+                                         {truth, Box{103, 104, 20, 10}, 0.5},
+                                         {std::nullopt, truth, 0.25},
+                                         {truth, std::nullopt, 0.25}};
+  const Score s = score(frames, 0, 0);
+  EXPECT_EQ(s.frames, 4);
+  EXPECT_EQ(s.counted, 3);
+  const double shared = 17.0 * 6 / (400 - 17 * 6);
+  EXPECT_DOUBLE_EQ(s.average_overlap, shared / 2);
+  EXPECT_DOUBLE_EQ(s.precision[4], 1.0 / 3);
+  EXPECT_DOUBLE_EQ(s.precision[5], 2.0 / 3);
+  EXPECT_DOUBLE_EQ(s.precision_20px, 2.0 / 3);
+  // The frame without an answer counts with the last answer, which is that of the frame without a
+  // target.
+  EXPECT_DOUBLE_EQ(s.x_mean_px, 1.5);
+  EXPECT_DOUBLE_EQ(s.y_most_px, 4);
+  EXPECT_DOUBLE_EQ(s.centre_mean_px, 2.5);
+  EXPECT_DOUBLE_EQ(s.frames_per_second, (2 + 4 + 4) / 3.0);
+  // An overlap of 0.427 exceeds 9 of the thresholds (0 to 0.4). Each frame has a weight of a third,
+  // and the first one reaches 20 thresholds.
+  EXPECT_GT(shared, 0.34);
+  EXPECT_LT(shared, 0.35);
+  EXPECT_DOUBLE_EQ(s.auc, (20 + 7) / 3.0 / 21);
+}
+
+// The rates after the first frame are 2, 4 and 16 frames/s. The first frame's time is the start-up,
+// and 0 means no time.
+TEST(Score, MedianAndMeanOfTheRates) {
+  const Box box{0, 0, 10, 10};
+  std::vector<FramePair> frames;
+  for (const double seconds : {9.0, 0.5, 0.0, 0.25, 0.0625}) frames.push_back({box, box, seconds});
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second, 22.0 / 3);
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 4);
+  frames.push_back({box, box, 1e-6});
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 10);
+  const std::vector<Score> scores = {score(frames, 0, 0), score({frames.data(), 1}, 0, 0)};
+  EXPECT_EQ(scores[1].frames_per_second_median, 0);
+  EXPECT_DOUBLE_EQ(mean_of(scores).frames_per_second_median, 10);
+}
+
+TEST(Mean, WeighsSequencesForOtbAndFramesForGot) {
+  const Box truth{0, 0, 10, 10};
+  const std::vector<FramePair> good(3, {truth, truth, 0});
+  std::vector<FramePair> bad(11, {truth, Box{100, 100, 10, 10}, 0});
+  const std::vector<Score> scores = {score(good, 0, 0), score(bad, 0, 0)};
+  const Score mean = mean_of(scores);
+  EXPECT_DOUBLE_EQ(mean.auc, (20.0 / 21 + 20.0 / 21 / 11) / 2);
+  EXPECT_DOUBLE_EQ(mean.average_overlap, 2.0 / 12);
+  EXPECT_EQ(mean.counted, 14);
+}
+
+}  // namespace
+}  // namespace airtruth::evaluation
