@@ -2,6 +2,7 @@
 #include "evaluation/detector_evaluation/json.h"
 
 #include <cmath>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,12 @@ namespace airtruth::detector_evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// The value, or null where there is none.
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
 
 Json json_of(const std::optional<evaluation::Interval>& interval) {
   return interval ? Json{interval->low, interval->high} : Json();
@@ -51,8 +58,7 @@ Json json_of(const detection_measures::AotRate& rate) {
           {"total", rate.total}};
 }
 
-}  // namespace
-
+// Null without a trial.
 Json json_of(const statistics::Proportion& share) {
   if (!(share.trials > 0)) return {};
   return {{"share", share.value},
@@ -88,6 +94,7 @@ Json json_of(const detection_measures::AveragePrecision& ap) {
           {"curve_centre", json_of(ap.curve_centre, ap.band_centre)}};
 }
 
+// `has_hours`: false where the duration of the sequences is unknown.
 Json json_of(const detection_measures::FrocPoint& point, bool has_hours) {
   return {{"score", point.score},
           {"detection", json_of(point.detection)},
@@ -145,10 +152,6 @@ Json json_of(const detection_measures::AotScore& aot, bool has_hours) {
           {"hfar", has_hours ? Json(aot.hfar) : Json()},
           {"fppi", aot.fppi}};
 }
-
-namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const detection_measures::Hota& hota) {
   const auto curve = [](const detection_measures::Hota::Curve& values) {
@@ -253,8 +256,7 @@ Json json_of(const detector_scores::OperatingPoint& point, bool has_hours) {
           {"range_all_m", json_of(point.range_all_m)}};
 }
 
-}  // namespace
-
+// Null for results without tracks.
 Json tracks_json_of(const detector_scores::DetectorScore& detector,
                     const detector_scores::Assessment& assessment) {
   if (!detector.tracks) return {};
@@ -276,10 +278,6 @@ Json tracks_json_of(const detector_scores::DetectorScore& detector,
     json["operating_curve"].push_back(json_of(point, has_hours));
   return json;
 }
-
-namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const detector_scores::FalseAlarm& alarm,
              const detector_scores::DetectorScore& detector,
