@@ -314,8 +314,8 @@ Json json_of(const detector_scores::Miss& miss,
 
 }  // namespace
 
-Json json_of(const detector_scores::DetectorScore& detector,
-             const detector_scores::Assessment& assessment) {
+Json json_of_detector(const detector_scores::DetectorScore& detector,
+                      const detector_scores::Assessment& assessment) {
   const bool has_hours = detector.froc.hours > 0;
   const auto aot = [&](const std::optional<detection_measures::AotScore>& score) {
     return score ? json_of(*score, has_hours) : Json();

@@ -9,7 +9,7 @@ namespace airtruth::detector_evaluation {
 
 // What detection.json states of one detector (docs/detection-measures.md). A number that is not
 // defined is null.
-nlohmann::ordered_json json_of(const detector_scores::DetectorScore& detector,
-                               const detector_scores::Assessment& assessment);
+nlohmann::ordered_json json_of_detector(const detector_scores::DetectorScore& detector,
+                                        const detector_scores::Assessment& assessment);
 
 }  // namespace airtruth::detector_evaluation

@@ -44,7 +44,7 @@ Json box_json(const Box& box) {
 
 // What the plots show is not repeated in the detectors' own numbers.
 Json detector_json(const detector_scores::Assessment& assessment, std::size_t k) {
-  Json json = json_of(assessment.detectors[k], assessment);
+  Json json = json_of_detector(assessment.detectors[k], assessment);
   json.erase("by");
   json.erase("mistaken_by");
   json["froc"].erase("points");

@@ -263,7 +263,7 @@ void write_tables(const detector_scores::Assessment& assessment, const fs::path&
               {"left_out", assessment.left_out},
               {"detectors", Json::array()}};
   for (const detector_scores::DetectorScore& detector : assessment.detectors)
-    all["detectors"].push_back(json_of(detector, assessment));
+    all["detectors"].push_back(json_of_detector(detector, assessment));
   write_file(out / "detectors.csv", detectors_csv(assessment));
   write_file(out / "detection_sequences.csv", sequences_csv(assessment));
   write_file(out / "detection_encounters.csv", encounters_csv(assessment));
