@@ -13,7 +13,7 @@
 #include "detection/detections/fault.h"
 #include "detection/detections/results_folder.h"
 #include "detection/external/protocol.h"
-#include "evaluation/detector_scores/ignored_regions.h"
+#include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
@@ -52,8 +52,8 @@ void check_results() {
 }
 
 void check_regions() {
-  for (const detector_scores::IgnoredRegion& region :
-       detector_scores::read_ignored_regions(folder() / "ignore.csv")) {
+  for (const scores::IgnoredRegion& region :
+       scores::read_ignored_regions(folder() / "ignore.csv")) {
     const Box& box = region.box_px;
     const bool is_finite = std::isfinite(box.x + box.y + box.width + box.height);
     if (!is_finite || !(box.width > 0 && box.height > 0) || region.first_frame < 0) std::abort();

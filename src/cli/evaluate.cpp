@@ -4,12 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "benchmark/experiment/assess.h"
-#include "benchmark/experiment/evaluation_page.h"
-#include "benchmark/experiment/figures.h"
 #include "cli/commands.h"
 #include "cli/evaluate_detections.h"
 #include "evaluation/detector_evaluation/page.h"
+#include "evaluation/detector_evaluation/tables.h"
+#include "evaluation/tracker_evaluation/assess.h"
+#include "evaluation/tracker_evaluation/page.h"
+#include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 
@@ -26,11 +27,12 @@ struct Evaluate {
   std::string against;
   bool no_page = false;
   std::string figures;
-  experiment::AssessOptions options;
+  tracker_evaluation::AssessOptions options;
   EvaluateDetections detections;
 };
 
-std::string one_pass_line(const experiment::ScoredTracker& tracker, const evaluation::Score& s) {
+std::string one_pass_line(const tracker_evaluation::ScoredTracker& tracker,
+                          const evaluation::Score& s) {
   const auto interval = tracker.intervals.at("auc");
   return fmt::format(
       "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
@@ -52,7 +54,7 @@ std::string one_pass_line(const experiment::ScoredTracker& tracker, const evalua
       s.frames_per_second_median);
 }
 
-void print_one_pass(const experiment::Assessment& assessment, Console& console) {
+void print_one_pass(const tracker_evaluation::Assessment& assessment, Console& console) {
   console.result(fmt::format(
       "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
       "tracker",
@@ -68,13 +70,13 @@ void print_one_pass(const experiment::Assessment& assessment, Console& console) 
       "lost",
       "frames/s",
       "median"));
-  for (const experiment::ScoredTracker& tracker : assessment.trackers)
+  for (const tracker_evaluation::ScoredTracker& tracker : assessment.trackers)
     if (tracker.overall) console.result(one_pass_line(tracker, *tracker.overall));
 }
 
-void print_vot(const experiment::Assessment& assessment, Console& console) {
+void print_vot(const tracker_evaluation::Assessment& assessment, Console& console) {
   const auto [low, high] = assessment.eao_range;
-  for (const experiment::ScoredTracker& tracker : assessment.trackers) {
+  for (const tracker_evaluation::ScoredTracker& tracker : assessment.trackers) {
     if (tracker.restart)
       console.result(
           fmt::format("{:<20} restart: accuracy {:.3f}, {:.2f} failures a run, reliability {:.3f}, "
@@ -98,9 +100,9 @@ void print_vot(const experiment::Assessment& assessment, Console& console) {
   }
 }
 
-void print_comparison(const experiment::Assessment& assessment, Console& console) {
+void print_comparison(const tracker_evaluation::Assessment& assessment, Console& console) {
   if (assessment.comparisons.empty()) return;
-  const experiment::TrackerPair& best = assessment.comparisons.front();
+  const tracker_evaluation::TrackerPair& best = assessment.comparisons.front();
   const auto& interval = best.auc.interval;
   console.result(fmt::format(
       "{} against {}: AUC {:+.3f}{}, better in {} of {} sequences, p = {:.3f}",
@@ -113,7 +115,7 @@ void print_comparison(const experiment::Assessment& assessment, Console& console
       best.auc.p_value));
 }
 
-void print_agreement(const experiment::Agreement& agreement,
+void print_agreement(const tracker_evaluation::Agreement& agreement,
                      const std::string& other,
                      Console& console) {
   console.result(fmt::format("{}: {} trackers in common, Kendall's tau of their AUC {}",
@@ -124,7 +126,7 @@ void print_agreement(const experiment::Agreement& agreement,
 
 void set_options(Evaluate& arguments, Context& context) {
   Console& console = context.console();
-  experiment::AssessOptions& options = arguments.options;
+  tracker_evaluation::AssessOptions& options = arguments.options;
   if (!arguments.eao_range.empty()) {
     if (arguments.eao_range[1] < arguments.eao_range[0])
       throw Error(fmt::format(
@@ -149,14 +151,16 @@ void set_options(Evaluate& arguments, Context& context) {
 void evaluate_trackers(const Evaluate& arguments,
                        const std::vector<fs::path>& results,
                        Console& console) {
-  const experiment::AssessOptions& options = arguments.options;
-  const experiment::Assessment assessment = experiment::assess(arguments.set, results, options);
-  std::optional<experiment::Agreement> agreement;
-  if (!arguments.against.empty()) agreement = experiment::agreement(assessment, arguments.against);
-  experiment::write_tables(assessment, arguments.out);
-  if (options.with_film) experiment::write_page(assessment, arguments.out);
+  const tracker_evaluation::AssessOptions& options = arguments.options;
+  const tracker_evaluation::Assessment assessment =
+      tracker_evaluation::assess(arguments.set, results, options);
+  std::optional<tracker_evaluation::Agreement> agreement;
+  if (!arguments.against.empty())
+    agreement = tracker_evaluation::agreement(assessment, arguments.against);
+  tracker_evaluation::write_tables(assessment, arguments.out);
+  if (options.with_film) tracker_evaluation::write_page(assessment, arguments.out);
   if (!arguments.figures.empty())
-    experiment::write_figures(assessment, arguments.out, arguments.figures);
+    tracker_evaluation::write_figures(assessment, arguments.out, arguments.figures);
   console.end_progress();
   print_one_pass(assessment, console);
   print_vot(assessment, console);
@@ -167,7 +171,7 @@ void evaluate_trackers(const Evaluate& arguments,
 void evaluate_detectors(const Evaluate& arguments,
                         const std::vector<fs::path>& results,
                         Console& console) {
-  const detector_scores::Assessment assessment =
+  const scores::Assessment assessment =
       detector_evaluation::assess(arguments.set, results, arguments.detections.options);
   detector_evaluation::write_tables(assessment, arguments.out);
   if (arguments.options.with_film)
@@ -183,8 +187,8 @@ void evaluate_detectors(const Evaluate& arguments,
 }
 
 void run_evaluate(Evaluate arguments, Context& context) {
-  if (!arguments.figures.empty()) experiment::check_figures(arguments.figures);
-  if (!arguments.against.empty()) experiment::check_evaluation(arguments.against);
+  if (!arguments.figures.empty()) report::check_figures(arguments.figures);
+  if (!arguments.against.empty()) tracker_evaluation::check_evaluation(arguments.against);
   check_output_folder(arguments.out);
   set_options(arguments, context);
   std::vector<fs::path> of_trackers;

@@ -42,11 +42,10 @@ std::string row(const std::string& name,
                      per_hour);
 }
 
-std::string row_of(const detector_scores::DetectorScore& detector) {
-  const detection_measures::AveragePrecision& ap = detector.average_precision;
+std::string row_of(const scores::DetectorScore& detector) {
+  const measures::AveragePrecision& ap = detector.average_precision;
   const bool has_point = detector.point.has_value();
-  const detection_measures::FrocPoint point =
-      detector.point.value_or(detection_measures::FrocPoint{});
+  const measures::FrocPoint point = detector.point.value_or(measures::FrocPoint{});
   const bool has_trials = has_point && point.detection.trials > 0;
   return row(detector.name,
              std::to_string(detector.sequences.size()),
@@ -69,8 +68,8 @@ std::string share_of(const statistics::Proportion& share) {
 
 void print_declarations(const char* kind,
                         const std::string& name,
-                        const detector_scores::DeclarationSummary& summary,
-                        const detector_scores::Assessment& assessment,
+                        const scores::DeclarationSummary& summary,
+                        const scores::Assessment& assessment,
                         Console& console) {
   if (!(summary.declared.trials > 0)) return;
   std::string line =
@@ -92,7 +91,7 @@ void print_declarations(const char* kind,
   console.result(line);
 }
 
-void print_weighted(const detector_scores::DetectorScore& detector, Console& console) {
+void print_weighted(const scores::DetectorScore& detector, Console& console) {
   if (!detector.weighted_detection || !(detector.weighted_detection->trials > 0)) return;
   console.result(
       fmt::format("{}: weighted, finds {} of the aircraft in frames; its {} sequences "
@@ -103,14 +102,14 @@ void print_weighted(const detector_scores::DetectorScore& detector, Console& con
                   detector.weighted_detection->effective_clusters));
 }
 
-void print_tracks(const detector_scores::DetectorScore& detector,
-                  const detector_scores::Assessment& assessment,
+void print_tracks(const scores::DetectorScore& detector,
+                  const scores::Assessment& assessment,
                   Console& console) {
   if (!detector.tracks) return;
-  const detector_scores::TrackScores& tracks = *detector.tracks;
+  const scores::TrackScores& tracks = *detector.tracks;
   console.result(fmt::format("{}: HOTA {:.3f}, MOTA {:.3f}, IDF1 {:.3f}, {} false tracks{}",
                              detector.name,
-                             detection_measures::Hota::mean(tracks.hota.hota),
+                             measures::Hota::mean(tracks.hota.hota),
                              tracks.clear.mota(),
                              tracks.identity.idf1(),
                              tracks.false_tracks,
@@ -123,7 +122,7 @@ void print_tracks(const detector_scores::DetectorScore& detector,
         "weighted, declares", detector.name, *tracks.weighted_declarations, assessment, console);
 }
 
-void print_false_alarms(const detector_scores::DetectorScore& detector, Console& console) {
+void print_false_alarms(const scores::DetectorScore& detector, Console& console) {
   if (detector.false_alarms_by.empty()) return;
   std::string line;
   for (const auto& [what, count] : detector.false_alarms_by)
@@ -181,7 +180,7 @@ void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
       ->group(group);
 }
 
-void print_detections(const detector_scores::Assessment& assessment, Console& console) {
+void print_detections(const scores::Assessment& assessment, Console& console) {
   console.result(row("detector",
                      "sequences",
                      fmt::format("AP@{:g}px", assessment.centre_px),
@@ -193,9 +192,9 @@ void print_detections(const detector_scores::Assessment& assessment, Console& co
                      "95 %",
                      "FA/image",
                      "FA/hour"));
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+  for (const scores::DetectorScore& detector : assessment.detectors)
     console.result(row_of(detector));
-  for (const detector_scores::DetectorScore& detector : assessment.detectors) {
+  for (const scores::DetectorScore& detector : assessment.detectors) {
     print_false_alarms(detector, console);
     print_weighted(detector, console);
     print_tracks(detector, assessment, console);

@@ -29,6 +29,6 @@ std::string number(const std::optional<double>& value, int digits);
 
 void add_detection_options(CLI::App& command, EvaluateDetections& arguments);
 
-void print_detections(const detector_scores::Assessment& assessment, Console& console);
+void print_detections(const scores::Assessment& assessment, Console& console);
 
 }  // namespace airtruth::cli

@@ -13,37 +13,28 @@
 
 #include "detection/detections/results_folder.h"
 #include "evaluation/detector_evaluation/set_truth.h"
-#include "evaluation/detector_scores/detector_score.h"
+#include "evaluation/report/tables.h"
+#include "evaluation/scores/detector_score.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
-// The name of a folder or, without its ending, of a file.
-std::string name_of(const fs::path& results) {
-  const fs::path plain = fs::absolute(results).lexically_normal();
-  require_utf8(plain);
-  if (fs::is_regular_file(plain)) return plain.stem().string();
-  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
-}
-
 std::vector<detection::ExpectedSequence> expected_of(
-    const std::vector<detector_scores::TruthSequence>& truths) {
+    const std::vector<scores::TruthSequence>& truths) {
   std::vector<detection::ExpectedSequence> expected;
-  for (const detector_scores::TruthSequence& truth : truths)
+  for (const scores::TruthSequence& truth : truths)
     expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
   return expected;
 }
 
-std::vector<detector_scores::ScoredDetections> results_in(
-    const fs::path& source,
-    const std::vector<detector_scores::TruthSequence>& truths,
-    const Warn& warn) {
+std::vector<scores::ScoredDetections> results_in(const fs::path& source,
+                                                 const std::vector<scores::TruthSequence>& truths,
+                                                 const Warn& warn) {
   std::map<std::string, std::size_t> numbers;
   for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
-  std::vector<detector_scores::ScoredDetections> results;
+  std::vector<scores::ScoredDetections> results;
   for (detection::SequenceDetections& read :
        detection::read_detections(source, expected_of(truths))) {
     const std::size_t truth = numbers.at(read.name);
@@ -67,15 +58,15 @@ std::vector<detector_scores::ScoredDetections> results_in(
 }
 
 // By name, each detector's results.
-using AllResults = std::map<std::string, std::vector<detector_scores::ScoredDetections>>;
+using AllResults = std::map<std::string, std::vector<scores::ScoredDetections>>;
 
 // Videos of sequences without results are not read.
-void add_films(std::vector<detector_scores::TruthSequence>& truths,
+void add_films(std::vector<scores::TruthSequence>& truths,
                const AllResults& found,
                const AssessOptions& options) {
   std::set<std::size_t> with_results;
   for (const auto& [name, results] : found)
-    for (const detector_scores::ScoredDetections& one : results) with_results.insert(one.truth);
+    for (const scores::ScoredDetections& one : results) with_results.insert(one.truth);
   const std::vector<std::size_t> wanted(with_results.begin(), with_results.end());
   in_parallel(
       wanted.size(),
@@ -100,8 +91,8 @@ void check_options(const AssessOptions& options) {
     throw Error("--manoeuvre-s needs --volume: the volume that the manoeuvre is to avoid");
 }
 
-void say_who_has_no_tracks(detector_scores::Assessment& assessment) {
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+void say_who_has_no_tracks(scores::Assessment& assessment) {
+  for (const scores::DetectorScore& detector : assessment.detectors)
     if (!detector.tracks)
       assessment.left_out.push_back(
           detector.name +
@@ -111,12 +102,12 @@ void say_who_has_no_tracks(detector_scores::Assessment& assessment) {
 
 }  // namespace
 
-detector_scores::Assessment assess(const fs::path& set,
-                                   const std::vector<fs::path>& results,
-                                   const AssessOptions& options) {
+scores::Assessment assess(const fs::path& set,
+                          const std::vector<fs::path>& results,
+                          const AssessOptions& options) {
   check_options(options);
-  detector_scores::Assessment assessment;
-  assessment.set = name_of(set);
+  scores::Assessment assessment;
+  assessment.set = report::name_of_results(set);
   assessment.centre_px = options.centre_px;
   assessment.point = options.point;
   assessment.manoeuvre_s = options.manoeuvre_s;
@@ -128,7 +119,7 @@ detector_scores::Assessment assess(const fs::path& set,
   // Results are read first, so that their faults are reported before minutes of video are read.
   AllResults found;
   for (const fs::path& source : results) {
-    const std::string name = name_of(source);
+    const std::string name = report::name_of_results(source);
     if (found.contains(name))
       throw Error("is the second set of results called '" + name + "'", {source.string()});
     found[name] = results_in(source, assessment.truths, options.warn);
@@ -137,24 +128,23 @@ detector_scores::Assessment assess(const fs::path& set,
   std::vector<std::string> names;
   for (const auto& [name, sequences] : found) names.push_back(name);
   assessment.detectors.resize(names.size());
-  const detector_scores::ScoreOptions score_options{
+  const scores::ScoreOptions score_options{
       options.centre_px, options.point, options.manoeuvre_s, assessment.is_weighted};
   in_parallel(
       names.size(),
       options.jobs,
       [&](std::size_t i) {
-        assessment.detectors[i] = detector_scores::score_detector(
+        assessment.detectors[i] = scores::score_detector(
             names[i], std::move(found.at(names[i])), assessment.truths, score_options);
       },
       {},
       options.stop);
-  std::stable_sort(
-      assessment.detectors.begin(),
-      assessment.detectors.end(),
-      [](const detector_scores::DetectorScore& a, const detector_scores::DetectorScore& b) {
-        return a.average_precision.ap_centre.value_or(-1) >
-               b.average_precision.ap_centre.value_or(-1);
-      });
+  std::stable_sort(assessment.detectors.begin(),
+                   assessment.detectors.end(),
+                   [](const scores::DetectorScore& a, const scores::DetectorScore& b) {
+                     return a.average_precision.ap_centre.value_or(-1) >
+                            b.average_precision.ap_centre.value_or(-1);
+                   });
   say_who_has_no_tracks(assessment);
   for (const std::string& sentence : assessment.left_out) airtruth::warn(options.warn, sentence);
   return assessment;

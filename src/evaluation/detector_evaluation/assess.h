@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/detector_scores/detector_score.h"
+#include "evaluation/scores/detector_score.h"
 #include "foundation/base/log.h"
 
 // Detectors' results in files, scored against a data set in files.
@@ -25,7 +25,7 @@ bool holds_detections(const fs::path& results, bool is_mot_of_detector = false);
 struct AssessOptions {
   // Radius of found.h.
   double centre_px = 10;
-  detector_scores::PointOptions point;
+  scores::PointOptions point;
   // Seconds that a manoeuvre needs before the volume is violated. Needs `volume`.
   std::optional<double> manoeuvre_s;
   // Name of a volume (encounter/separation/volumes.h, or the scenes' own).
@@ -47,12 +47,8 @@ struct AssessOptions {
 // sequences without a result, which are left out of that detector's measures. Throws Error for
 // results without any sequence of the set, for results that cannot be read (detections.h), and for
 // two of one name.
-detector_scores::Assessment assess(const fs::path& set,
-                                   const std::vector<fs::path>& results,
-                                   const AssessOptions& options);
-
-// Writes detection.json, detectors.csv, and detection_sequences.csv, detection_encounters.csv,
-// detection_breakdown.csv and detection_curves.csv into a folder.
-void write_tables(const detector_scores::Assessment& assessment, const fs::path& out);
+scores::Assessment assess(const fs::path& set,
+                          const std::vector<fs::path>& results,
+                          const AssessOptions& options);
 
 }  // namespace airtruth::detector_evaluation

@@ -2,44 +2,20 @@
 #include "evaluation/detector_evaluation/film.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
-#include "foundation/image/colour.h"
 #include "picture/video/reader.h"
-#include "picture/video/still.h"
-#include "show/drawing/thumbnails.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
-constexpr int kJpegQuality = 7;  // of libav's mjpeg encoder
-// Side of a cutout as a multiple of the box's longer side, and its least side.
-constexpr double kSurroundings = 4;
-constexpr double kMinCutoutPx = 48;
-
-Cutout cutout_of(const image::Picture& picture, const Box& box) {
-  Cutout cutout;
-  const double largest = 2.0 * std::max(picture.width, picture.height);
-  cutout.px = std::clamp(
-      std::round(kSurroundings * std::max(box.width, box.height)), kMinCutoutPx, largest);
-  cutout.x = std::round(box.x + box.width / 2 - cutout.px / 2);
-  cutout.y = std::round(box.y + box.height / 2 - cutout.px / 2);
-  // A box may lie anywhere; a square far from the picture is black.
-  cutout.x = std::clamp(cutout.x, -cutout.px, static_cast<double>(picture.width));
-  cutout.y = std::clamp(cutout.y, -cutout.px, static_cast<double>(picture.height));
-  cutout.jpeg = video::jpeg_of(drawing::square(picture, cutout.x, cutout.y, cutout.px, kCutoutSide),
-                               kJpegQuality);
-  return cutout;
-}
-
 // A cutout to be made, and where it goes.
 struct Wanted {
   Box box;
-  Cutout* place = nullptr;
+  report::Cutout* place = nullptr;
 };
 
 // What is shown of each frame of one sequence.
@@ -57,25 +33,25 @@ struct Plan {
 };
 
 // The cutouts of both galleries, and the stills.
-std::vector<Plan> plans_of(const detector_scores::Assessment& assessment,
+std::vector<Plan> plans_of(const scores::Assessment& assessment,
                            const FilmOptions& options,
                            Film& film) {
   std::vector<Plan> plans(assessment.truths.size());
   film.false_alarms.resize(assessment.detectors.size());
   film.misses.resize(assessment.detectors.size());
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const detector_scores::DetectorScore& detector = assessment.detectors[k];
+    const scores::DetectorScore& detector = assessment.detectors[k];
     film.false_alarms[k].resize(detector.false_alarms.size());
     film.misses[k].resize(detector.misses.size());
     for (std::size_t i = 0; i < detector.false_alarms.size(); ++i) {
-      const detector_scores::FalseAlarm& alarm = detector.false_alarms[i];
-      const detector_scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
+      const scores::FalseAlarm& alarm = detector.false_alarms[i];
+      const scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
       plans[scored.truth].cutouts[alarm.frame].push_back(
           {scored.detections.frames[alarm.frame][alarm.detection].box_px,
            &film.false_alarms[k][i]});
     }
     for (std::size_t i = 0; i < detector.misses.size(); ++i) {
-      const detector_scores::Miss& miss = detector.misses[i];
+      const scores::Miss& miss = detector.misses[i];
       const std::size_t truth = detector.sequences[miss.sequence].truth;
       plans[truth].cutouts[miss.frame].push_back(
           {assessment.truths[truth].frames[miss.frame].objects[miss.index].box_px,
@@ -84,16 +60,14 @@ std::vector<Plan> plans_of(const detector_scores::Assessment& assessment,
   }
   // Sequences without results are not shown.
   std::set<std::size_t> with_results;
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
-    for (const detector_scores::ScoredDetections& scored : detector.sequences)
+  for (const scores::DetectorScore& detector : assessment.detectors)
+    for (const scores::ScoredDetections& scored : detector.sequences)
       with_results.insert(scored.truth);
   const std::size_t of_one = std::clamp<std::size_t>(
       options.max_stills / std::max<std::size_t>(1, with_results.size()), 2, options.max_of_one);
   for (const std::size_t i : with_results) {
     const std::size_t frames = assessment.truths[i].frames.size();
-    const std::size_t spread = std::min(frames, of_one);
-    for (std::size_t n = 0; n < spread; ++n)
-      plans[i].stills.insert(spread == 1 ? 0 : n * (frames - 1) / (spread - 1));
+    plans[i].stills = report::spread_over(frames, of_one);
     for (const auto& [frame, cutouts] : plans[i].cutouts)
       if (plans[i].stills.size() < 2 * of_one) plans[i].stills.insert(frame);
   }
@@ -101,19 +75,19 @@ std::vector<Plan> plans_of(const detector_scores::Assessment& assessment,
 }
 
 // What the close-up of a still is around.
-std::optional<Box> subject_of(const detector_scores::Assessment& assessment,
+std::optional<Box> subject_of(const scores::Assessment& assessment,
                               std::size_t truth,
                               std::size_t frame) {
   std::optional<Box> subject;
   double largest = 0;
-  for (const detector_scores::TruthObject& object : assessment.truths[truth].frames[frame].objects)
+  for (const scores::TruthObject& object : assessment.truths[truth].frames[frame].objects)
     if (object.is_aircraft() && object.counts && object.size_px() > largest) {
       largest = object.size_px();
       subject = object.box_px;
     }
   if (subject) return subject;
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
-    for (const detector_scores::ScoredDetections& scored : detector.sequences) {
+  for (const scores::DetectorScore& detector : assessment.detectors)
+    for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != truth || frame >= scored.detections.frames.size()) continue;
       const auto& found = scored.detections.frames[frame];
       const auto strongest =
@@ -129,11 +103,11 @@ std::optional<Box> subject_of(const detector_scores::Assessment& assessment,
 
 class Filming {
  public:
-  Filming(const detector_scores::Assessment& assessment, const FilmOptions& options)
+  Filming(const scores::Assessment& assessment, const FilmOptions& options)
       : assessment_(assessment), options_(options) {}
 
   void read(std::size_t truth, const Plan& plan, SequenceFilm& film) const {
-    const detector_scores::TruthSequence& sequence = assessment_.truths[truth];
+    const scores::TruthSequence& sequence = assessment_.truths[truth];
     if (sequence.media.empty()) return;
     video::Reader reader(sequence.media, {.threads = 1});
     std::int64_t next = 0;
@@ -153,7 +127,7 @@ class Filming {
       if (is_still) film.stills.push_back(still_of(frame->picture, truth, i));
       if (cutouts != plan.cutouts.end())
         for (const Wanted& wanted : cutouts->second)
-          *wanted.place = cutout_of(frame->picture, wanted.box);
+          *wanted.place = report::cutout_of(frame->picture, wanted.box, {});
     }
   }
 
@@ -162,20 +136,19 @@ class Filming {
                                std::size_t truth,
                                std::size_t frame) const {
     SequenceFilm::Still still{.frame = frame};
-    still.whole = video::jpeg_of(
-        drawing::small_copy(image::rgb8_from_picture(picture), kStillWidth), kJpegQuality);
+    still.whole = report::small_jpeg(picture, kStillWidth, report::CutoutOptions{}.quality);
     if (const auto box = subject_of(assessment_, truth, frame))
-      still.close = cutout_of(picture, *box);
+      still.close = report::cutout_of(picture, *box, {});
     return still;
   }
 
-  const detector_scores::Assessment& assessment_;
+  const scores::Assessment& assessment_;
   const FilmOptions& options_;
 };
 
 }  // namespace
 
-Film film_of(const detector_scores::Assessment& assessment, const FilmOptions& options) {
+Film film_of(const scores::Assessment& assessment, const FilmOptions& options) {
   Film film;
   film.sequences.resize(assessment.truths.size());
   const std::vector<Plan> plans = plans_of(assessment, options, film);

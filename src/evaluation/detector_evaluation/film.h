@@ -7,27 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/detector_scores/detector_score.h"
+#include "evaluation/report/cutout.h"
+#include "evaluation/scores/detector_score.h"
 
 namespace airtruth::detector_evaluation {
-
-// A square cut out of a frame, as a small JPEG.
-struct Cutout {
-  std::string jpeg;  // kCutoutSide pixels wide and high
-  // The square in the frame, px.
-  double x = 0, y = 0, px = 0;
-};
-constexpr int kCutoutSide = 160;
 
 // Pictures of one sequence.
 struct SequenceFilm {
   struct Still {
-    std::size_t frame = 0;  // index in detector_scores::TruthSequence::frames
+    std::size_t frame = 0;  // index in scores::TruthSequence::frames
     // The whole picture, at most kStillWidth wide.
     std::string whole;
     // Around the aircraft that counts and is largest, else around the strongest detection of the
     // first detector; empty where there is neither.
-    Cutout close;
+    report::Cutout close;
   };
   std::vector<Still> stills;  // by frame
 };
@@ -35,9 +28,9 @@ constexpr int kStillWidth = 480;
 
 // The pictures of a page. Empty films and cutouts: the sequence's video is not known.
 struct Film {
-  std::vector<SequenceFilm> sequences;  // as detector_scores::Assessment::truths
+  std::vector<SequenceFilm> sequences;  // as scores::Assessment::truths
   // As DetectorScore::false_alarms and misses of each detector.
-  std::vector<std::vector<Cutout>> false_alarms, misses;
+  std::vector<std::vector<report::Cutout>> false_alarms, misses;
 };
 
 struct FilmOptions {
@@ -53,6 +46,6 @@ struct FilmOptions {
 // Reads the video of each sequence with results once, as far as its last frame that is shown.
 // Stills are spread over a sequence; the frames of its false alarms and misses are among them while
 // there is room. Throws Error where a video ends before a frame that it should show.
-Film film_of(const detector_scores::Assessment& assessment, const FilmOptions& options);
+Film film_of(const scores::Assessment& assessment, const FilmOptions& options);
 
 }  // namespace airtruth::detector_evaluation

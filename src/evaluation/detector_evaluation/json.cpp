@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/detector_evaluation/json.h"
 
-#include <cmath>
 #include <optional>
 
-#include <nlohmann/json.hpp>
+#include "evaluation/report/tables.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
+using report::json_of;
+using report::or_null;
 
-// The value, or null where there is none.
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json json_of(const std::optional<evaluation::Interval>& interval) {
-  return interval ? Json{interval->low, interval->high} : Json();
-}
-
-Json json_of(const std::optional<detection_measures::PrecisionCurve>& curve,
-             const std::optional<detection_measures::PrecisionBand>& band) {
+Json json_of(const std::optional<measures::PrecisionCurve>& curve,
+             const std::optional<measures::PrecisionBand>& band) {
   if (!curve) return {};
   Json json = {{"precision", curve->precision},
                {"score", curve->score},
@@ -35,24 +26,24 @@ Json json_of(const std::optional<detection_measures::PrecisionCurve>& curve,
   return json;
 }
 
-Json json_of(const detection_measures::Spread& spread) {
+Json json_of(const measures::Spread& spread) {
   Json json = {{"mean", spread.mean},
                {"deviation", spread.deviation},
                {"rms", spread.rms},
                {"within_95", spread.within_95},
                {"count", spread.count}};
   const auto& intervals = spread.intervals;
-  const auto bounds = [&](evaluation::Interval detection_measures::Spread::Intervals::*of) {
-    return intervals ? Json{((*intervals).*of).low, ((*intervals).*of).high} : Json();
+  const auto bounds = [&](evaluation::Interval measures::Spread::Intervals::*of) {
+    return json_of(intervals ? std::optional((*intervals).*of) : std::nullopt);
   };
-  json["mean_interval_95"] = bounds(&detection_measures::Spread::Intervals::mean);
-  json["deviation_interval_95"] = bounds(&detection_measures::Spread::Intervals::deviation);
-  json["rms_interval_95"] = bounds(&detection_measures::Spread::Intervals::rms);
-  json["within_95_interval_95"] = bounds(&detection_measures::Spread::Intervals::within_95);
+  json["mean_interval_95"] = bounds(&measures::Spread::Intervals::mean);
+  json["deviation_interval_95"] = bounds(&measures::Spread::Intervals::deviation);
+  json["rms_interval_95"] = bounds(&measures::Spread::Intervals::rms);
+  json["within_95_interval_95"] = bounds(&measures::Spread::Intervals::within_95);
   return json;
 }
 
-Json json_of(const detection_measures::AotRate& rate) {
+Json json_of(const measures::AotRate& rate) {
   return {{"rate", rate.total > 0 ? Json(rate.rate()) : Json()},
           {"detected", rate.detected},
           {"total", rate.total}};
@@ -69,12 +60,12 @@ Json json_of(const statistics::Proportion& share) {
           {"effective_sequences", share.effective_clusters}};
 }
 
-Json json_of(const std::optional<detector_scores::WeightedMean>& mean) {
+Json json_of(const std::optional<scores::WeightedMean>& mean) {
   if (!mean) return {};
   return {{"mean", mean->mean}, {"interval_95", json_of(mean->interval)}, {"count", mean->count}};
 }
 
-Json json_of(const detection_measures::AveragePrecision& ap) {
+Json json_of(const measures::AveragePrecision& ap) {
   return {{"ap", or_null(ap.ap)},
           {"ap_50", or_null(ap.ap_50)},
           {"ap_50_interval_95", json_of(ap.ap_50_interval)},
@@ -95,7 +86,7 @@ Json json_of(const detection_measures::AveragePrecision& ap) {
 }
 
 // `has_hours`: false where the duration of the sequences is unknown.
-Json json_of(const detection_measures::FrocPoint& point, bool has_hours) {
+Json json_of(const measures::FrocPoint& point, bool has_hours) {
   return {{"score", point.score},
           {"detection", json_of(point.detection)},
           {"false_alarms_per_image", point.false_alarms_per_image},
@@ -103,22 +94,22 @@ Json json_of(const detection_measures::FrocPoint& point, bool has_hours) {
           {"false_alarms_per_flight", point.false_alarms_per_flight}};
 }
 
-Json json_of(const detection_measures::Froc& froc) {
+Json json_of(const measures::Froc& froc) {
   Json json = {{"images", froc.images},
                {"flights", froc.flights},
                {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
                {"aircraft_in_images", froc.aircraft},
                {"points", Json::array()}};
-  for (const detection_measures::FrocPoint& point : froc.points)
+  for (const measures::FrocPoint& point : froc.points)
     json["points"].push_back(json_of(point, froc.hours > 0));
   return json;
 }
 
-Json json_of(const detector_scores::DetectionBin& bin) {
+Json json_of(const scores::DetectionBin& bin) {
   Json json = Json::object();
   if (bin.name.empty()) {
     json["from"] = bin.from;
-    json["to"] = std::isfinite(bin.to) ? Json(bin.to) : Json();
+    json["to"] = report::json_of_bound(bin.to);
   } else {
     json["name"] = bin.name;
   }
@@ -127,20 +118,20 @@ Json json_of(const detector_scores::DetectionBin& bin) {
   return json;
 }
 
-Json json_of(const std::optional<detection_measures::BearingError>& error) {
+Json json_of(const std::optional<measures::BearingError>& error) {
   if (!error) return {};
-  const auto rate = [](const std::optional<detection_measures::Spread>& spread) {
+  const auto rate = [](const std::optional<measures::Spread>& spread) {
     return spread ? json_of(*spread) : Json();
   };
   return {{"azimuth_mrad", json_of(error->azimuth)},
           {"elevation_mrad", json_of(error->elevation)},
           {"azimuth_rate_mradps", rate(error->azimuth_rate)},
           {"elevation_rate_mradps", rate(error->elevation_rate)},
-          {"sc228_bearing_deviation_mrad", detection_measures::kSc228Bearing_mrad},
-          {"sc228_rate_deviation_mradps", detection_measures::kSc228Rate_mradps}};
+          {"sc228_bearing_deviation_mrad", measures::kSc228Bearing_mrad},
+          {"sc228_rate_deviation_mradps", measures::kSc228Rate_mradps}};
 }
 
-Json json_of(const detection_measures::AotScore& aot, bool has_hours) {
+Json json_of(const measures::AotScore& aot, bool has_hours) {
   return {{"score", aot.score},
           {"edr", json_of(aot.edr_all)},
           {"edr_below_horizon", json_of(aot.edr_below)},
@@ -153,9 +144,9 @@ Json json_of(const detection_measures::AotScore& aot, bool has_hours) {
           {"fppi", aot.fppi}};
 }
 
-Json json_of(const detection_measures::Hota& hota) {
-  const auto curve = [](const detection_measures::Hota::Curve& values) {
-    return Json{{"mean", detection_measures::Hota::mean(values)}, {"at_overlaps", values}};
+Json json_of(const measures::Hota& hota) {
+  const auto curve = [](const measures::Hota::Curve& values) {
+    return Json{{"mean", measures::Hota::mean(values)}, {"at_overlaps", values}};
   };
   return {{"hota", curve(hota.hota)},
           {"det_a", curve(hota.det_a)},
@@ -167,7 +158,7 @@ Json json_of(const detection_measures::Hota& hota) {
           {"loc_a", curve(hota.loc_a)}};
 }
 
-Json json_of(const detection_measures::ClearMot& clear) {
+Json json_of(const measures::ClearMot& clear) {
   return {{"mota", clear.mota()},
           {"motp", clear.motp()},
           {"recall", clear.recall()},
@@ -182,7 +173,7 @@ Json json_of(const detection_measures::ClearMot& clear) {
           {"mostly_lost", clear.mostly_lost}};
 }
 
-Json json_of(const detection_measures::Identity& identity) {
+Json json_of(const measures::Identity& identity) {
   return {{"idf1", identity.idf1()},
           {"recall", identity.recall()},
           {"precision", identity.precision()},
@@ -191,7 +182,7 @@ Json json_of(const detection_measures::Identity& identity) {
           {"false_positives", identity.false_positives}};
 }
 
-Json json_of(const detector_scores::DeclarationSummary& summary) {
+Json json_of(const scores::DeclarationSummary& summary) {
   return {{"declared", json_of(summary.declared)},
           {"range_m", json_of(summary.range_m)},
           {"to_closest_approach_s", json_of(summary.to_closest_approach_s)},
@@ -201,28 +192,11 @@ Json json_of(const detector_scores::DeclarationSummary& summary) {
           {"unknown", summary.unknown}};
 }
 
-const char* name(detector_scores::InTime in_time) {
-  switch (in_time) {
-    case detector_scores::InTime::kUnknown:
-      return "unknown";
-    case detector_scores::InTime::kNoViolation:
-      return "no violation";
-    case detector_scores::InTime::kImpossible:
-      return "impossible";
-    case detector_scores::InTime::kYes:
-      return "yes";
-    case detector_scores::InTime::kNo:
-      return "no";
-  }
-  return "unknown";
-}
-
-Json json_of(const detector_scores::EncounterScore& one,
-             const detector_scores::DetectorScore& detector,
-             const detector_scores::Assessment& assessment) {
-  const detector_scores::TruthSequence& truth =
-      assessment.truths[detector.sequences[one.sequence].truth];
-  const detector_scores::TruthEncounter* encounter = truth.encounter(one.object);
+Json json_of(const scores::EncounterScore& one,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::TruthSequence& truth = assessment.truths[detector.sequences[one.sequence].truth];
+  const scores::TruthEncounter* encounter = truth.encounter(one.object);
   Json json = {{"sequence", truth.name},
                {"object", one.object},
                {"name", encounter != nullptr ? Json(encounter->name) : Json()},
@@ -233,7 +207,7 @@ Json json_of(const detector_scores::EncounterScore& one,
                {"frames_seen", one.frames_seen},
                {"least_range_m", or_null(one.least_range_m)},
                {"declaration", Json()},
-               {"in_time", name(one.in_time)}};
+               {"in_time", scores::name_of(one.in_time)}};
   if (encounter != nullptr) {
     json["closest_approach_s"] = or_null(encounter->closest_approach_s);
     json["violation_s"] = or_null(encounter->violation_s);
@@ -248,7 +222,7 @@ Json json_of(const detector_scores::EncounterScore& one,
   return json;
 }
 
-Json json_of(const detector_scores::OperatingPoint& point, bool has_hours) {
+Json json_of(const scores::OperatingPoint& point, bool has_hours) {
   return {{"score", point.score},
           {"false_tracks_per_hour", has_hours ? Json(point.false_tracks_per_hour) : Json()},
           {"declared", json_of(point.declared)},
@@ -257,10 +231,9 @@ Json json_of(const detector_scores::OperatingPoint& point, bool has_hours) {
 }
 
 // Null for results without tracks.
-Json tracks_json_of(const detector_scores::DetectorScore& detector,
-                    const detector_scores::Assessment& assessment) {
+Json tracks_json_of(const scores::DetectorScore& detector, const scores::Assessment& assessment) {
   if (!detector.tracks) return {};
-  const detector_scores::TrackScores& tracks = *detector.tracks;
+  const scores::TrackScores& tracks = *detector.tracks;
   const bool has_hours = detector.froc.hours > 0;
   Json json = {{"hota", json_of(tracks.hota)},
                {"clear", json_of(tracks.clear)},
@@ -272,18 +245,18 @@ Json tracks_json_of(const detector_scores::DetectorScore& detector,
                 tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
                {"encounters", Json::array()},
                {"operating_curve", Json::array()}};
-  for (const detector_scores::EncounterScore& one : tracks.encounters)
+  for (const scores::EncounterScore& one : tracks.encounters)
     json["encounters"].push_back(json_of(one, detector, assessment));
-  for (const detector_scores::OperatingPoint& point : tracks.operating_curve)
+  for (const scores::OperatingPoint& point : tracks.operating_curve)
     json["operating_curve"].push_back(json_of(point, has_hours));
   return json;
 }
 
-Json json_of(const detector_scores::FalseAlarm& alarm,
-             const detector_scores::DetectorScore& detector,
-             const detector_scores::Assessment& assessment) {
-  const detector_scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
-  const detector_scores::TruthSequence& truth = assessment.truths[scored.truth];
+Json json_of(const scores::FalseAlarm& alarm,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
+  const scores::TruthSequence& truth = assessment.truths[scored.truth];
   const Box& box = scored.detections.frames[alarm.frame][alarm.detection].box_px;
   return {{"sequence", truth.name},
           {"frame", truth.frames[alarm.frame].frame},
@@ -295,12 +268,11 @@ Json json_of(const detector_scores::FalseAlarm& alarm,
           {"to_aircraft_px", or_null(alarm.to_aircraft_px)}};
 }
 
-Json json_of(const detector_scores::Miss& miss,
-             const detector_scores::DetectorScore& detector,
-             const detector_scores::Assessment& assessment) {
-  const detector_scores::TruthSequence& truth =
-      assessment.truths[detector.sequences[miss.sequence].truth];
-  const detector_scores::TruthObject& object = truth.frames[miss.frame].objects[miss.index];
+Json json_of(const scores::Miss& miss,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::TruthSequence& truth = assessment.truths[detector.sequences[miss.sequence].truth];
+  const scores::TruthObject& object = truth.frames[miss.frame].objects[miss.index];
   const Box& box = object.box_px;
   return {{"sequence", truth.name},
           {"object", miss.object},
@@ -314,10 +286,9 @@ Json json_of(const detector_scores::Miss& miss,
 
 }  // namespace
 
-Json json_of_detector(const detector_scores::DetectorScore& detector,
-                      const detector_scores::Assessment& assessment) {
+Json json_of_detector(const scores::DetectorScore& detector, const scores::Assessment& assessment) {
   const bool has_hours = detector.froc.hours > 0;
-  const auto aot = [&](const std::optional<detection_measures::AotScore>& score) {
+  const auto aot = [&](const std::optional<measures::AotScore>& score) {
     return score ? json_of(*score, has_hours) : Json();
   };
   Json json = {{"name", detector.name},
@@ -341,12 +312,12 @@ Json json_of_detector(const detector_scores::DetectorScore& detector,
     json["point"]["weighted_detection"] = json_of(*detector.weighted_detection);
   for (const auto& [key, bins] : detector.by) {
     json["by"][key] = Json::array();
-    for (const detector_scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
+    for (const scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
   }
   for (const auto& [what, share] : detector.mistaken_by) json["mistaken_by"][what] = json_of(share);
-  for (const detector_scores::FalseAlarm& alarm : detector.false_alarms)
+  for (const scores::FalseAlarm& alarm : detector.false_alarms)
     json["strongest_false_alarms"].push_back(json_of(alarm, detector, assessment));
-  for (const detector_scores::Miss& miss : detector.misses)
+  for (const scores::Miss& miss : detector.misses)
     json["misses"].push_back(json_of(miss, detector, assessment));
   return json;
 }

@@ -13,7 +13,6 @@
 
 #include "evaluation/detector_evaluation/json.h"
 #include "evaluation/detector_evaluation/plots.h"
-#include "foundation/base/base64.h"
 #include "foundation/base/files.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
@@ -43,7 +42,7 @@ Json box_json(const Box& box) {
 }
 
 // What the plots show is not repeated in the detectors' own numbers.
-Json detector_json(const detector_scores::Assessment& assessment, std::size_t k) {
+Json detector_json(const scores::Assessment& assessment, std::size_t k) {
   Json json = json_of_detector(assessment.detectors[k], assessment);
   json.erase("by");
   json.erase("mistaken_by");
@@ -59,34 +58,20 @@ Json detector_json(const detector_scores::Assessment& assessment, std::size_t k)
   return json;
 }
 
-double point_score(const detector_scores::DetectorScore& detector) {
+double point_score(const scores::DetectorScore& detector) {
   return detector.point ? detector.point->score : -std::numeric_limits<double>::infinity();
-}
-
-// The ids of the aircraft that detections of the operating point find in a frame.
-std::set<std::int64_t> found_in(const detector_scores::ScoredDetections& scored,
-                                std::size_t frame,
-                                double score) {
-  std::set<std::int64_t> found;
-  if (frame >= scored.matches.size()) return found;
-  for (std::size_t i = 0; i < scored.matches[frame].size(); ++i)
-    if (const detector_scores::Match& match = scored.matches[frame][i];
-        match.kind == detector_scores::MatchKind::kTruePositive && match.object &&
-        scored.detections.frames[frame][i].score >= score)
-      found.insert(*match.object);
-  return found;
 }
 
 // A letter for each frame: f where every aircraft that counts is found at the operating point, p
 // where some are, m where none is, . where there is none.
-std::string found_letters(const detector_scores::TruthSequence& truth,
-                          const detector_scores::ScoredDetections& scored,
+std::string found_letters(const scores::TruthSequence& truth,
+                          const scores::ScoredDetections& scored,
                           double score) {
   std::string letters;
   for (std::size_t i = 0; i < truth.frames.size(); ++i) {
-    const std::set<std::int64_t> found = found_in(scored, i, score);
+    const std::set<std::int64_t> found = scores::detected_in(scored, i, score);
     std::size_t aircraft = 0, found_aircraft = 0;
-    for (const detector_scores::TruthObject& object : truth.frames[i].objects) {
+    for (const scores::TruthObject& object : truth.frames[i].objects) {
       if (!object.is_aircraft() || !object.counts) continue;
       ++aircraft;
       found_aircraft += found.count(object.id);
@@ -100,11 +85,11 @@ std::string found_letters(const detector_scores::TruthSequence& truth,
 }
 
 // The frames with a false alarm at the operating point, as indices.
-Json false_alarm_frames(const detector_scores::ScoredDetections& scored, double score) {
+Json false_alarm_frames(const scores::ScoredDetections& scored, double score) {
   Json frames = Json::array();
   for (std::size_t i = 0; i < scored.matches.size(); ++i)
     for (std::size_t n = 0; n < scored.matches[i].size(); ++n)
-      if (scored.matches[i][n].kind == detector_scores::MatchKind::kFalseAlarm &&
+      if (scored.matches[i][n].kind == scores::MatchKind::kFalseAlarm &&
           scored.detections.frames[i][n].score >= score) {
         frames.push_back(i);
         break;
@@ -112,19 +97,19 @@ Json false_alarm_frames(const detector_scores::ScoredDetections& scored, double 
   return frames;
 }
 
-const char* name_of(detector_scores::MatchKind kind) {
+const char* name_of(scores::MatchKind kind) {
   switch (kind) {
-    case detector_scores::MatchKind::kTruePositive:
+    case scores::MatchKind::kTruePositive:
       return "found";
-    case detector_scores::MatchKind::kIgnored:
+    case scores::MatchKind::kIgnored:
       return "ignored";
-    case detector_scores::MatchKind::kFalseAlarm:
+    case scores::MatchKind::kFalseAlarm:
       return "false alarm";
   }
   return "";
 }
 
-Json detections_in(const detector_scores::ScoredDetections& scored, std::size_t frame) {
+Json detections_in(const scores::ScoredDetections& scored, std::size_t frame) {
   Json json = Json::array();
   if (frame >= scored.detections.frames.size()) return json;
   const auto& found = scored.detections.frames[frame];
@@ -135,7 +120,7 @@ Json detections_in(const detector_scores::ScoredDetections& scored, std::size_t 
   });
   order.resize(std::min(order.size(), kMaxDrawn));
   for (const std::size_t i : order) {
-    const detector_scores::Match& match = scored.matches[frame][i];
+    const scores::Match& match = scored.matches[frame][i];
     json.push_back({box_json(found[i].box_px),
                     found[i].score,
                     found[i].track ? Json(*found[i].track) : Json(),
@@ -145,9 +130,9 @@ Json detections_in(const detector_scores::ScoredDetections& scored, std::size_t 
   return json;
 }
 
-Json objects_in(const detector_scores::TruthFrame& frame) {
+Json objects_in(const scores::TruthFrame& frame) {
   Json json = Json::array();
-  for (const detector_scores::TruthObject& object : frame.objects)
+  for (const scores::TruthObject& object : frame.objects)
     json.push_back({{"id", object.id},
                     {"class", object.object_class},
                     {"counts", object.counts},
@@ -158,20 +143,20 @@ Json objects_in(const detector_scores::TruthFrame& frame) {
   return json;
 }
 
-Json ignored_in(const detector_scores::TruthFrame& frame) {
+Json ignored_in(const scores::TruthFrame& frame) {
   Json json = Json::array();
   for (const Box& box : frame.ignored_px) json.push_back(box_json(box));
   return json;
 }
 
-Json cutout_json(const Cutout& cutout) {
+Json cutout_json(const report::Cutout& cutout) {
   return cutout.jpeg.empty() ? Json() : Json{cutout.x, cutout.y, cutout.px};
 }
 
-Json stills_json(const detector_scores::TruthSequence& truth, const SequenceFilm& film) {
+Json stills_json(const scores::TruthSequence& truth, const SequenceFilm& film) {
   Json stills = Json::array();
   for (const SequenceFilm::Still& still : film.stills) {
-    const detector_scores::TruthFrame& frame = truth.frames[still.frame];
+    const scores::TruthFrame& frame = truth.frames[still.frame];
     stills.push_back({{"index", still.frame},
                       {"frame", frame.frame},
                       {"time_s", rounded(frame.time_s, 0.001)},
@@ -182,9 +167,9 @@ Json stills_json(const detector_scores::TruthSequence& truth, const SequenceFilm
   return stills;
 }
 
-Json encounters_json(const detector_scores::TruthSequence& truth) {
+Json encounters_json(const scores::TruthSequence& truth) {
   Json json = Json::array();
-  for (const detector_scores::TruthEncounter& one : truth.encounters)
+  for (const scores::TruthEncounter& one : truth.encounters)
     json.push_back({{"id", one.id},
                     {"name", one.name},
                     {"closest_s", rounded(one.closest_approach_s, 0.001)},
@@ -193,18 +178,15 @@ Json encounters_json(const detector_scores::TruthSequence& truth) {
   return json;
 }
 
-Json sequence_json(const detector_scores::Assessment& assessment,
-                   const Film& film,
-                   std::size_t index) {
-  const detector_scores::TruthSequence& truth = assessment.truths[index];
+Json sequence_json(const scores::Assessment& assessment, const Film& film, std::size_t index) {
+  const scores::TruthSequence& truth = assessment.truths[index];
   const SequenceFilm& pictures = film.sequences[index];
   Json frame_numbers = Json::array();
-  for (const detector_scores::TruthFrame& frame : truth.frames)
-    frame_numbers.push_back(frame.frame);
+  for (const scores::TruthFrame& frame : truth.frames) frame_numbers.push_back(frame.frame);
   Json detectors = Json::array();
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const detector_scores::DetectorScore& detector = assessment.detectors[k];
-    for (const detector_scores::ScoredDetections& scored : detector.sequences) {
+    const scores::DetectorScore& detector = assessment.detectors[k];
+    for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != index) continue;
       Json drawn = Json::array();
       for (const SequenceFilm::Still& still : pictures.stills)
@@ -228,7 +210,7 @@ Json sequence_json(const detector_scores::Assessment& assessment,
 
 // Where the cutouts of the galleries lie in their frames, beside the entries of json_of.
 void add_cutouts(const Film& film, std::size_t k, Json& detector) {
-  const auto add = [](const std::vector<Cutout>& cutouts, Json& entries) {
+  const auto add = [](const std::vector<report::Cutout>& cutouts, Json& entries) {
     for (std::size_t i = 0; i < cutouts.size(); ++i) entries[i]["cutout"] = cutout_json(cutouts[i]);
   };
   add(film.false_alarms[k], detector["strongest_false_alarms"]);
@@ -239,7 +221,7 @@ void add_cutouts(const Film& film, std::size_t k, Json& detector) {
 std::vector<html::PageBlob> pictures_of(const Film& film) {
   std::vector<html::PageBlob> pictures;
   const auto add = [&](const std::string& name, const std::string& jpeg) {
-    if (!jpeg.empty()) pictures.push_back({name, base64_of(jpeg)});
+    report::add_picture(pictures, name, jpeg);
   };
   for (std::size_t i = 0; i < film.sequences.size(); ++i)
     for (std::size_t n = 0; n < film.sequences[i].stills.size(); ++n) {
@@ -255,12 +237,9 @@ std::vector<html::PageBlob> pictures_of(const Film& film) {
   return pictures;
 }
 
-Json data_of(const detector_scores::Assessment& assessment, const Film& film) {
+Json data_of(const scores::Assessment& assessment, const Film& film) {
   std::size_t frames = 0;
-  for (const detector_scores::TruthSequence& truth : assessment.truths)
-    frames += truth.frames.size();
-  Json plots = Json::object();
-  for (const auto& [name, plot] : detection_plots(assessment)) plots[name] = plot::json_of(plot);
+  for (const scores::TruthSequence& truth : assessment.truths) frames += truth.frames.size();
   Json data = {{"dataset", assessment.set},
                {"version", kVersion},
                {"frames", frames},
@@ -269,7 +248,7 @@ Json data_of(const detector_scores::Assessment& assessment, const Film& film) {
                {"volume", assessment.volume},
                {"is_weighted", assessment.is_weighted},
                {"left_out", assessment.left_out},
-               {"plots", plots},
+               {"plots", report::json_of(detection_plots(assessment))},
                {"detectors", Json::array()},
                {"sequences", Json::array()}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
@@ -283,7 +262,7 @@ Json data_of(const detector_scores::Assessment& assessment, const Film& film) {
 
 }  // namespace
 
-void write_page(const detector_scores::Assessment& assessment,
+void write_page(const scores::Assessment& assessment,
                 const fs::path& out,
                 const FilmOptions& options) {
   const Film film = film_of(assessment, options);
@@ -294,6 +273,14 @@ void write_page(const detector_scores::Assessment& assessment,
                     data_of(assessment, film).dump(-1, ' ', false, Json::error_handler_t::replace),
                     pictures_of(film),
                     std::string(html::detection_player_js()) + std::string(html::detection_js())));
+}
+
+void write_figures(const scores::Assessment& assessment,
+                   const fs::path& out,
+                   const std::string& format) {
+  const report::Figures figures(out, "detection_", format);
+  figures.draw(detection_plots(assessment));
+  figures.draw_ranking(ranking_plot(assessment));
 }
 
 }  // namespace airtruth::detector_evaluation

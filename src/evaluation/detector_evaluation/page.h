@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "evaluation/detector_evaluation/film.h"
-#include "evaluation/detector_scores/detector_score.h"
+#include "evaluation/scores/detector_score.h"
 
 // The page of an evaluation of detectors, and its plots for papers.
 namespace airtruth::detector_evaluation {
@@ -12,7 +12,7 @@ namespace airtruth::detector_evaluation {
 // Writes out/detection.html: a table of the detectors with intervals, the curves, probability of
 // detection by range and other quantities, a player of every sequence with truth, detections and
 // tracks drawn, and galleries of false alarms and misses. The page needs no network.
-void write_page(const detector_scores::Assessment& assessment,
+void write_page(const scores::Assessment& assessment,
                 const std::filesystem::path& out,
                 const FilmOptions& options);
 
@@ -20,7 +20,7 @@ void write_page(const detector_scores::Assessment& assessment,
 // with its gnuplot script and data beside it, and detection_ranking, the average precisions with
 // their intervals.
 // Throws Error where `format` is another.
-void write_figures(const detector_scores::Assessment& assessment,
+void write_figures(const scores::Assessment& assessment,
                    const std::filesystem::path& out,
                    const std::string& format);
 

@@ -7,15 +7,13 @@
 #include <map>
 #include <set>
 
-#include <fmt/format.h>
-
 namespace airtruth::detector_evaluation {
 namespace {
 
 using plot::Plot;
 using plot::Series;
 
-Series series_of(const detector_scores::Assessment& assessment, std::size_t k, plot::Mark mark) {
+Series series_of(const scores::Assessment& assessment, std::size_t k, plot::Mark mark) {
   return {.name = assessment.detectors[k].name, .mark = mark, .style = plot::style_of(k)};
 }
 
@@ -30,29 +28,24 @@ void add_point(Series& series, double x, const statistics::Proportion& share) {
   add_point(series, x, share.value, share.low, share.high);
 }
 
-void keep(Plot& plot, Series series) {
-  if (!series.x.empty()) plot.series.push_back(std::move(series));
-}
-
-Plot precision_plot(
-    const detector_scores::Assessment& assessment,
-    std::optional<detection_measures::PrecisionCurve> detection_measures::AveragePrecision::*curve,
-    std::optional<detection_measures::PrecisionBand> detection_measures::AveragePrecision::*band) {
+Plot precision_plot(const scores::Assessment& assessment,
+                    std::optional<measures::PrecisionCurve> measures::AveragePrecision::*curve,
+                    std::optional<measures::PrecisionBand> measures::AveragePrecision::*band) {
   Plot plot{.x = {.label = "recall", .min = 0, .max = 1},
             .y = {.label = "precision", .min = 0, .max = 1}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const detection_measures::AveragePrecision& ap = assessment.detectors[k].average_precision;
+    const measures::AveragePrecision& ap = assessment.detectors[k].average_precision;
     if (!(ap.*curve)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLine);
-    for (std::size_t i = 0; i < detection_measures::kRecallSteps; ++i) {
+    for (std::size_t i = 0; i < measures::kRecallSteps; ++i) {
       const double precision = (ap.*curve)->precision[i];
       add_point(series,
-                static_cast<double>(i) / (detection_measures::kRecallSteps - 1),
+                static_cast<double>(i) / (measures::kRecallSteps - 1),
                 precision,
                 ap.*band ? (ap.*band)->low[i] : precision,
                 ap.*band ? (ap.*band)->high[i] : precision);
     }
-    keep(plot, std::move(series));
+    report::keep(plot, std::move(series));
   }
   return plot;
 }
@@ -60,71 +53,67 @@ Plot precision_plot(
 // The least positive value of an axis without zero: half of one event in all that was looked at.
 double half_an_event(double looked_at) { return looked_at > 0 ? 0.5 / looked_at : 0; }
 
-Plot froc_plot(const detector_scores::Assessment& assessment,
+Plot froc_plot(const scores::Assessment& assessment,
                const std::string& label,
-               double detection_measures::FrocPoint::*rate,
+               double measures::FrocPoint::*rate,
                const auto& looked_at) {
   Plot plot{.x = {.label = label + " (none: at the left)", .is_logarithmic = true},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const detection_measures::Froc& froc = assessment.detectors[k].froc;
+    const measures::Froc& froc = assessment.detectors[k].froc;
     const double least = half_an_event(looked_at(froc));
     if (!(least > 0)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLine);
-    for (const detection_measures::FrocPoint& point : froc.points)
+    for (const measures::FrocPoint& point : froc.points)
       if (point.detection.trials > 0)
         add_point(series, std::max(point.*rate, least), point.detection);
-    keep(plot, std::move(series));
+    report::keep(plot, std::move(series));
   }
   return plot;
 }
 
 // `value`: adds the point's value at x.
-Plot operating_plot(const detector_scores::Assessment& assessment,
+Plot operating_plot(const scores::Assessment& assessment,
                     const std::string& label,
                     const auto& add_value) {
   Plot plot{.x = {.label = "false tracks an hour (none: at the left)", .is_logarithmic = true},
             .y = {.label = label, .min = 0}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const detector_scores::DetectorScore& detector = assessment.detectors[k];
+    const scores::DetectorScore& detector = assessment.detectors[k];
     const double least = half_an_event(detector.froc.hours);
     if (!detector.tracks || !(least > 0)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLineAndPoints);
-    for (const detector_scores::OperatingPoint& point : detector.tracks->operating_curve)
+    for (const scores::OperatingPoint& point : detector.tracks->operating_curve)
       add_value(series, std::max(point.false_tracks_per_hour, least), point);
-    keep(plot, std::move(series));
+    report::keep(plot, std::move(series));
   }
   return plot;
 }
 
-Plot declaration_range_plot(const detector_scores::Assessment& assessment) {
+Plot declaration_range_plot(const scores::Assessment& assessment) {
   return operating_plot(
       assessment,
       "mean declaration range, m",
-      [](Series& series, double x, const detector_scores::OperatingPoint& point) {
+      [](Series& series, double x, const scores::OperatingPoint& point) {
         if (!point.range_m) return;
-        const detector_scores::WeightedMean& range = *point.range_m;
+        const scores::WeightedMean& range = *point.range_m;
         const auto interval = range.interval.value_or(evaluation::Interval{range.mean, range.mean});
         add_point(series, x, range.mean, interval.low, interval.high);
       });
 }
 
-Plot declared_plot(const detector_scores::Assessment& assessment) {
-  Plot plot =
-      operating_plot(assessment,
-                     "share of encounters declared",
-                     [](Series& series, double x, const detector_scores::OperatingPoint& point) {
-                       if (point.declared.trials > 0) add_point(series, x, point.declared);
-                     });
+Plot declared_plot(const scores::Assessment& assessment) {
+  Plot plot = operating_plot(assessment,
+                             "share of encounters declared",
+                             [](Series& series, double x, const scores::OperatingPoint& point) {
+                               if (point.declared.trials > 0) add_point(series, x, point.declared);
+                             });
   plot.y.max = 1;
   return plot;
 }
 
-std::string name_of(const detector_scores::DetectionBin& bin) {
-  if (!bin.name.empty()) return bin.name;
-  if (!std::isfinite(bin.to)) return fmt::format("≥ {}", bin.from);
-  // A dash beside a minus sign is hard to read.
-  return fmt::format(fmt::runtime(bin.from < 0 ? "{} to {}" : "{}–{}"), bin.from, bin.to);
+std::string name_of(const scores::DetectionBin& bin) {
+  return bin.name.empty() ? report::name_of_bin(bin.from, bin.to) : bin.name;
 }
 
 // Every second place is shaded, so that the dots of one place are seen as a group.
@@ -135,21 +124,16 @@ void shade_places(Plot& plot) {
         {static_cast<double>(place) - 0.5, static_cast<double>(place) + 0.5, kShade});
 }
 
-Plot by_plot(const detector_scores::Assessment& assessment,
-             const detector_scores::Quantity& quantity) {
+Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quantity) {
   // By the lower bound, then by name.
   std::map<std::pair<double, std::string>, std::string> names;
-  const auto key = [](const detector_scores::DetectionBin& bin) {
-    return std::pair(bin.from, bin.name);
-  };
-  const auto bins_of = [&](const detector_scores::DetectorScore& detector) {
+  const auto key = [](const scores::DetectionBin& bin) { return std::pair(bin.from, bin.name); };
+  const auto bins_of = [&](const scores::DetectorScore& detector) {
     const auto found = detector.by.find(quantity.key);
-    return found == detector.by.end() ? std::vector<detector_scores::DetectionBin>{}
-                                      : found->second;
+    return found == detector.by.end() ? std::vector<scores::DetectionBin>{} : found->second;
   };
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
-    for (const detector_scores::DetectionBin& bin : bins_of(detector))
-      names[key(bin)] = name_of(bin);
+  for (const scores::DetectorScore& detector : assessment.detectors)
+    for (const scores::DetectionBin& bin : bins_of(detector)) names[key(bin)] = name_of(bin);
   Plot plot{.x = {.label = quantity.title},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (const auto& [place, name] : names) plot.x.names.push_back(name);
@@ -159,25 +143,25 @@ Plot by_plot(const detector_scores::Assessment& assessment,
     Series weighted = plain;
     weighted.name += ", weighted";
     weighted.is_hollow = true;
-    for (const detector_scores::DetectionBin& bin : bins_of(assessment.detectors[k])) {
+    for (const scores::DetectionBin& bin : bins_of(assessment.detectors[k])) {
       const auto place = static_cast<double>(std::distance(names.begin(), names.find(key(bin))));
       add_point(plain, place, bin.detection);
       if (bin.weighted) add_point(weighted, place, *bin.weighted);
     }
-    keep(plot, std::move(plain));
-    keep(plot, std::move(weighted));
+    report::keep(plot, std::move(plain));
+    report::keep(plot, std::move(weighted));
   }
   return plot;
 }
 
 // Bars or dots over the keys of a map of each detector.
-Plot named_plot(const detector_scores::Assessment& assessment,
+Plot named_plot(const scores::Assessment& assessment,
                 const std::string& label,
                 plot::Mark mark,
                 const auto& map_of,
                 const auto& add_value) {
   std::set<std::string> names;
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+  for (const scores::DetectorScore& detector : assessment.detectors)
     for (const auto& [name, value] : map_of(detector)) names.insert(name);
   Plot plot{.y = {.label = label, .min = 0}};
   plot.x.names.assign(names.begin(), names.end());
@@ -186,33 +170,29 @@ Plot named_plot(const detector_scores::Assessment& assessment,
     Series series = series_of(assessment, k, mark);
     for (const auto& [name, value] : map_of(assessment.detectors[k]))
       add_value(series, static_cast<double>(std::distance(names.begin(), names.find(name))), value);
-    keep(plot, std::move(series));
+    report::keep(plot, std::move(series));
   }
   return plot;
 }
 
-Plot false_alarms_plot(const detector_scores::Assessment& assessment) {
+Plot false_alarms_plot(const scores::Assessment& assessment) {
   return named_plot(
       assessment,
       "false alarms",
       plot::Mark::kBars,
-      [](const detector_scores::DetectorScore& detector) -> const auto& {
-        return detector.false_alarms_by;
-      },
+      [](const scores::DetectorScore& detector) -> const auto& { return detector.false_alarms_by; },
       [](Series& series, double x, std::int64_t count) {
         series.x.push_back(x);
         series.y.push_back(static_cast<double>(count));
       });
 }
 
-Plot mistaken_plot(const detector_scores::Assessment& assessment) {
+Plot mistaken_plot(const scores::Assessment& assessment) {
   return named_plot(
       assessment,
       "share of its frames taken for an aircraft",
       plot::Mark::kDots,
-      [](const detector_scores::DetectorScore& detector) -> const auto& {
-        return detector.mistaken_by;
-      },
+      [](const scores::DetectorScore& detector) -> const auto& { return detector.mistaken_by; },
       [](Series& series, double x, const statistics::Proportion& share) {
         add_point(series, x, share);
       });
@@ -220,35 +200,42 @@ Plot mistaken_plot(const detector_scores::Assessment& assessment) {
 
 }  // namespace
 
-std::vector<NamedPlot> detection_plots(const detector_scores::Assessment& assessment) {
-  std::vector<NamedPlot> plots = {
+std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessment) {
+  std::vector<report::NamedPlot> plots = {
       {"precision",
        precision_plot(assessment,
-                      &detection_measures::AveragePrecision::curve_centre,
-                      &detection_measures::AveragePrecision::band_centre)},
+                      &measures::AveragePrecision::curve_centre,
+                      &measures::AveragePrecision::band_centre)},
       {"precision_50",
        precision_plot(assessment,
-                      &detection_measures::AveragePrecision::curve_50,
-                      &detection_measures::AveragePrecision::band_50)},
+                      &measures::AveragePrecision::curve_50,
+                      &measures::AveragePrecision::band_50)},
       {"froc",
-       froc_plot(
-           assessment,
-           "false alarms an image",
-           &detection_measures::FrocPoint::false_alarms_per_image,
-           [](const detection_measures::Froc& froc) { return static_cast<double>(froc.images); })},
+       froc_plot(assessment,
+                 "false alarms an image",
+                 &measures::FrocPoint::false_alarms_per_image,
+                 [](const measures::Froc& froc) { return static_cast<double>(froc.images); })},
       {"froc_hour",
        froc_plot(assessment,
                  "false alarms an hour",
-                 &detection_measures::FrocPoint::false_alarms_per_hour,
-                 [](const detection_measures::Froc& froc) { return froc.hours; })},
+                 &measures::FrocPoint::false_alarms_per_hour,
+                 [](const measures::Froc& froc) { return froc.hours; })},
       {"operating", declaration_range_plot(assessment)},
       {"declared", declared_plot(assessment)}};
-  for (const detector_scores::Quantity& quantity : detector_scores::quantities())
+  for (const scores::Quantity& quantity : scores::quantities())
     plots.push_back({std::string("by_") + quantity.key, by_plot(assessment, quantity)});
   plots.push_back({"false_alarms", false_alarms_plot(assessment)});
   plots.push_back({"mistaken", mistaken_plot(assessment)});
-  std::erase_if(plots, [](const NamedPlot& one) { return one.plot.series.empty(); });
-  return plots;
+  return report::with_data(std::move(plots));
+}
+
+plot::Plot ranking_plot(const scores::Assessment& assessment) {
+  std::vector<report::Ranked> detectors;
+  for (const scores::DetectorScore& detector : assessment.detectors) {
+    const measures::AveragePrecision& ap = detector.average_precision;
+    if (ap.ap_centre) detectors.push_back({detector.name, *ap.ap_centre, ap.ap_centre_interval});
+  }
+  return report::ranking_plot("average precision", detectors);
 }
 
 }  // namespace airtruth::detector_evaluation

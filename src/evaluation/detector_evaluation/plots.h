@@ -4,15 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/detector_scores/detector_score.h"
+#include "evaluation/report/plots.h"
+#include "evaluation/scores/detector_score.h"
 #include "show/plot/plot.h"
 
 namespace airtruth::detector_evaluation {
-
-struct NamedPlot {
-  std::string name;
-  plot::Plot plot;
-};
 
 // The plots of an assessment for its page and for papers. A detector has the same style in all
 // (style_of its place). Bands and whiskers are the 95 % intervals. Those without data are left out.
@@ -26,6 +22,9 @@ struct NamedPlot {
 //   by_KEY        probability of detection at the operating point, for each key of quantities()
 //   false_alarms  false alarms at the operating point by what they are
 //   mistaken      share of the frames of other objects that raise one, by class
-std::vector<NamedPlot> detection_plots(const detector_scores::Assessment& assessment);
+std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessment);
+
+// Average precision at the centre distance.
+plot::Plot ranking_plot(const scores::Assessment& assessment);
 
 }  // namespace airtruth::detector_evaluation

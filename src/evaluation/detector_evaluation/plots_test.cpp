@@ -8,8 +8,8 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
-const plot::Plot* plot_named(const std::vector<NamedPlot>& plots, const std::string& name) {
-  for (const NamedPlot& one : plots)
+const plot::Plot* plot_named(const std::vector<report::NamedPlot>& plots, const std::string& name) {
+  for (const report::NamedPlot& one : plots)
     if (one.name == name) return &one.plot;
   return nullptr;
 }
@@ -19,20 +19,20 @@ statistics::Proportion share(double value, double low, double high) {
 }
 
 // Two detectors: one with a FROC of two points in 100 images, the other without a detection.
-detector_scores::Assessment two_detectors() {
-  detector_scores::Assessment assessment;
+scores::Assessment two_detectors() {
+  scores::Assessment assessment;
   assessment.detectors.resize(2);
-  detector_scores::DetectorScore& first = assessment.detectors[0];
+  scores::DetectorScore& first = assessment.detectors[0];
   first.name = "first";
   first.froc.images = 100;
   first.froc.points = {{9, share(0.4, 0.3, 0.5), 0, 0, 0}, {5, share(0.8, 0.7, 0.9), 0.2, 0, 0}};
-  detector_scores::DetectionBin near, far;
+  scores::DetectionBin near, far;
   near.from = 0, near.to = 100, near.detection = share(0.9, 0.8, 1);
   far.from = 200, far.detection = share(0.1, 0, 0.2);  // 200 and more
   first.by["range_m"] = {near, far};
   first.false_alarms_by = {{"background", 7}, {"bird", 2}};
   assessment.detectors[1].name = "second";
-  detector_scores::DetectionBin middle;
+  scores::DetectionBin middle;
   middle.from = 100, middle.to = 200, middle.detection = share(0.5, 0.4, 0.6);
   assessment.detectors[1].by["range_m"] = {middle};
   assessment.detectors[1].false_alarms_by = {{"balloon", 1}};
@@ -70,8 +70,8 @@ TEST(DetectionPlots, BinsOfAllDetectorsShareTheirPlaces) {
 }
 
 TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
-  detector_scores::Assessment assessment = two_detectors();
-  detector_scores::DetectionBin left;
+  scores::Assessment assessment = two_detectors();
+  scores::DetectionBin left;
   left.from = -20, left.to = -10, left.detection = share(0.5, 0.4, 0.6);
   assessment.detectors[0].by["azimuth_deg"] = {left};
   const auto plots = detection_plots(assessment);
@@ -82,7 +82,7 @@ TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
 
 // Rings of weighted shares stand beside the dots of their detector, where there are any.
 TEST(DetectionPlots, WeightedSharesAreRingsBesideThePlainOnes) {
-  detector_scores::Assessment assessment = two_detectors();
+  scores::Assessment assessment = two_detectors();
   assessment.detectors[0].by["range_m"][1].weighted = share(0.3, 0.2, 0.4);
   const auto plots = detection_plots(assessment);
   const plot::Plot& plot = *plot_named(plots, "by_range_m");

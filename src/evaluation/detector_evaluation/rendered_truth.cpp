@@ -23,9 +23,8 @@ const exchange::Label* label_of(const exchange::LabelledFrame& frame, std::int64
   return nullptr;
 }
 
-detector_scores::TruthObject object_of(const exchange::Label& label,
-                                       const annotation::Intruder& intruder) {
-  detector_scores::TruthObject object;
+scores::TruthObject object_of(const exchange::Label& label, const annotation::Intruder& intruder) {
+  scores::TruthObject object;
   object.id = label.track;
   object.object_class = label.object_class;
   object.category = label.category;
@@ -39,10 +38,10 @@ detector_scores::TruthObject object_of(const exchange::Label& label,
 
 // What is visible has a box: the one that is asked for, or else, for what does not count, the
 // visible one.
-detector_scores::TruthFrame frame_of(const annotation::Frame& truth,
-                                     dataset::Boxes boxes,
-                                     const annotation::LensFacts& lens) {
-  detector_scores::TruthFrame frame;
+scores::TruthFrame frame_of(const annotation::Frame& truth,
+                            dataset::Boxes boxes,
+                            const annotation::LensFacts& lens) {
+  scores::TruthFrame frame;
   frame.frame = truth.frame;
   frame.time_s = truth.time_s;
   const auto asked = dataset::labels_of(truth, boxes, lens.width, lens.height);
@@ -111,7 +110,7 @@ std::optional<double> recorded_violation_s(const JsonObject& record, const std::
 void ask_paths(const sequence::Finished& finished,
                std::size_t actor,
                const encounter::Volume& volume,
-               detector_scores::TruthEncounter& encounter) {
+               scores::TruthEncounter& encounter) {
   const std::vector<annotation::Frame>& frames = finished.truth.frames;
   const std::vector<PairState> states = states_of(frames, actor);
   // An aircraft whose path is over before the clip is does not fly on.
@@ -121,11 +120,11 @@ void ask_paths(const sequence::Finished& finished,
   encounter.violation_s = first_violation_s(volume, states, lookahead_s);
 }
 
-detector_scores::TruthEncounter encounter_of(const sequence::Finished& finished,
-                                             const JsonObject* record,
-                                             std::size_t actor,
-                                             const std::string& volume) {
-  detector_scores::TruthEncounter encounter;
+scores::TruthEncounter encounter_of(const sequence::Finished& finished,
+                                    const JsonObject* record,
+                                    std::size_t actor,
+                                    const std::string& volume) {
+  scores::TruthEncounter encounter;
   encounter.id = static_cast<std::int64_t>(actor) + 1;
   encounter.name = finished.truth.frames.front().intruders[actor].id;
   if (record != nullptr && record->has("closest_approach")) {
@@ -146,10 +145,10 @@ detector_scores::TruthEncounter encounter_of(const sequence::Finished& finished,
 void add_encounters(const sequence::Finished& finished,
                     const JsonObject& record,
                     const std::string& volume,
-                    detector_scores::TruthSequence& truth) {
+                    scores::TruthSequence& truth) {
   std::set<std::int64_t> aircraft;
-  for (const detector_scores::TruthFrame& frame : truth.frames)
-    for (const detector_scores::TruthObject& object : frame.objects)
+  for (const scores::TruthFrame& frame : truth.frames)
+    for (const scores::TruthObject& object : frame.objects)
       if (object.is_aircraft()) aircraft.insert(object.id);
   const std::vector<JsonObject> records =
       record.has("encounters") ? record.objects("encounters") : std::vector<JsonObject>{};
@@ -166,10 +165,10 @@ void add_encounters(const sequence::Finished& finished,
   }
 }
 
-void add_times_to_approach(detector_scores::TruthSequence& truth) {
-  for (detector_scores::TruthFrame& frame : truth.frames)
-    for (detector_scores::TruthObject& object : frame.objects) {
-      const detector_scores::TruthEncounter* encounter = truth.encounter(object.id);
+void add_times_to_approach(scores::TruthSequence& truth) {
+  for (scores::TruthFrame& frame : truth.frames)
+    for (scores::TruthObject& object : frame.objects) {
+      const scores::TruthEncounter* encounter = truth.encounter(object.id);
       if (encounter != nullptr && encounter->closest_approach_s)
         object.to_closest_approach_s = *encounter->closest_approach_s - frame.time_s;
     }
@@ -184,7 +183,7 @@ RenderedTruth rendered_truth(const fs::path& folder,
   const JsonDocument record(folder / "sequence.json");
   RenderedTruth rendered;
   rendered.first_background_frame = finished.scene->background.first_frame;
-  detector_scores::TruthSequence& truth = rendered.truth;
+  scores::TruthSequence& truth = rendered.truth;
   truth.media = finished.video;
   truth.background = finished.scene->background.video.filename().string();
   truth.background_cut = fmt::format("{} from {}",

@@ -10,13 +10,13 @@
 #include "dataset/sequences/labels_of_truth.h"
 #include "encounter/separation/measures.h"
 #include "encounter/separation/volumes.h"
-#include "evaluation/detector_scores/truth.h"
+#include "evaluation/scores/truth.h"
 
 // The truth of a sequence that `render` made; a part of set_truth.h.
 namespace airtruth::detector_evaluation {
 
 struct RenderedTruth {
-  detector_scores::TruthSequence truth;  // without duration
+  scores::TruthSequence truth;  // without duration
   bool has_weight = false;
   // The frame of the background video that became the sequence's first.
   std::int64_t first_background_frame = 0;

@@ -13,7 +13,7 @@
 #include "encounter/separation/volumes.h"
 #include "evaluation/detector_evaluation/contrast_to_noise.h"
 #include "evaluation/detector_evaluation/rendered_truth.h"
-#include "evaluation/detector_scores/ignored_regions.h"
+#include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/suggest.h"
@@ -24,8 +24,8 @@ namespace {
 constexpr const char* kIgnore = "ignore";
 constexpr const char* kIgnoreFile = "ignore.csv";
 
-detector_scores::TruthObject object_of(const exchange::Label& label) {
-  detector_scores::TruthObject object;
+scores::TruthObject object_of(const exchange::Label& label) {
+  scores::TruthObject object;
   object.id = label.track;
   object.object_class = label.object_class;
   object.category = label.category;
@@ -35,22 +35,21 @@ detector_scores::TruthObject object_of(const exchange::Label& label) {
   return object;
 }
 
-void add_encounters(detector_scores::TruthSequence& truth) {
+void add_encounters(scores::TruthSequence& truth) {
   std::map<std::int64_t, std::string> aircraft;
-  for (const detector_scores::TruthFrame& frame : truth.frames)
-    for (const detector_scores::TruthObject& object : frame.objects)
+  for (const scores::TruthFrame& frame : truth.frames)
+    for (const scores::TruthObject& object : frame.objects)
       if (object.is_aircraft()) aircraft.try_emplace(object.id, object.category);
   for (const auto& [id, category] : aircraft) {
-    detector_scores::TruthEncounter& encounter = truth.encounters.emplace_back();
+    scores::TruthEncounter& encounter = truth.encounters.emplace_back();
     encounter.id = id;
     encounter.name = fmt::format("{} {}", category, id);
   }
 }
 
-detector_scores::TruthSequence imported_truth(const dataset::LabelledSet& set,
-                                              const std::string& name) {
+scores::TruthSequence imported_truth(const dataset::LabelledSet& set, const std::string& name) {
   exchange::Clip clip = set.clip(name);
-  detector_scores::TruthSequence truth;
+  scores::TruthSequence truth;
   truth.name = name;
   truth.media = clip.media;
   truth.background = clip.media.filename().string();
@@ -58,7 +57,7 @@ detector_scores::TruthSequence imported_truth(const dataset::LabelledSet& set,
   truth.height = clip.height;
   truth.frame_rate_hz = clip.frame_rate_hz.value_or(0);
   for (const exchange::LabelledFrame& labelled : clip.frames) {
-    detector_scores::TruthFrame& frame = truth.frames.emplace_back();
+    scores::TruthFrame& frame = truth.frames.emplace_back();
     frame.frame = labelled.frame;
     frame.time_s = labelled.time_s.value_or(
         truth.frame_rate_hz > 0 ? static_cast<double>(labelled.frame) / truth.frame_rate_hz : 0);
@@ -74,7 +73,7 @@ detector_scores::TruthSequence imported_truth(const dataset::LabelledSet& set,
 
 // Frames over the rate. Clips may hold every n-th frame of a video, so the span of the times comes
 // first where they are known.
-double duration_s(const detector_scores::TruthSequence& truth) {
+double duration_s(const scores::TruthSequence& truth) {
   const std::size_t frames = truth.frames.size();
   if (frames == 0) return 0;
   const double span_s = truth.frames.back().time_s - truth.frames.front().time_s;
@@ -83,16 +82,16 @@ double duration_s(const detector_scores::TruthSequence& truth) {
   return truth.frame_rate_hz > 0 ? static_cast<double>(frames) / truth.frame_rate_hz : 0;
 }
 
-void start_at_0(detector_scores::TruthSequence& truth) {
+void start_at_0(scores::TruthSequence& truth) {
   if (truth.frames.empty()) return;
   const double first_s = truth.frames.front().time_s;
-  for (detector_scores::TruthFrame& frame : truth.frames) frame.time_s -= first_s;
+  for (scores::TruthFrame& frame : truth.frames) frame.time_s -= first_s;
 }
 
 // Whether a region is for this sequence; then the number that its background's frames have more
 // than the sequence's.
-std::optional<std::int64_t> offset_of(const detector_scores::IgnoredRegion& region,
-                                      const detector_scores::TruthSequence& truth,
+std::optional<std::int64_t> offset_of(const scores::IgnoredRegion& region,
+                                      const scores::TruthSequence& truth,
                                       std::int64_t first_of_background) {
   if (matches(region.sequence, truth.name)) return 0;
   if (!truth.background.empty() && region.sequence == truth.background) return first_of_background;
@@ -101,14 +100,14 @@ std::optional<std::int64_t> offset_of(const detector_scores::IgnoredRegion& regi
 
 void ignore_regions(const fs::path& file,
                     const std::vector<std::int64_t>& first_frames,
-                    std::vector<detector_scores::TruthSequence>& sequences) {
-  for (const detector_scores::IgnoredRegion& region : detector_scores::read_ignored_regions(file)) {
+                    std::vector<scores::TruthSequence>& sequences) {
+  for (const scores::IgnoredRegion& region : scores::read_ignored_regions(file)) {
     bool fits_any = false;
     for (std::size_t s = 0; s < sequences.size(); ++s) {
       const auto offset = offset_of(region, sequences[s], first_frames[s]);
       if (!offset) continue;
       fits_any = true;
-      for (detector_scores::TruthFrame& frame : sequences[s].frames) {
+      for (scores::TruthFrame& frame : sequences[s].frames) {
         const std::int64_t number = frame.frame + *offset;
         if (number >= region.first_frame && number <= region.last_frame.value_or(number))
           frame.ignored_px.push_back(region.box_px);
@@ -123,11 +122,11 @@ void ignore_regions(const fs::path& file,
 }
 
 // Sequences of which something is known, in words: "3 of 8 sequences".
-using Known = std::function<bool(const detector_scores::TruthSequence&)>;
-bool any_object(const detector_scores::TruthSequence& truth,
-                const std::function<bool(const detector_scores::TruthObject&)>& known) {
-  for (const detector_scores::TruthFrame& frame : truth.frames)
-    for (const detector_scores::TruthObject& object : frame.objects)
+using Known = std::function<bool(const scores::TruthSequence&)>;
+bool any_object(const scores::TruthSequence& truth,
+                const std::function<bool(const scores::TruthObject&)>& known) {
+  for (const scores::TruthFrame& frame : truth.frames)
+    for (const scores::TruthObject& object : frame.objects)
       if (object.is_aircraft() && known(object)) return true;
   return false;
 }
@@ -138,7 +137,7 @@ void leave_out(SetTruth& set,
                const std::string& where) {
   std::size_t shown = 0;
   std::size_t unknown = 0;
-  for (const detector_scores::TruthSequence& truth : set.sequences) {
+  for (const scores::TruthSequence& truth : set.sequences) {
     if (truth.encounters.empty()) continue;
     ++shown;
     unknown += is_known(truth) ? 0 : 1;
@@ -150,26 +149,26 @@ void leave_out(SetTruth& set,
 
 void say_what_is_missing(SetTruth& set, const std::string& volume) {
   std::int64_t never_seen = 0;
-  for (const detector_scores::TruthSequence& truth : set.sequences) never_seen += truth.never_seen;
+  for (const scores::TruthSequence& truth : set.sequences) never_seen += truth.never_seen;
   if (never_seen > 0)
     set.left_out.push_back(fmt::format(
         "{} intruders are never in view; shares of encounters leave them out", never_seen));
   leave_out(
       set,
-      [](const detector_scores::TruthSequence& truth) {
-        return any_object(
-            truth, [](const detector_scores::TruthObject& o) { return o.range_m.has_value(); });
+      [](const scores::TruthSequence& truth) {
+        return any_object(truth,
+                          [](const scores::TruthObject& o) { return o.range_m.has_value(); });
       },
       "the range is",
       "detection by range, declaration ranges and AOT's measures leave them out");
   leave_out(
       set,
-      [](const detector_scores::TruthSequence& truth) { return truth.lens.has_value(); },
+      [](const scores::TruthSequence& truth) { return truth.lens.has_value(); },
       "the lens is",
       "bearing errors and detection by azimuth leave them out");
   leave_out(
       set,
-      [](const detector_scores::TruthSequence& truth) {
+      [](const scores::TruthSequence& truth) {
         return std::any_of(truth.encounters.begin(), truth.encounters.end(), [](const auto& one) {
           return one.closest_approach_s.has_value();
         });
@@ -179,7 +178,7 @@ void say_what_is_missing(SetTruth& set, const std::string& volume) {
   if (!volume.empty())
     leave_out(
         set,
-        [](const detector_scores::TruthSequence& truth) {
+        [](const scores::TruthSequence& truth) {
           return std::any_of(truth.encounters.begin(), truth.encounters.end(), [](const auto& one) {
             return one.has_volume;
           });
@@ -193,7 +192,7 @@ void drop_hours_unless_all_known(SetTruth& set) {
     return !(t.duration_s > 0);
   });
   if (unknown == 0) return;
-  for (detector_scores::TruthSequence& truth : set.sequences) truth.duration_s = 0;
+  for (scores::TruthSequence& truth : set.sequences) truth.duration_s = 0;
   set.left_out.push_back(fmt::format(
       "the frame rate is unknown for {} of {} sequences; there are no false alarms an hour",
       unknown,
@@ -202,8 +201,8 @@ void drop_hours_unless_all_known(SetTruth& set) {
 
 void expect_volume(const SetTruth& set, const std::string& volume) {
   if (volume.empty() || encounter::named_volume(volume) != nullptr) return;
-  for (const detector_scores::TruthSequence& truth : set.sequences)
-    for (const detector_scores::TruthEncounter& one : truth.encounters)
+  for (const scores::TruthSequence& truth : set.sequences)
+    for (const scores::TruthEncounter& one : truth.encounters)
       if (one.has_volume) return;
   const std::vector<std::string> names = encounter::volume_names();
   const auto nearest = nearest_spelling(volume, names);
@@ -231,7 +230,7 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
       first_frames.push_back(rendered.first_background_frame);
       weighted += rendered.has_weight ? 1 : 0;
     }
-    detector_scores::TruthSequence& truth = result.sequences.back();
+    scores::TruthSequence& truth = result.sequences.back();
     truth.name = name;
     start_at_0(truth);
     truth.duration_s = duration_s(truth);
@@ -252,16 +251,16 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
   return result;
 }
 
-void measure_contrast(detector_scores::TruthSequence& truth, const std::stop_token& stop) {
+void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop) {
   if (truth.media.empty()) return;
   experiment::Frames frames(truth.media, {});
-  for (detector_scores::TruthFrame& frame : truth.frames) {
+  for (scores::TruthFrame& frame : truth.frames) {
     if (stop.stop_requested()) throw Interrupted();
     if (frame.objects.empty()) continue;
     const image::Picture* picture = frames.at(frame.frame);
     if (picture == nullptr)
       throw Error("ends before the labels of " + truth.name + " do", {truth.media.string()});
-    for (detector_scores::TruthObject& object : frame.objects)
+    for (scores::TruthObject& object : frame.objects)
       object.contrast_to_noise = contrast_to_noise(*picture, pixels_of(object.box_px));
   }
 }

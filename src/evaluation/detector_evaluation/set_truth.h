@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
-#include "evaluation/detector_scores/truth.h"
+#include "evaluation/scores/truth.h"
 #include "foundation/base/log.h"
 
 // The truth of a data set as the measures of detections take it.
@@ -25,8 +25,8 @@ struct SetTruthOptions {
 };
 
 struct SetTruth {
-  std::vector<detector_scores::TruthSequence> sequences;  // sorted by name
-  bool is_weighted = false;                               // a sequence states a weight
+  std::vector<scores::TruthSequence> sequences;  // sorted by name
+  bool is_weighted = false;                      // a sequence states a weight
   // What the truth lacks, as sentences for people.
   std::vector<std::string> left_out;
 };
@@ -38,6 +38,6 @@ SetTruth set_truth(const fs::path& set, const SetTruthOptions& options);
 
 // Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
 // happens. Throws Error where the video ends before the truth does.
-void measure_contrast(detector_scores::TruthSequence& truth, const std::stop_token& stop);
+void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop);
 
 }  // namespace airtruth::detector_evaluation

@@ -69,11 +69,11 @@ class OfRenderedSet : public testing::Test {
   static fs::path answered(const std::string& name, double shift_px) {
     const fs::path folder = root_ / name;
     fs::create_directories(folder);
-    for (const detector_scores::TruthSequence& one : truth().sequences) {
+    for (const scores::TruthSequence& one : truth().sequences) {
       detection::SequenceDetections detections{one.name, one.width, one.height, {}, {}};
-      for (const detector_scores::TruthFrame& frame : one.frames) {
+      for (const scores::TruthFrame& frame : one.frames) {
         auto& list = detections.frames.emplace_back();
-        for (const detector_scores::TruthObject& object : frame.objects) {
+        for (const scores::TruthObject& object : frame.objects) {
           list.push_back({object.box_px, 1, "aircraft", 5});
           list.back().box_px.x += shift_px;
         }
@@ -91,7 +91,7 @@ TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
   const SetTruth set = truth();
   ASSERT_EQ(set.sequences.size(), 2u);
   EXPECT_TRUE(set.is_weighted);
-  const detector_scores::TruthSequence& one = set.sequences[0];
+  const scores::TruthSequence& one = set.sequences[0];
   EXPECT_EQ(one.name, "asked");
   EXPECT_EQ(one.weight, 3);
   EXPECT_EQ(one.background, "flight.mkv");
@@ -104,7 +104,7 @@ TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
     const annotation::Intruder& him = finished.truth.frames[i].intruders[0];
     ASSERT_EQ(one.frames[i].objects.size(), him.visible_box_px ? 1u : 0u);
     if (!him.visible_box_px) continue;
-    const detector_scores::TruthObject& object = one.frames[i].objects[0];
+    const scores::TruthObject& object = one.frames[i].objects[0];
     EXPECT_EQ(object.counts, him.covered_box_px.has_value());
     const PixelBox box = him.covered_box_px.value_or(*him.visible_box_px);
     EXPECT_EQ(object.box_px,
@@ -128,7 +128,7 @@ TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
 TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePositions) {
   const SetTruth set = truth("f3442");
   const double by_hand_s = kApproach_s - std::sqrt(609.6 * 609.6 - 60 * 60) / 80;
-  for (const detector_scores::TruthSequence& one : set.sequences) {
+  for (const scores::TruthSequence& one : set.sequences) {
     ASSERT_TRUE(one.encounters.at(0).has_volume) << one.name;
     EXPECT_NEAR(*one.encounters[0].violation_s, by_hand_s, 0.01) << one.name;
   }
@@ -151,13 +151,13 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   AssessOptions options;
   options.manoeuvre_s = 0;
   options.volume = "f3442";
-  const detector_scores::Assessment assessment = assess(root_ / "set", {folder}, options);
-  const detector_scores::DetectorScore& score = assessment.detectors.at(0);
+  const scores::Assessment assessment = assess(root_ / "set", {folder}, options);
+  const scores::DetectorScore& score = assessment.detectors.at(0);
   EXPECT_NEAR(*score.average_precision.ap, 1, 1e-9);
   EXPECT_NEAR(*score.average_precision.ap_centre, 1, 1e-9);
   EXPECT_EQ(score.point->detection.value, 1);
   EXPECT_EQ(score.point->false_alarms_per_image, 0);
-  EXPECT_NEAR(detection_measures::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
+  EXPECT_NEAR(measures::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
   EXPECT_EQ(score.tracks->clear.mota(), 1);
   EXPECT_EQ(score.tracks->declarations.declared.value, 1);
   EXPECT_EQ(score.tracks->declarations.in_time->value, 1);
@@ -186,10 +186,10 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
 // A pixel to the right is 1000 / f mrad near the axis; the focal length of 240 px over 20 degrees
 // is 680.6 px. The aircraft is 8 degrees off the axis at the most, where it is 2 % less.
 TEST_F(OfRenderedSet, AShiftOfAPixelIsItsAngle) {
-  const detector_scores::Assessment assessment =
+  const scores::Assessment assessment =
       assess(root_ / "set", {answered("straight", 0), answered("shifted", 1)}, {});
   const auto error = [&](const std::string& name) {
-    for (const detector_scores::DetectorScore& detector : assessment.detectors)
+    for (const scores::DetectorScore& detector : assessment.detectors)
       if (detector.name == name) return detector.bearing->azimuth.mean;
     return 0.0;
   };

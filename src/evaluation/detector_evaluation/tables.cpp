@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "evaluation/detector_evaluation/tables.h"
+
 #include <cmath>
 #include <set>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "evaluation/detector_evaluation/assess.h"
 #include "evaluation/detector_evaluation/json.h"
-#include "foundation/base/error.h"
-#include "foundation/base/files.h"
+#include "evaluation/report/tables.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 constexpr const char* kFormat = "airtruth detection evaluation 1";
 
-// A name as a cell: in quotes where it holds a comma, a quote or a line break.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
+using report::quoted;
 
 std::string cell(double value) { return fmt::format(",{:.9g}", value); }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ","; }
@@ -35,7 +28,7 @@ std::string cells(const std::optional<statistics::Proportion>& share) {
   return share && share->trials > 0 ? cell(share->value) + cell(share->low) + cell(share->high)
                                     : ",,,";
 }
-std::string cells(const std::optional<detector_scores::WeightedMean>& mean) {
+std::string cells(const std::optional<scores::WeightedMean>& mean) {
   return mean ? cell(mean->mean) + cells(mean->interval) : ",,,";
 }
 
@@ -55,18 +48,18 @@ constexpr const char* kDetectorsHead =
     "declaration_to_closest_approach_high_95,in_time,in_time_low_95,in_time_high_95,"
     "false_tracks_per_hour,frames_per_second_median\n";
 
-std::string point_cells(const detector_scores::DetectorScore& detector) {
+std::string point_cells(const scores::DetectorScore& detector) {
   if (!detector.point) return std::string(10, ',');
-  const detection_measures::FrocPoint& point = *detector.point;
+  const measures::FrocPoint& point = *detector.point;
   return cell(point.score) + cells(std::optional(point.detection)) +
          cells(detector.weighted_detection) + cell(point.false_alarms_per_image) +
          (detector.froc.hours > 0 ? cell(point.false_alarms_per_hour) : ",") +
          cell(point.false_alarms_per_flight);
 }
 
-std::string bearing_cells(const std::optional<detection_measures::BearingError>& error) {
+std::string bearing_cells(const std::optional<measures::BearingError>& error) {
   if (!error) return std::string(12, ',');
-  const auto deviation = [](const std::optional<detection_measures::Spread>& spread) {
+  const auto deviation = [](const std::optional<measures::Spread>& spread) {
     if (!spread) return std::string(3, ',');
     const auto& intervals = spread->intervals;
     return cell(spread->deviation) +
@@ -76,30 +69,30 @@ std::string bearing_cells(const std::optional<detection_measures::BearingError>&
          deviation(error->elevation_rate);
 }
 
-std::string aot_cells(const detector_scores::DetectorScore& detector) {
-  const detection_measures::AotScore& aot = detector.aot;
-  const auto rate = [](const detection_measures::AotRate& one) {
+std::string aot_cells(const scores::DetectorScore& detector) {
+  const measures::AotScore& aot = detector.aot;
+  const auto rate = [](const measures::AotRate& one) {
     return one.total > 0 ? cell(one.rate()) : std::string(",");
   };
   return rate(aot.edr_all) + (detector.froc.hours > 0 ? cell(aot.hfar) : ",") + rate(aot.afdr) +
          cell(aot.fppi);
 }
 
-std::string track_cells(const detector_scores::DetectorScore& detector) {
+std::string track_cells(const scores::DetectorScore& detector) {
   if (!detector.tracks) return std::string(16, ',');
-  const detector_scores::TrackScores& tracks = *detector.tracks;
-  const detector_scores::DeclarationSummary& declarations = tracks.declarations;
-  return cell(detection_measures::Hota::mean(tracks.hota.hota)) + cell(tracks.clear.mota()) +
+  const scores::TrackScores& tracks = *detector.tracks;
+  const scores::DeclarationSummary& declarations = tracks.declarations;
+  return cell(measures::Hota::mean(tracks.hota.hota)) + cell(tracks.clear.mota()) +
          cell(tracks.identity.idf1()) + cells(std::optional(declarations.declared)) +
          cells(declarations.range_m) + cells(declarations.to_closest_approach_s) +
          cells(declarations.in_time) +
          (detector.froc.hours > 0 ? cell(tracks.false_tracks_per_hour) : ",");
 }
 
-std::string detectors_csv(const detector_scores::Assessment& assessment) {
+std::string detectors_csv(const scores::Assessment& assessment) {
   std::string text = kDetectorsHead;
-  for (const detector_scores::DetectorScore& detector : assessment.detectors) {
-    const detection_measures::AveragePrecision& ap = detector.average_precision;
+  for (const scores::DetectorScore& detector : assessment.detectors) {
+    const measures::AveragePrecision& ap = detector.average_precision;
     text += quoted(detector.name) +
             fmt::format(",{},{}", detector.sequences.size(), detector.detections) + cell(ap.ap) +
             cell(ap.ap_50) + cells(ap.ap_50_interval) + cell(ap.ap_75) + cell(ap.ap_centre) +
@@ -113,63 +106,54 @@ std::string detectors_csv(const detector_scores::Assessment& assessment) {
 // What one sequence has at the operating point.
 struct SequenceCounts {
   std::int64_t aircraft = 0;
-  std::int64_t found = 0;
+  std::int64_t detected = 0;
   std::int64_t false_alarms = 0;
 };
 
-SequenceCounts counts_of(const detector_scores::ScoredDetections& scored,
-                         const detector_scores::TruthSequence& truth,
+SequenceCounts counts_of(const scores::ScoredDetections& scored,
+                         const scores::TruthSequence& truth,
                          double score) {
   SequenceCounts counts;
   for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    std::set<std::int64_t> found;
-    for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      if (scored.detections.frames[i][k].score < score) continue;
-      const detector_scores::Match& match = scored.matches[i][k];
-      if (match.kind == detector_scores::MatchKind::kTruePositive) found.insert(*match.object);
-      counts.false_alarms += match.kind == detector_scores::MatchKind::kFalseAlarm ? 1 : 0;
-    }
-    counts.found += std::ssize(found);
-    for (const detector_scores::TruthObject& object : truth.frames[i].objects)
+    for (std::size_t k = 0; k < scored.matches[i].size(); ++k)
+      counts.false_alarms += scored.matches[i][k].kind == scores::MatchKind::kFalseAlarm &&
+                                     scored.detections.frames[i][k].score >= score
+                                 ? 1
+                                 : 0;
+    counts.detected += std::ssize(scores::detected_in(scored, i, score));
+    for (const scores::TruthObject& object : truth.frames[i].objects)
       counts.aircraft += object.is_aircraft() && object.counts ? 1 : 0;
   }
   return counts;
 }
 
-std::string sequences_csv(const detector_scores::Assessment& assessment) {
+std::string sequences_csv(const scores::Assessment& assessment) {
   std::string text =
       "detector,sequence,background,frames,duration_s,weight,aircraft_in_frames,found,false_"
       "alarms\n";
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
-    for (const detector_scores::ScoredDetections& scored : detector.sequences) {
-      const detector_scores::TruthSequence& truth = assessment.truths[scored.truth];
+  for (const scores::DetectorScore& detector : assessment.detectors)
+    for (const scores::ScoredDetections& scored : detector.sequences) {
+      const scores::TruthSequence& truth = assessment.truths[scored.truth];
       const double score = detector.point ? detector.point->score : 0;
       const SequenceCounts counts = counts_of(scored, truth, score);
       text += quoted(detector.name) + "," + quoted(truth.name) + "," + quoted(truth.background) +
               fmt::format(",{}", truth.frames.size()) +
               (truth.duration_s > 0 ? cell(truth.duration_s) : ",") + cell(truth.weight) +
-              fmt::format(",{},{},{}\n", counts.aircraft, counts.found, counts.false_alarms);
+              fmt::format(",{},{},{}\n", counts.aircraft, counts.detected, counts.false_alarms);
     }
   return text;
 }
 
-std::string encounters_csv(const detector_scores::Assessment& assessment) {
+std::string encounters_csv(const scores::Assessment& assessment) {
   std::string text =
       "detector,sequence,object,weight,first_seen_s,first_seen_range_m,declared_s,declared_range_m,"
       "declared_to_closest_approach_s,violation_s,in_time\n";
-  const auto word = [](detector_scores::InTime in_time) {
-    return in_time == detector_scores::InTime::kYes           ? "yes"
-           : in_time == detector_scores::InTime::kNo          ? "no"
-           : in_time == detector_scores::InTime::kNoViolation ? "no violation"
-           : in_time == detector_scores::InTime::kImpossible  ? "impossible"
-                                                              : "";
-  };
-  for (const detector_scores::DetectorScore& detector : assessment.detectors) {
+  for (const scores::DetectorScore& detector : assessment.detectors) {
     if (!detector.tracks) continue;
-    for (const detector_scores::EncounterScore& one : detector.tracks->encounters) {
-      const detector_scores::TruthSequence& truth =
+    for (const scores::EncounterScore& one : detector.tracks->encounters) {
+      const scores::TruthSequence& truth =
           assessment.truths[detector.sequences[one.sequence].truth];
-      const detector_scores::TruthEncounter* encounter = truth.encounter(one.object);
+      const scores::TruthEncounter* encounter = truth.encounter(one.object);
       const auto& declared = one.declaration;
       text += quoted(detector.name) + "," + quoted(truth.name) + fmt::format(",{}", one.object) +
               cell(truth.weight) + cell(truth.frames[one.first_seen].time_s) +
@@ -178,19 +162,19 @@ std::string encounters_csv(const detector_scores::Assessment& assessment) {
                               cell(declared->to_closest_approach_s)
                         : ",,,") +
               cell(encounter != nullptr ? encounter->violation_s : std::nullopt) + "," +
-              word(one.in_time) + "\n";
+              (one.in_time == scores::InTime::kUnknown ? "" : scores::name_of(one.in_time)) + "\n";
     }
   }
   return text;
 }
 
-std::string breakdown_csv(const detector_scores::Assessment& assessment) {
+std::string breakdown_csv(const scores::Assessment& assessment) {
   std::string text =
       "detector,by,name,from,to,aircraft_in_frames,found,detection,low_95,high_95,"
       "weighted_detection,weighted_low_95,weighted_high_95,effective_sequences\n";
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+  for (const scores::DetectorScore& detector : assessment.detectors)
     for (const auto& [key, bins] : detector.by)
-      for (const detector_scores::DetectionBin& bin : bins) {
+      for (const scores::DetectionBin& bin : bins) {
         text += quoted(detector.name) + "," + key + "," + quoted(bin.name);
         text +=
             bin.name.empty() ? cell(bin.from) + (std::isfinite(bin.to) ? cell(bin.to) : ",") : ",,";
@@ -201,17 +185,16 @@ std::string breakdown_csv(const detector_scores::Assessment& assessment) {
   return text;
 }
 
-std::string curves_csv(const detector_scores::Assessment& assessment) {
+std::string curves_csv(const scores::Assessment& assessment) {
   std::string text = "detector,curve,score,x,y,low_95,high_95\n";
-  const auto line = [&](const detector_scores::DetectorScore& detector,
-                        const char* curve,
-                        const std::string& rest) {
-    text += quoted(detector.name) + "," + curve + rest + "\n";
-  };
-  const auto precision = [&](const detector_scores::DetectorScore& detector,
+  const auto line =
+      [&](const scores::DetectorScore& detector, const char* curve, const std::string& rest) {
+        text += quoted(detector.name) + "," + curve + rest + "\n";
+      };
+  const auto precision = [&](const scores::DetectorScore& detector,
                              const char* name,
-                             const std::optional<detection_measures::PrecisionCurve>& curve,
-                             const std::optional<detection_measures::PrecisionBand>& band) {
+                             const std::optional<measures::PrecisionCurve>& curve,
+                             const std::optional<measures::PrecisionBand>& band) {
     if (!curve) return;
     for (std::size_t i = 0; i < curve->precision.size(); ++i)
       line(detector,
@@ -219,17 +202,17 @@ std::string curves_csv(const detector_scores::Assessment& assessment) {
            cell(curve->score[i]) + cell(static_cast<double>(i) / 100) + cell(curve->precision[i]) +
                (band ? cell(band->low[i]) + cell(band->high[i]) : ",,"));
   };
-  for (const detector_scores::DetectorScore& detector : assessment.detectors) {
-    const detection_measures::AveragePrecision& ap = detector.average_precision;
+  for (const scores::DetectorScore& detector : assessment.detectors) {
+    const measures::AveragePrecision& ap = detector.average_precision;
     precision(detector, "precision_by_recall_overlap_50", ap.curve_50, ap.band_50);
     precision(detector, "precision_by_recall_centre", ap.curve_centre, ap.band_centre);
-    for (const detection_measures::FrocPoint& point : detector.froc.points)
+    for (const measures::FrocPoint& point : detector.froc.points)
       line(detector,
            "detection_by_false_alarms_per_image",
            cell(point.score) + cell(point.false_alarms_per_image) +
                cells(std::optional(point.detection)));
     if (!detector.tracks || !(detector.froc.hours > 0)) continue;
-    for (const detector_scores::OperatingPoint& point : detector.tracks->operating_curve)
+    for (const scores::OperatingPoint& point : detector.tracks->operating_curve)
       if (point.range_m)
         line(detector,
              "declaration_range_by_false_tracks_per_hour",
@@ -238,7 +221,7 @@ std::string curves_csv(const detector_scores::Assessment& assessment) {
   return text;
 }
 
-Json point_options_of(const detector_scores::Assessment& assessment) {
+Json point_options_of(const scores::Assessment& assessment) {
   Json json = {{"centre_px", assessment.centre_px}};
   if (assessment.point.score)
     json["score"] = *assessment.point.score;
@@ -249,27 +232,25 @@ Json point_options_of(const detector_scores::Assessment& assessment) {
 
 }  // namespace
 
-void write_tables(const detector_scores::Assessment& assessment, const fs::path& out) {
-  std::error_code failed;
-  fs::create_directories(out, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
+void write_tables(const scores::Assessment& assessment, const fs::path& out) {
   Json all = {{"format", kFormat},
               {"version", kVersion},
               {"dataset", assessment.set},
               {"options", point_options_of(assessment)},
-              {"manoeuvre_s", assessment.manoeuvre_s ? Json(*assessment.manoeuvre_s) : Json()},
+              {"manoeuvre_s", report::or_null(assessment.manoeuvre_s)},
               {"volume", assessment.volume.empty() ? Json() : Json(assessment.volume)},
               {"weighted", assessment.is_weighted},
               {"left_out", assessment.left_out},
               {"detectors", Json::array()}};
-  for (const detector_scores::DetectorScore& detector : assessment.detectors)
+  for (const scores::DetectorScore& detector : assessment.detectors)
     all["detectors"].push_back(json_of_detector(detector, assessment));
-  write_file(out / "detectors.csv", detectors_csv(assessment));
-  write_file(out / "detection_sequences.csv", sequences_csv(assessment));
-  write_file(out / "detection_encounters.csv", encounters_csv(assessment));
-  write_file(out / "detection_breakdown.csv", breakdown_csv(assessment));
-  write_file(out / "detection_curves.csv", curves_csv(assessment));
-  write_file(out / "detection.json", all.dump(1) + "\n");
+  report::write_files(out,
+                      {{"detectors.csv", detectors_csv(assessment)},
+                       {"detection_sequences.csv", sequences_csv(assessment)},
+                       {"detection_encounters.csv", encounters_csv(assessment)},
+                       {"detection_breakdown.csv", breakdown_csv(assessment)},
+                       {"detection_curves.csv", curves_csv(assessment)},
+                       {"detection.json", all.dump(1) + "\n"}});
 }
 
 }  // namespace airtruth::detector_evaluation

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace airtruth::statistics {
 namespace {
@@ -73,6 +74,21 @@ Proportion proportion_of(std::span<const Cluster> clusters) {
   share.low = interval.low;
   share.high = interval.high;
   return share;
+}
+
+void TrialsBySequence::add(std::size_t sequence, bool success) {
+  Cluster& cluster = clusters_[sequence];
+  cluster.trials += 1;
+  cluster.successes += success ? 1 : 0;
+}
+
+Proportion TrialsBySequence::proportion(std::span<const double> weights) const {
+  std::vector<Cluster> clusters;
+  for (const auto& [sequence, cluster] : clusters_) {
+    clusters.push_back(cluster);
+    if (!weights.empty()) clusters.back().weight = weights[sequence];
+  }
+  return proportion_of(clusters);
 }
 
 }  // namespace airtruth::statistics

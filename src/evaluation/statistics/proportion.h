@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 
 #include <airtruth/statistics.h>
@@ -56,6 +58,18 @@ struct Cluster {
 // Clusters without a trial are passed over. Without any trial the share is 0 with the interval
 // 0 to 1 and 0 trials.
 Proportion proportion_of(std::span<const Cluster> clusters);
+
+// Trials of sequences, which are the clusters.
+class TrialsBySequence {
+ public:
+  void add(std::size_t sequence, bool success);
+  bool empty() const { return clusters_.empty(); }
+  // `weights`: of the sequences; empty: all are 1.
+  Proportion proportion(std::span<const double> weights = {}) const;
+
+ private:
+  std::map<std::size_t, Cluster> clusters_;
+};
 
 // Wilson's interval of k successes in n trials; both may have fractions. n = 0: from 0 to 1.
 evaluation::Interval wilson(double successes, double trials);

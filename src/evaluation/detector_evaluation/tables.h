@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "evaluation/scores/detector_score.h"
+
+namespace airtruth::detector_evaluation {
+
+// Writes detection.json, detectors.csv, and detection_sequences.csv, detection_encounters.csv,
+// detection_breakdown.csv and detection_curves.csv into a folder.
+void write_tables(const scores::Assessment& assessment, const std::filesystem::path& out);
+
+}  // namespace airtruth::detector_evaluation

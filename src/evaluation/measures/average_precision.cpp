@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/measures/average_precision.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "evaluation/matching/boxes.h"
+#include "evaluation/statistics/bootstrap.h"
+
+namespace airtruth::measures {
+namespace {
+
+// A detection after the matching of its image.
+struct Ranked {
+  double score = 0;
+  std::size_t sequence = 0;
+  bool is_true = false;
+};
+
+struct Ranking {
+  // By falling score, equal ones in the order of the images; ignored detections are left out.
+  std::vector<Ranked> detections;
+  std::vector<std::int64_t> truths;  // that count, by sequence
+};
+
+using ImageList = std::span<const ScoredImage>;
+
+double recall_step(int i) { return i == kRecallSteps - 1 ? 1.0 : i * 0.01; }
+
+// Resemblance of a detection and a truth; empty below the threshold. A larger one is more alike.
+std::optional<double> likeness(const ScoredBox& detection,
+                               const LabelledBox& truth,
+                               const PrecisionOptions& options) {
+  const Box& d = detection.box_px;
+  const Box& t = truth.box_px;
+  if (options.likeness == Likeness::kCentre) {
+    const double distance = matching::centre_distance_px(d, t);
+    const bool is_near = distance <= matching::match_radius_px(t, options.threshold);
+    return is_near || (truth.is_region && matching::centre_is_in(d, t)) ? std::optional(-distance)
+                                                                        : std::nullopt;
+  }
+  double overlap = evaluation::overlap(d, t);
+  if (truth.is_region && overlap > 0) {
+    const double width = std::min(d.right(), t.right()) - std::max(d.x, t.x);
+    const double height = std::min(d.bottom(), t.bottom()) - std::max(d.y, t.y);
+    overlap = width * height / d.area();
+  }
+  return overlap >= std::min(options.threshold, 1 - 1e-10) ? std::optional(overlap) : std::nullopt;
+}
+
+bool is_outside(const Box& box, const AreaRange& areas) {
+  return box.area() < areas.low_px || box.area() > areas.high_px;
+}
+
+// The matching of cocoeval.py's evaluateImg.
+class ImageMatcher {
+ public:
+  ImageMatcher(const ScoredImage& image, const PrecisionOptions& options)
+      : image_(image), options_(options) {
+    for (const LabelledBox& truth : image.truths)
+      ignored_.push_back(truth.is_region || truth.is_ignored ||
+                         is_outside(truth.box_px, options.areas));
+    order_.resize(image.truths.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return !ignored_[a] && ignored_[b];
+    });
+    is_taken_.resize(image.truths.size());
+  }
+
+  std::int64_t counting() const { return std::count(ignored_.begin(), ignored_.end(), false); }
+
+  // Calls add(score, is_true) for each detection that counts, by falling score.
+  template <typename Add>
+  void match(Add add) {
+    std::vector<std::size_t> by_score(image_.detections.size());
+    std::iota(by_score.begin(), by_score.end(), std::size_t{0});
+    std::stable_sort(by_score.begin(), by_score.end(), [&](std::size_t a, std::size_t b) {
+      return image_.detections[a].score > image_.detections[b].score;
+    });
+    const auto most = static_cast<std::size_t>(std::max(0, options_.max_detections));
+    if (by_score.size() > most) by_score.resize(most);
+    for (const std::size_t d : by_score) {
+      const ScoredBox& detection = image_.detections[d];
+      const auto truth = best_of(detection);
+      if (truth) is_taken_[*truth] = true;
+      const bool is_ignored =
+          truth ? ignored_[*truth] != 0 : is_outside(detection.box_px, options_.areas);
+      if (!is_ignored) add(detection.score, truth.has_value());
+    }
+  }
+
+ private:
+  std::optional<std::size_t> best_of(const ScoredBox& detection) const {
+    std::optional<std::size_t> best;
+    double best_likeness = 0;
+    for (const std::size_t t : order_) {
+      if (is_taken_[t] && !image_.truths[t].is_region) continue;
+      // Truths that count come first: once one is found, those to ignore are not looked at.
+      if (best && !ignored_[*best] && ignored_[t]) break;
+      const auto found = likeness(detection, image_.truths[t], options_);
+      if (!found || (best && *found < best_likeness)) continue;
+      best_likeness = *found;
+      best = t;
+    }
+    return best;
+  }
+
+  const ScoredImage& image_;
+  const PrecisionOptions& options_;
+  std::vector<char> ignored_;
+  std::vector<char> is_taken_;
+  std::vector<std::size_t> order_;
+};
+
+Ranking ranking_of(std::span<const ImageList> sequences, const PrecisionOptions& options) {
+  Ranking ranking;
+  for (std::size_t s = 0; s < sequences.size(); ++s) {
+    std::int64_t& truths = ranking.truths.emplace_back();
+    for (const ScoredImage& image : sequences[s]) {
+      ImageMatcher matcher(image, options);
+      truths += matcher.counting();
+      matcher.match([&](double score, bool is_true) {
+        ranking.detections.push_back({score, s, is_true});
+      });
+    }
+  }
+  std::stable_sort(ranking.detections.begin(),
+                   ranking.detections.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  return ranking;
+}
+
+// The curve with each sequence counted as often as its weight says. The weighted number of truths
+// is above 0. Precision is needed at true positives alone: between them it only falls, and recall
+// stays.
+PrecisionCurve curve_of(const Ranking& ranking, std::span<const double> weights) {
+  PrecisionCurve curve;
+  double truths = 0;
+  for (std::size_t s = 0; s < weights.size(); ++s)
+    truths += weights[s] * static_cast<double>(ranking.truths[s]);
+  curve.truths = static_cast<std::int64_t>(truths);
+  struct Point {
+    double recall, precision, score;
+  };
+  std::vector<Point> points;
+  double hits = 0;
+  double alarms = 0;
+  for (const Ranked& one : ranking.detections) {
+    const double weight = weights[one.sequence];
+    if (weight == 0) continue;
+    (one.is_true ? hits : alarms) += weight;
+    if (one.is_true)
+      points.push_back({hits / truths,
+                        hits / (alarms + hits + std::numeric_limits<double>::epsilon()),
+                        one.score});
+  }
+  if (points.empty()) return curve;
+  curve.recall = points.back().recall;
+  for (std::size_t i = points.size() - 1; i > 0; --i)
+    points[i - 1].precision = std::max(points[i - 1].precision, points[i].precision);
+  std::size_t at = 0;
+  double sum = 0;
+  for (int i = 0; i < kRecallSteps; ++i) {
+    while (at < points.size() && points[at].recall < recall_step(i)) ++at;
+    if (at == points.size()) break;
+    const auto k = static_cast<std::size_t>(i);
+    curve.precision[k] = points[at].precision;
+    curve.score[k] = points[at].score;
+    sum += points[at].precision;
+  }
+  curve.average_precision = sum / kRecallSteps;
+  return curve;
+}
+
+// The same with all weights 1; empty without a truth.
+std::optional<PrecisionCurve> curve_of(const Ranking& ranking) {
+  const std::int64_t truths =
+      std::accumulate(ranking.truths.begin(), ranking.truths.end(), std::int64_t{0});
+  if (truths == 0) return std::nullopt;
+  return curve_of(ranking, std::vector<double>(ranking.truths.size(), 1.0));
+}
+
+constexpr int kOverlapSteps = 10;
+
+// As numpy.linspace(0.5, 0.95, 10), which cocoeval.py uses.
+double overlap_step(int i) {
+  return i == kOverlapSteps - 1 ? 0.95 : i * ((0.95 - 0.5) / (kOverlapSteps - 1)) + 0.5;
+}
+
+struct MeanScores {
+  std::optional<double> precision, recall;
+  std::optional<double> precision_50, precision_75;
+};
+
+// Means over the overlaps.
+MeanScores means_of(std::span<const ImageList> sequences, const AreaRange& areas, int most) {
+  MeanScores means;
+  double precision = 0;
+  double recall = 0;
+  for (int i = 0; i < kOverlapSteps; ++i) {
+    const auto curve =
+        curve_of(ranking_of(sequences, {Likeness::kOverlap, overlap_step(i), areas, most}));
+    if (!curve) return means;
+    precision += curve->average_precision;
+    recall += curve->recall;
+    if (i == 0) means.precision_50 = curve->average_precision;
+    if (i == 5) means.precision_75 = curve->average_precision;
+  }
+  means.precision = precision / kOverlapSteps;
+  means.recall = recall / kOverlapSteps;
+  return means;
+}
+
+// Curves of sequences that are drawn with replacement.
+std::vector<PrecisionCurve> drawn_curves(const Ranking& ranking) {
+  std::vector<PrecisionCurve> curves;
+  const std::size_t sequences = ranking.truths.size();
+  if (sequences < 2) return curves;
+  const std::size_t draws = statistics::draws_for(ranking.detections.size());
+  statistics::ClusterDraws drawn(sequences, "average precision");
+  for (std::size_t draw = 0; draw < draws; ++draw) {
+    const std::span<const double> counts = drawn.next();
+    double truths = 0;
+    for (std::size_t i = 0; i < sequences; ++i)
+      truths += counts[i] * static_cast<double>(ranking.truths[i]);
+    if (truths > 0) curves.push_back(curve_of(ranking, counts));
+  }
+  return curves;
+}
+
+struct Curves {
+  std::optional<PrecisionCurve> curve;
+  std::optional<PrecisionBand> band;
+  std::optional<evaluation::Interval> interval;
+};
+
+Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double threshold) {
+  const Ranking ranking = ranking_of(sequences, {likeness, threshold, kAllAreas, 100});
+  Curves result;
+  result.curve = curve_of(ranking);
+  const std::vector<PrecisionCurve> drawn =
+      result.curve ? drawn_curves(ranking) : std::vector<PrecisionCurve>{};
+  if (drawn.size() < 2) return result;
+  std::vector<double> values(drawn.size());
+  std::transform(drawn.begin(), drawn.end(), values.begin(), [](const PrecisionCurve& curve) {
+    return curve.average_precision;
+  });
+  result.interval = statistics::percentile_interval(values);
+  result.band.emplace();
+  for (std::size_t i = 0; i < kRecallSteps; ++i) {
+    std::transform(drawn.begin(), drawn.end(), values.begin(), [i](const PrecisionCurve& curve) {
+      return curve.precision[i];
+    });
+    const evaluation::Interval limits = statistics::percentile_interval(values);
+    result.band->low[i] = limits.low;
+    result.band->high[i] = limits.high;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<PrecisionCurve> precision_curve(std::span<const ScoredImage> images,
+                                              const PrecisionOptions& options) {
+  return curve_of(ranking_of(std::vector<ImageList>{images}, options));
+}
+
+AveragePrecision average_precision(std::span<const std::vector<ScoredImage>> sequences,
+                                   double centre_px) {
+  const std::vector<ImageList> lists(sequences.begin(), sequences.end());
+  AveragePrecision result;
+  const MeanScores all = means_of(lists, kAllAreas, 100);
+  result.ap = all.precision;
+  result.ap_50 = all.precision_50;
+  result.ap_75 = all.precision_75;
+  result.ar_100 = all.recall;
+  result.ar_1 = means_of(lists, kAllAreas, 1).recall;
+  result.ar_10 = means_of(lists, kAllAreas, 10).recall;
+  const MeanScores small = means_of(lists, kSmall, 100);
+  result.ap_small = small.precision;
+  result.ar_small = small.recall;
+  const MeanScores medium = means_of(lists, kMedium, 100);
+  result.ap_medium = medium.precision;
+  result.ar_medium = medium.recall;
+  const MeanScores large = means_of(lists, kLarge, 100);
+  result.ap_large = large.precision;
+  result.ar_large = large.recall;
+  Curves overlap = curves_of(lists, Likeness::kOverlap, 0.5);
+  result.curve_50 = overlap.curve;
+  result.band_50 = overlap.band;
+  result.ap_50_interval = overlap.interval;
+  Curves centre = curves_of(lists, Likeness::kCentre, centre_px);
+  if (centre.curve) result.ap_centre = centre.curve->average_precision;
+  result.curve_centre = centre.curve;
+  result.band_centre = centre.band;
+  result.ap_centre_interval = centre.interval;
+  return result;
+}
+
+}  // namespace airtruth::measures

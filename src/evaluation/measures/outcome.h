@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <airtruth/metrics.h>
+
+#include "camera/lens/lens.h"
+
+// The quality of a tracker's answer frame by frame, and the frame where it lost its target.
+namespace airtruth::measures {
+
+// The result of one frame that shows the target, after the first frame.
+struct Outcome {
+  // Index of the frame's pair.
+  std::size_t frame = 0;
+  // 0 where there is no answer.
+  double overlap = 0;
+  // Errors of the latest answer up to this frame; before any answer, those of the first frame's
+  // box.
+  // Centre of the answer minus centre of the truth.
+  double x_px = 0, y_px = 0;
+  double centre_px = 0;
+  // Centre error divided by the truth's width and height.
+  double normalised = 0;
+  // Angle between the rays to the two centres; empty without a lens.
+  std::optional<double> angle_mrad;
+};
+
+// The truth of the first pair serves as its answer. `lens` may be null.
+std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
+                              const lens::Lens* lens);
+
+// Mean values of the outcomes in one bin.
+struct Bin {
+  // Inclusive.
+  double from = 0;
+  // Exclusive; infinite for the last bin.
+  double to = 0;
+  std::int64_t frames = 0;
+  double overlap = 0;
+  // Share of frames with an overlap of more than 0.5.
+  double success_50 = 0;
+  // Share of frames with a centre error of at most 20 px.
+  double precision_20px = 0;
+  double centre_px = 0;
+  double normalised = 0;
+  std::optional<double> angle_mrad;
+};
+
+// Groups the outcomes by a quantity. values[i] belongs to outcomes[i]. An outcome without a value,
+// or with a value below the first edge, belongs to no bin. A bin extends from each edge to the
+// next, and the last one has no upper end. Bins without frames are omitted.
+std::vector<Bin> breakdown(std::span<const Outcome> outcomes,
+                           std::span<const std::optional<double>> values,
+                           std::span<const double> edges);
+Bin mean_of(std::span<const Outcome> outcomes);
+
+}  // namespace airtruth::measures

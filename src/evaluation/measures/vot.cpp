@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <airtruth/vot.h>
+
+#include "evaluation/measures/outcome.h"
+#include "foundation/base/error.h"
+
+namespace airtruth::evaluation {
+namespace {
+
+constexpr std::size_t kBurnIn = 10;
+constexpr double kSensitivity = 30;
+
+double rounded(double value) { return std::nearbyint(value); }
+
+// A range of whole pixels from first to last, both included.
+struct Pixels {
+  double left = 0, top = 0, right = 0, bottom = 0;
+};
+
+Pixels pixels(const Box& box) {
+  const double x = rounded(box.x);
+  const double y = rounded(box.y);
+  return {x, y, x + rounded(box.width) - 1, y + rounded(box.height) - 1};
+}
+
+Pixels cut(const Pixels& a, const Pixels& b) {
+  return {std::max(a.left, b.left),
+          std::max(a.top, b.top),
+          std::min(a.right, b.right),
+          std::min(a.bottom, b.bottom)};
+}
+
+double count(const Pixels& p) {
+  return std::max(0.0, p.right - p.left + 1) * std::max(0.0, p.bottom - p.top + 1);
+}
+
+// The bounds of a region and the pixels that it contains. The toolkit's empty region lies at the
+// origin.
+struct Region {
+  Pixels bounds;
+  bool is_empty = true;
+};
+
+Region region(const std::optional<Box>& box) {
+  return box ? Region{pixels(*box), false} : Region{};
+}
+
+double region_overlap(const Region& a, const Region& b, int width, int height) {
+  const Pixels both{std::min(a.bounds.left, b.bounds.left),
+                    std::min(a.bounds.top, b.bounds.top),
+                    std::max(a.bounds.right, b.bounds.right),
+                    std::max(a.bounds.bottom, b.bounds.bottom)};
+  if (both.left >= both.right || both.top >= both.bottom) return 1;
+  const Pixels part = width > 0 && height > 0 ? cut(both, {0, 0, width - 1.0, height - 1.0}) : both;
+  if (part.left >= part.right || part.top >= part.bottom) return 0;
+  if (a.is_empty || b.is_empty) return 0;
+  const Pixels a_cut = cut(a.bounds, part);
+  const Pixels b_cut = cut(b.bounds, part);
+  const double shared = count(cut(a_cut, b_cut));
+  const double all = count(a_cut) + count(b_cut) - shared;
+  return all > 0 ? shared / all : 0;
+}
+
+std::vector<double> overlaps_of(const Trajectory& frames,
+                                std::span<const std::optional<Box>> truth,
+                                const VotTruth& about) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    result.push_back(frame_overlap(frames[i], truth[i], about.width, about.height));
+  return result;
+}
+
+// Sums over runs. Point j of a curve covers the runs that are active there.
+struct Curve {
+  std::vector<double> sum;
+  std::vector<double> active;
+
+  void add(std::size_t j, double value, double weight) {
+    if (j >= sum.size()) {
+      sum.resize(j + 1, 0);
+      active.resize(j + 1, 0);
+    }
+    sum[j] += value * weight;
+    active[j] += weight;
+  }
+  std::vector<double> mean() const {
+    std::vector<double> curve(sum.size(), 0);
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      if (active[j] > 0) curve[j] = sum[j] / active[j];
+    return curve;
+  }
+};
+
+std::optional<double> mean_over(const std::vector<double>& curve, std::pair<int, int> range) {
+  double sum = 0;
+  int count = 0;
+  for (int j = std::max(0, range.first); j <= range.second && j < std::ssize(curve); ++j) {
+    sum += curve[static_cast<std::size_t>(j)];
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+// The frames from a start to the one before a failure, or to the end.
+struct Fragment {
+  std::vector<double> overlaps;
+  bool failed = false;
+};
+
+void add_fragments(const Trajectory& run,
+                   const std::vector<double>& overlaps,
+                   std::vector<Fragment>& fragments) {
+  std::optional<std::size_t> begun;
+  for (std::size_t i = 0; i <= run.size(); ++i) {
+    const bool ends = i == run.size();
+    if (!ends && run[i].mark == Mark::kBegun) begun = i;
+    if (begun && (ends || run[i].mark == Mark::kFailed)) {
+      fragments.push_back({{overlaps.begin() + static_cast<std::ptrdiff_t>(*begun),
+                            overlaps.begin() + static_cast<std::ptrdiff_t>(i)},
+                           !ends});
+      begun.reset();
+    }
+  }
+}
+
+std::vector<double> curve_of(const std::vector<Fragment>& fragments) {
+  std::size_t longest = 0;
+  for (const Fragment& fragment : fragments) longest = std::max(longest, fragment.overlaps.size());
+  Curve curve;
+  for (const Fragment& fragment : fragments) {
+    double sum = 0;
+    const std::size_t end = fragment.failed ? longest : fragment.overlaps.size();
+    for (std::size_t j = 0; j < end; ++j) {
+      const double here = j < fragment.overlaps.size() ? fragment.overlaps[j] : 0;
+      if (j > 0) sum += here;
+      curve.add(j, j > 0 ? sum / static_cast<double>(j) : here, 1);
+    }
+  }
+  return curve.mean();
+}
+
+std::pair<double, std::int64_t> accuracy_and_failures(const Trajectory& run,
+                                                      const std::vector<double>& overlaps) {
+  std::vector<bool> counts(run.size(), true);
+  std::int64_t failures = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (run[i].mark == Mark::kUnknown || run[i].mark == Mark::kFailed) counts[i] = false;
+    failures += run[i].mark == Mark::kFailed ? 1 : 0;
+    if (run[i].mark == Mark::kBegun)
+      for (std::size_t j = i; j < std::min(run.size(), i + kBurnIn); ++j) counts[j] = false;
+  }
+  double sum = 0;
+  std::int64_t n = 0;
+  for (std::size_t i = 0; i < run.size(); ++i)
+    if (counts[i]) {
+      sum += overlaps[i];
+      ++n;
+    }
+  return {n > 0 ? sum / static_cast<double>(n) : 0, failures};
+}
+
+std::vector<std::optional<Box>> truth_of(const VotTruth& truth, const AnchorRun& run) {
+  const auto at = truth.boxes.begin() + run.anchor;
+  if (!run.is_backward) return {at, truth.boxes.end()};
+  std::vector<std::optional<Box>> boxes(truth.boxes.begin(), at + 1);
+  std::reverse(boxes.begin(), boxes.end());
+  return boxes;
+}
+
+// The number of frames before the failure; of all frames where there is no failure.
+std::size_t progress_of(const std::vector<double>& overlaps,
+                        std::span<const std::optional<Box>> truth) {
+  int grace = kGrace;
+  for (std::size_t j = 0; j < overlaps.size(); ++j) {
+    if (overlaps[j] > kLostOverlap || !truth[j]) {
+      grace = kGrace;
+      continue;
+    }
+    if (--grace == 0) return j + 1 - kGrace;
+  }
+  return overlaps.size();
+}
+
+}  // namespace
+
+double pixel_overlap(const Box& a, const Box& b, int width, int height) {
+  return region_overlap(region(a), region(b), width, height);
+}
+
+double frame_overlap(const VotFrame& frame,
+                     const std::optional<Box>& truth,
+                     int width,
+                     int height) {
+  const auto answer = frame.mark == Mark::kAnswer ? frame.box : std::nullopt;
+  return region_overlap(region(answer), region(truth), width, height);
+}
+
+Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int> eao_range) {
+  Restart score;
+  double length = 0;
+  double count = 0;
+  std::vector<Fragment> fragments;
+  for (const RestartRuns& sequence : sequences) {
+    if (sequence.runs.empty()) continue;
+    double accuracy = 0;
+    double failures = 0;
+    for (const Trajectory& run : sequence.runs) {
+      check(run.size() == sequence.truth.boxes.size(), "a run is as long as its truth");
+      const auto overlaps = overlaps_of(run, sequence.truth.boxes, sequence.truth);
+      const auto [mean, failed] = accuracy_and_failures(run, overlaps);
+      accuracy += mean;
+      failures += static_cast<double>(failed);
+      add_fragments(run, overlaps, fragments);
+    }
+    const double runs = static_cast<double>(sequence.runs.size());
+    const double frames = static_cast<double>(sequence.truth.boxes.size());
+    score.accuracy += accuracy / runs * frames;
+    score.failures += failures / runs * frames;
+    length += frames;
+    count += 1;
+  }
+  if (count == 0) return score;
+  score.accuracy /= length;
+  score.failures /= length;
+  score.reliability = std::exp(-kSensitivity * score.failures / (length / count));
+  score.eao_curve = curve_of(fragments);
+  score.eao = mean_over(score.eao_curve, eao_range);
+  return score;
+}
+
+namespace {
+
+// Frames of the runs of one sequence: before the failures, and all.
+struct RunFrames {
+  double progress = 0;
+  double all = 0;
+};
+
+// Adds the runs of a sequence to the curve of expected overlap, up to the length `high`, and their
+// overlaps before the failures to `overlap`.
+RunFrames add_runs(const MultiStartRuns& sequence,
+                   std::size_t high,
+                   Curve& curve,
+                   double& overlap) {
+  RunFrames frames;
+  for (const AnchorRun& run : sequence.runs) {
+    const auto truth = truth_of(sequence.truth, run);
+    check(run.frames.size() == truth.size(), "a run goes to the sequence's end");
+    const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
+    const std::size_t progress = progress_of(overlaps, truth);
+    const bool failed = progress < overlaps.size();
+    frames.progress += static_cast<double>(progress);
+    frames.all += static_cast<double>(overlaps.size());
+    double sum = 0;
+    for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
+    for (std::size_t j = 1; j < high; ++j) {
+      if (j < overlaps.size()) {
+        if (j < progress) sum += overlaps[j];
+        curve.add(j, sum / static_cast<double>(j), 1);
+      } else if (failed) {
+        curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)), 1);
+      }
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
+MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
+                            std::pair<int, int> eao_range) {
+  MultiStart score;
+  double overlap = 0;
+  double before = 0;
+  double robustness = 0;
+  double length = 0;
+  Curve curve;
+  const auto high = static_cast<std::size_t>(std::max(0, eao_range.second));
+  for (const MultiStartRuns& sequence : sequences) {
+    if (sequence.runs.empty()) continue;
+    const RunFrames runs = add_runs(sequence, high, curve, overlap);
+    before += runs.progress;
+    const double weight = static_cast<double>(sequence.truth.boxes.size());
+    robustness += runs.progress / runs.all * weight;
+    length += weight;
+  }
+  if (length == 0) return score;
+  score.accuracy = before > 0 ? overlap / before : 0;
+  score.robustness = robustness / length;
+  score.eao_curve = curve.mean();
+  score.eao = mean_over(score.eao_curve, eao_range);
+  return score;
+}
+
+std::vector<Anchor> anchors_of(const VotTruth& truth, int step) {
+  check(step > 0, "anchors lie apart");
+  const std::int64_t length = std::ssize(truth.boxes);
+  const auto shown = [&](std::int64_t frame) {
+    return truth.boxes[static_cast<std::size_t>(frame)].has_value();
+  };
+  std::vector<Anchor> anchors;
+  const auto add = [&](std::int64_t frame) {
+    const bool is_backward = frame >= (length + 1) / 2;
+    const std::int64_t way = is_backward ? -1 : 1;
+    while (frame >= 0 && frame < length && !shown(frame)) frame += way;
+    if (frame < 0 || frame >= length) return;
+    const Anchor anchor{frame, is_backward};
+    if (std::find(anchors.begin(), anchors.end(), anchor) == anchors.end())
+      anchors.push_back(anchor);
+  };
+  for (std::int64_t frame = 0; frame < length; frame += step) {
+    const bool is_last = frame + step >= length && frame >= (length + 1) / 2;
+    add(is_last ? length - 1 : frame);
+  }
+  return anchors;
+}
+
+namespace {
+
+// The density of lengths at 0, 1, ... frames up to the longest, not normalised: a sum of Gaussians
+// whose width follows the rule of Silverman (1986), 1.06 sigma n^(-1/5), and is at least 1 frame.
+std::vector<double> density_of(std::span<const std::int64_t> lengths) {
+  const double n = static_cast<double>(lengths.size());
+  const double mean =
+      std::accumulate(lengths.begin(),
+                      lengths.end(),
+                      0.0,
+                      [](double sum, std::int64_t l) { return sum + static_cast<double>(l); }) /
+      n;
+  double variance = 0;
+  std::int64_t longest = 0;
+  for (const std::int64_t l : lengths) {
+    variance += (static_cast<double>(l) - mean) * (static_cast<double>(l) - mean) / n;
+    longest = std::max(longest, l);
+  }
+  const double width = std::max(1.0, 1.06 * std::sqrt(variance) * std::pow(n, -0.2));
+  std::vector<double> density(static_cast<std::size_t>(longest) + 1, 0);
+  for (std::size_t x = 1; x < density.size(); ++x)
+    for (const std::int64_t l : lengths) {
+      const double z = (static_cast<double>(x) - static_cast<double>(l)) / width;
+      density[x] += std::exp(-z * z / 2);
+    }
+  return density;
+}
+
+}  // namespace
+
+std::pair<int, int> eao_range(std::span<const std::int64_t> lengths) {
+  if (lengths.empty()) return {0, 0};
+  const std::vector<double> density = density_of(lengths);
+  const auto longest = std::ssize(density) - 1;
+  const double all = std::accumulate(density.begin(), density.end(), 0.0);
+  // Extends the range from the mode towards the denser side until it holds half of the density.
+  auto low = std::max_element(density.begin(), density.end()) - density.begin();
+  auto high = low;
+  double held = density[static_cast<std::size_t>(low)];
+  while (held < all / 2) {
+    const double below = low > 1 ? density[static_cast<std::size_t>(low - 1)] : -1;
+    const double above = high < longest ? density[static_cast<std::size_t>(high + 1)] : -1;
+    held += std::max(below, above);
+    if (below >= above)
+      --low;
+    else
+      ++high;
+  }
+  return {static_cast<int>(low), static_cast<int>(high)};
+}
+
+std::pair<int, int> within_curves(std::pair<int, int> range, std::int64_t longest) {
+  const int last = static_cast<int>(std::max<std::int64_t>(1, longest - 1));
+  const int high = std::min(range.second, last);
+  return {std::min(range.first, std::max(1, high - 1)), high};
+}
+
+}  // namespace airtruth::evaluation

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evaluation/scores/truth.h"
+#include "evaluation/statistics/proportion.h"
+
+// Probability of detection by a quantity: of the aircraft in frames, the share that is found. With
+// the weights of sequences that were drawn from an encounter model it is also the share of the
+// aircraft in frames that the model has (share.h).
+namespace airtruth::scores {
+
+// One aircraft in one frame.
+struct AircraftInFrame {
+  // Index in DetectorScore::sequences.
+  std::size_t sequence = 0;
+  std::size_t frame = 0;   // index in TruthSequence::frames
+  std::size_t object = 0;  // index in TruthFrame::objects
+  // A detection of the operating point's score or more finds it.
+  bool is_detected = false;
+};
+
+struct DetectionBin {
+  // Inclusive; of bins by name both are unused.
+  double from = 0;
+  // Exclusive; infinite for the last bin.
+  double to = std::numeric_limits<double>::infinity();
+  // Of bins by name: "above", "below".
+  std::string name;
+  statistics::Proportion detection;
+  // With the sequences' weights; empty where they have none.
+  std::optional<statistics::Proportion> weighted;
+};
+
+// values[i] belongs to sightings[i]; one without a value, or below the first edge, is in no bin
+// (statistics/bins.h). Bins without a sighting are left out. `weights`: of the sequences; empty:
+// they have none.
+std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
+                                       std::span<const std::optional<double>> values,
+                                       std::span<const double> edges,
+                                       std::span<const double> weights);
+std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
+                                            std::span<const std::optional<std::string>> names,
+                                            std::span<const double> weights);
+
+// The quantities, as keys of DetectorScore::by: "range_m", "size_px" (longer side), "area_px"
+// (pixels on target), "contrast_to_noise", "azimuth_deg", "to_closest_approach_s", "horizon"
+// ("above", "below"), and "background" (file names).
+struct Quantity {
+  const char* key;
+  const char* title;          // for plots: "range, m"
+  std::vector<double> edges;  // empty: by name
+  // The first for quantities with edges, the second for those by name.
+  std::optional<double> (*value_of)(const TruthObject& object) = nullptr;
+  std::optional<std::string> (*name_of)(const TruthSequence& sequence,
+                                        const TruthObject& object) = nullptr;
+};
+const std::vector<Quantity>& quantities();
+
+}  // namespace airtruth::scores

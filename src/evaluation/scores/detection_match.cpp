@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/scores/detection_match.h"
+
+#include <algorithm>
+
+#include "evaluation/matching/boxes.h"
+#include "labels/annotation/object_class.h"
+
+namespace airtruth::scores {
+namespace {
+
+// The nearest object within its radius, of those that `which` selects.
+template <typename Which>
+const TruthObject* nearest(const Box& detection_px,
+                           const TruthFrame& truth,
+                           double centre_px,
+                           Which which) {
+  const TruthObject* best = nullptr;
+  double least = 0;
+  for (const TruthObject& object : truth.objects) {
+    if (!which(object)) continue;
+    const double distance = matching::centre_distance_px(detection_px, object.box_px);
+    if (distance > matching::match_radius_px(object.box_px, centre_px)) continue;
+    if (best != nullptr && distance >= least) continue;
+    best = &object;
+    least = distance;
+  }
+  return best;
+}
+
+}  // namespace
+
+Match match_of(const Box& detection_px, const TruthFrame& truth, double centre_px) {
+  const auto found = [&](auto which) { return nearest(detection_px, truth, centre_px, which); };
+  if (const auto* object = found([](const auto& o) { return o.is_aircraft() && o.counts; }))
+    return {MatchKind::kTruePositive, object->id, object->object_class};
+  if (const auto* object = found([](const auto& o) { return o.is_aircraft() && !o.counts; }))
+    return {MatchKind::kIgnored, object->id, object->object_class};
+  for (const Box& region : truth.ignored_px)
+    if (matching::centre_is_in(detection_px, region)) return {MatchKind::kIgnored, {}, "ignore"};
+  if (const auto* object = found([](const auto& o) { return !o.is_aircraft(); }))
+    return {MatchKind::kFalseAlarm, object->id, object->object_class};
+  return {MatchKind::kFalseAlarm, {}, kBackground};
+}
+
+bool claims_aircraft(const std::string& category) {
+  return annotation::is_aircraft(category) ||
+         (!annotation::is_object_class(category) && category != "ignore");
+}
+
+std::vector<std::vector<Match>> matches_of(const detection::SequenceDetections& detections,
+                                           const TruthSequence& truth,
+                                           double centre_px) {
+  std::vector<std::vector<Match>> matches;
+  const std::size_t frames = std::min(detections.frames.size(), truth.frames.size());
+  for (std::size_t i = 0; i < frames; ++i) {
+    std::vector<Match>& of_frame = matches.emplace_back();
+    for (const detection::Detection& detection : detections.frames[i])
+      of_frame.push_back(claims_aircraft(detection.category)
+                             ? match_of(detection.box_px, truth.frames[i], centre_px)
+                             : Match{MatchKind::kIgnored, {}, detection.category});
+  }
+  return matches;
+}
+
+std::set<std::int64_t> detected_in(const ScoredDetections& scored,
+                                   std::size_t frame,
+                                   double score) {
+  std::set<std::int64_t> detected;
+  if (frame >= scored.matches.size()) return detected;
+  for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
+    const Match& match = scored.matches[frame][k];
+    if (match.kind == MatchKind::kTruePositive && scored.detections.frames[frame][k].score >= score)
+      detected.insert(*match.object);
+  }
+  return detected;
+}
+
+}  // namespace airtruth::scores

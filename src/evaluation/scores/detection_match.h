@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "detection/detections/detections.h"
+#include "evaluation/scores/truth.h"
+
+// The match of each detection with the truth of its frame: a detection is a true positive on the
+// nearest aircraft whose centre is near enough (matching/boxes.h has the rule). Several detections
+// may be on one aircraft; none of them is a false alarm.
+namespace airtruth::scores {
+
+// Match::what of a false alarm on nothing that the truth knows.
+constexpr const char* kBackground = "background";
+
+enum class MatchKind {
+  kTruePositive,  // it is on an aircraft that counts
+  kIgnored,       // it is on an aircraft that does not count, or in an ignored region
+  kFalseAlarm,    // all others
+};
+
+struct Match {
+  MatchKind kind = MatchKind::kFalseAlarm;
+  // The object that the detection is on: the aircraft found, also one that does not count, or what
+  // it mistakes for one. Empty where there is nothing, and in an ignored region.
+  std::optional<std::int64_t> object;
+  // Class of that object ("aircraft", "bird"), "ignore" in an ignored region, kBackground where
+  // there is nothing, and the detection's own category where it does not claim an aircraft.
+  std::string what;
+};
+
+// Aircraft that count come first, then those that do not, ignored regions (the centre lies in the
+// region), and last other objects, by the same rule of distance as aircraft.
+Match match_of(const Box& detection_px, const TruthFrame& truth, double centre_px);
+
+// True for a detection that claims to be an aircraft: its category is no class of another object
+// (<airtruth/truth.h>). A detector that names birds as birds has no false alarm on them. Types of
+// aircraft ("738") are aircraft.
+bool claims_aircraft(const std::string& category);
+
+// The matches of a sequence, in the order of its detections. A detection that claims something
+// else than an aircraft is kIgnored. Frames that only one of the two has get none.
+std::vector<std::vector<Match>> matches_of(const detection::SequenceDetections& detections,
+                                           const TruthSequence& truth,
+                                           double centre_px);
+
+// The detections of one sequence, and what became of each.
+struct ScoredDetections {
+  std::size_t truth = 0;  // index in Assessment::truths
+  detection::SequenceDetections detections;
+  // matches[frame][i] belongs to detections.frames[frame][i].
+  std::vector<std::vector<Match>> matches;
+};
+
+// The aircraft that detections of this score or more detect in a frame, by TruthObject::id.
+std::set<std::int64_t> detected_in(const ScoredDetections& scored, std::size_t frame, double score);
+
+}  // namespace airtruth::scores

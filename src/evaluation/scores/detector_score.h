@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "detection/detections/detections.h"
+#include "evaluation/measures/aot.h"
+#include "evaluation/measures/average_precision.h"
+#include "evaluation/measures/bearing_error.h"
+#include "evaluation/measures/froc.h"
+#include "evaluation/measures/track_measures.h"
+#include "evaluation/scores/breakdown.h"
+#include "evaluation/scores/declaration.h"
+#include "evaluation/scores/detection_match.h"
+#include "evaluation/scores/galleries.h"
+#include "evaluation/scores/truth.h"
+
+// The whole assessment of detectors on a data set: what tables and pages show. It is a value; no
+// file is needed to make or read it.
+namespace airtruth::scores {
+
+// The measures of whole tracks; only detectors whose results have tracks have them.
+struct TrackScores {
+  measures::Hota hota;
+  measures::ClearMot clear;
+  measures::Identity identity;
+  // False tracks of all results, and per hour.
+  std::int64_t false_tracks = 0;
+  double false_tracks_per_hour = 0;
+  // One for each aircraft of each scored sequence.
+  std::vector<EncounterScore> encounters;
+  DeclarationSummary declarations;
+  // With the set's encounter weights; empty where no sequence has a weight.
+  std::optional<DeclarationSummary> weighted_declarations;
+  // By falling score.
+  std::vector<OperatingPoint> operating_curve;
+};
+
+struct DetectorScore {
+  std::string name;
+  // In the order of the truths; a sequence without results is left out of every measure.
+  std::vector<ScoredDetections> sequences;
+  std::int64_t detections = 0;
+
+  measures::AveragePrecision average_precision;
+  measures::Froc froc;
+  // The threshold of `by`, bearings, false alarms and misses, and what holds there. Empty where
+  // there is no detection.
+  std::optional<measures::FrocPoint> point;
+  // The probability of detection at the point with the set's encounter weights; empty where no
+  // sequence has a weight.
+  std::optional<statistics::Proportion> weighted_detection;
+  // Keys: quantities(). A key without a value anywhere is not there.
+  std::map<std::string, std::vector<DetectionBin>> by;
+  // False alarms at the point by what they are: "background", "bird", ... with their number.
+  std::map<std::string, std::int64_t> false_alarms_by;
+  // Shares of other objects' frames that raised one: by class.
+  std::map<std::string, statistics::Proportion> mistaken_by;
+  std::optional<measures::BearingError> bearing;
+  measures::AotScore aot;
+  measures::AotRanks aot_ranks;
+  std::optional<TrackScores> tracks;
+  // At the point; the strongest first, at most kGallerySize.
+  std::vector<FalseAlarm> false_alarms;
+  std::vector<Miss> misses;
+  // Seconds of the detector for each frame, over all frames with a time; empty where unknown.
+  std::optional<double> frames_per_second_median;
+};
+
+// How the operating point is chosen.
+struct PointOptions {
+  // This score for all detectors.
+  std::optional<double> score;
+  // Else the least score with at most as many false alarms an image.
+  double false_alarms_per_image = 0.1;
+};
+
+struct Assessment {
+  std::string set;                    // name of the data set's folder
+  std::vector<TruthSequence> truths;  // sorted by name
+  // In order of decreasing AP at the centre distance.
+  std::vector<DetectorScore> detectors;
+  double centre_px = 10;
+  PointOptions point;
+  std::optional<double> manoeuvre_s;
+  std::string volume;  // empty: none
+  bool is_weighted = false;
+  // What the truth lacks, as sentences for people: "No range is known: ...".
+  std::vector<std::string> left_out;
+
+  bool empty() const { return detectors.empty(); }
+};
+
+struct ScoreOptions {
+  double centre_px = 10;
+  PointOptions point;
+  std::optional<double> manoeuvre_s;
+  // True: encounters and the probability of detection also get weighted shares, with
+  // TruthSequence::weight.
+  bool is_weighted = false;
+};
+
+// All measures of one detector. `sequences` state their truth and detections; their matches are
+// made here. Each has as many frames as its truth.
+DetectorScore score_detector(std::string name,
+                             std::vector<ScoredDetections> sequences,
+                             std::span<const TruthSequence> truths,
+                             const ScoreOptions& options);
+
+}  // namespace airtruth::scores

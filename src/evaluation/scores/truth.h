@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <airtruth/box.h>
+
+#include "camera/lens/lens.h"
+
+// The truth that detections are scored against. A fact that is unknown is empty: an imported clip
+// has no lens and often no ranges.
+namespace airtruth::scores {
+
+// One object in one frame.
+struct TruthObject {
+  // The same number for the same object throughout a sequence, from 1; TruthSequence::encounters
+  // has its encounter.
+  std::int64_t id = 0;
+  // IntruderTruth::object_class in <airtruth/truth.h>: an "aircraft" is to be found, all others are
+  // not. A detection on one of them is a false alarm that is named by this class.
+  std::string object_class = "aircraft";
+  // Type of the aircraft.
+  std::string category;
+  Box box_px;
+  // False for an aircraft that is neither missed nor found: one that is in the picture, but too
+  // faint to have a covered box. Detections on it count neither way.
+  bool counts = true;
+  std::optional<double> range_m;
+  // Contrast of the box to its surroundings over their noise (contrast_to_noise.h); known where the
+  // video was read.
+  std::optional<double> contrast_to_noise;
+  std::optional<bool> above_horizon;
+  // Bearing of the aircraft's reference point in the camera of this frame, right and up positive.
+  std::optional<double> azimuth_deg;
+  std::optional<double> elevation_deg;
+  // From this frame; negative after the closest approach.
+  std::optional<double> to_closest_approach_s;
+
+  bool is_aircraft() const { return object_class == "aircraft"; }
+  // The longer side of the box, and its area.
+  double size_px() const { return box_px.width > box_px.height ? box_px.width : box_px.height; }
+  double area_px() const { return box_px.area(); }
+};
+
+struct TruthFrame {
+  // Number of the frame in the video.
+  std::int64_t frame = 0;
+  // Seconds from the first frame of the sequence.
+  double time_s = 0;
+  std::vector<TruthObject> objects;
+  // Regions in which detections count neither way: unlabelled aircraft of the background.
+  std::vector<Box> ignored_px;
+};
+
+// What is known of the encounter with one aircraft.
+struct TruthEncounter {
+  std::int64_t id = 0;  // TruthObject::id
+  std::string name;     // id of the intruder in the scene, or the number of its track
+  // Clock of TruthFrame::time_s. May lie after the last frame.
+  std::optional<double> closest_approach_s;
+  std::optional<double> closest_approach_m;
+  // The first time at which the aircraft violates the volume that was asked for; empty where it
+  // never does.
+  std::optional<double> violation_s;
+  // False where nothing is known of the volume: truth without positions.
+  bool has_volume = false;
+};
+
+struct TruthSequence {
+  std::string name;
+  // File name of the background video; for an imported clip, of its own video.
+  std::string background;
+  // The same for sequences over the same frames of one background; empty for an imported clip.
+  std::string background_cut;
+  // The video that detectors see; may be empty for an imported clip.
+  std::filesystem::path media;
+  int width = 0;  // px; 0: unknown
+  int height = 0;
+  double frame_rate_hz = 0;
+  // Number of frames over the frame rate, or the span of the time stamps with one frame more.
+  double duration_s = 0;
+  std::optional<lens::Lens> lens;
+  // Of the encounter among those of its encounter model; 1 where the set has none.
+  double weight = 1;
+  std::vector<TruthFrame> frames;
+  std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
+  // Number of intruders that no frame shows. No measure holds them: no detector could find them.
+  std::int64_t never_seen = 0;
+
+  const TruthEncounter* encounter(std::int64_t id) const {
+    for (const TruthEncounter& one : encounters)
+      if (one.id == id) return &one;
+    return nullptr;
+  }
+};
+
+}  // namespace airtruth::scores

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/tracker_evaluation/assess.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "benchmark/experiment/trajectories.h"
+#include "evaluation/report/tables.h"
+#include "evaluation/statistics/bins.h"
+#include "foundation/base/error.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/json/json_object.h"
+
+namespace airtruth::tracker_evaluation {
+namespace {
+
+using evaluation::FramePair;
+using evaluation::Score;
+
+// Stills of all sequences together: about 20 KB each on the page.
+constexpr std::size_t kMaxStills = 1500;
+constexpr std::size_t kMaxStillsOfOne = 150;
+constexpr std::size_t kMinStillsOfOne = 4;
+
+const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
+const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
+
+std::vector<FramePair> pairs_of(const TruthClip& truth, const experiment::Results::Run& run) {
+  std::vector<FramePair> pairs;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    pairs.push_back({truth.box(i), run.frames[i].box, run.seconds.empty() ? 0 : run.seconds[i]});
+  return pairs;
+}
+
+void add_one_pass(const TruthClip& truth,
+                  const experiment::Results::Run& run,
+                  bool until_loss,
+                  ScoredSequence& scored) {
+  std::vector<FramePair> pairs = pairs_of(truth, run);
+  const auto lost = evaluation::first_loss(pairs);
+  if (until_loss && lost)
+    for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
+  scored.score = evaluation::score(pairs, truth.clip.width, truth.clip.height);
+  scored.outcomes = measures::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
+  for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
+  if (lost) {
+    const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
+    scored.loss = {frame.frame, frame.time_s, truth.range_m[*lost]};
+    if (!scored.loss->time_s && truth.clip.frame_rate_hz)
+      scored.loss->time_s = static_cast<double>(frame.frame) / *truth.clip.frame_rate_hz;
+  }
+}
+
+evaluation::RestartRuns restart_runs(const TruthClip& truth, const experiment::Results& results) {
+  evaluation::RestartRuns runs{truth.vot(), {}};
+  for (const experiment::Results::Run& run : results.restart) runs.runs.push_back(run.frames);
+  return runs;
+}
+
+evaluation::MultiStartRuns multistart_runs(const TruthClip& truth,
+                                           const experiment::Results& results) {
+  evaluation::MultiStartRuns runs{truth.vot(), {}};
+  const std::int64_t length = std::ssize(truth.clip.frames);
+  for (std::size_t i = 0; i < results.multistart.size(); ++i) {
+    const std::int64_t anchor = results.anchors[i];
+    // An anchor in the exact middle is equally far from both ends; it runs forward, as in
+    // anchors_of().
+    const bool goes_forward = std::ssize(results.multistart[i].frames) == length - anchor;
+    const bool goes_backward = std::ssize(results.multistart[i].frames) == anchor + 1;
+    runs.runs.push_back({anchor,
+                         goes_backward && (!goes_forward || anchor >= (length + 1) / 2),
+                         results.multistart[i].frames});
+  }
+  return runs;
+}
+
+// Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
+// for sequences that the set lacks, and of sequences without results.
+std::vector<experiment::Results> results_in(const fs::path& folder,
+                                            const std::vector<TruthClip>& truths,
+                                            const AssessOptions& options) {
+  if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
+  std::vector<experiment::Results> results;
+  std::size_t missing = 0;
+  std::set<std::string> known;
+  for (const TruthClip& truth : truths) {
+    results.push_back(experiment::read_results(folder, truth.clip, options.origin_px));
+    missing += results.back().empty() ? 1 : 0;
+    known.insert(truth.clip.name);
+  }
+  std::vector<std::string> unknown = experiment::sequences_in(folder);
+  std::erase_if(unknown, [&](const std::string& name) { return known.contains(name); });
+  if (missing == truths.size())
+    throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
+                    (unknown.empty() ? "" : " (found one for '" + unknown.front() + "')"),
+                {folder.string()});
+  if (!unknown.empty())
+    airtruth::warn(options.warn,
+                   fmt::format("{}: {} results are for no sequence of the data set (the first: {})",
+                               folder.string(),
+                               unknown.size(),
+                               unknown.front()));
+  if (missing > 0)
+    airtruth::warn(options.warn,
+                   fmt::format("{}: has results for {} of {} sequences; its score is of those",
+                               folder.string(),
+                               truths.size() - missing,
+                               truths.size()));
+  return results;
+}
+
+class Scoring {
+ public:
+  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range, bool until_loss)
+      : truths_(truths), eao_range_(eao_range), until_loss_(until_loss) {}
+
+  // found[i] belongs to the i-th truth.
+  ScoredTracker operator()(const std::string& name,
+                           const std::vector<experiment::Results>& found) const {
+    ScoredTracker tracker;
+    tracker.name = name;
+    std::vector<evaluation::RestartRuns> restarts;
+    std::vector<evaluation::MultiStartRuns> multistarts;
+    for (std::size_t i = 0; i < truths_.size(); ++i) {
+      const experiment::Results& results = found[i];
+      if (results.empty()) continue;
+      ScoredSequence scored;
+      scored.truth = i;
+      scored.name = truths_[i].clip.name;
+      if (!results.one_pass.empty())
+        add_one_pass(truths_[i], results.one_pass.front(), until_loss_, scored);
+      if (!results.restart.empty()) {
+        restarts.push_back(restart_runs(truths_[i], results));
+        scored.restart = evaluation::restart_score({&restarts.back(), 1}, eao_range_);
+      }
+      if (!results.multistart.empty()) {
+        multistarts.push_back(multistart_runs(truths_[i], results));
+        scored.multistart = evaluation::multistart_score({&multistarts.back(), 1}, eao_range_);
+      }
+      tracker.sequences.push_back(std::move(scored));
+    }
+    if (!restarts.empty()) tracker.restart = evaluation::restart_score(restarts, eao_range_);
+    if (!multistarts.empty())
+      tracker.multistart = evaluation::multistart_score(multistarts, eao_range_);
+    summarise(tracker);
+    return tracker;
+  }
+
+ private:
+  void summarise(ScoredTracker& tracker) const {
+    std::vector<Score> scores;
+    for (const ScoredSequence& sequence : tracker.sequences) {
+      if (!sequence.score) continue;
+      scores.push_back(*sequence.score);
+      tracker.lost += sequence.loss ? 1 : 0;
+    }
+    if (scores.empty()) return;
+    tracker.overall = evaluation::mean_of(scores);
+    for (const Measure& measure : measures()) {
+      std::vector<double> values;
+      std::vector<double> weights;
+      for (const Score& score : scores) {
+        if (score.counted == 0 || (measure.zero_is_unknown && score.*measure.value == 0)) continue;
+        values.push_back(score.*measure.value);
+        if (measure.weighs_by_frames) weights.push_back(static_cast<double>(score.counted - 1));
+      }
+      tracker.intervals[measure.name] = evaluation::bootstrap_mean(values, weights);
+    }
+    break_down(tracker);
+  }
+
+  void break_down(ScoredTracker& tracker) const {
+    std::vector<measures::Outcome> all;
+    std::map<std::string, std::vector<std::optional<double>>> values;
+    std::map<std::string, std::vector<measures::Outcome>> by_background;
+    for (const ScoredSequence& sequence : tracker.sequences) {
+      const TruthClip& truth = truths_[sequence.truth];
+      for (const measures::Outcome& outcome : sequence.outcomes) {
+        all.push_back(outcome);
+        values["range_m"].push_back(truth.range_m[outcome.frame]);
+        values["size_px"].push_back(truth.size_px[outcome.frame]);
+        values["contrast"].push_back(truth.contrast[outcome.frame]);
+        by_background[truth.background].push_back(outcome);
+      }
+    }
+    tracker.angle_mrad = measures::mean_of(all).angle_mrad;
+    tracker.bins["range_m"] =
+        measures::breakdown(all, values["range_m"], statistics::kRangeEdges_m);
+    tracker.bins["size_px"] = measures::breakdown(all, values["size_px"], kSizeEdges_px);
+    tracker.bins["contrast"] = measures::breakdown(all, values["contrast"], kContrastEdges);
+    for (const auto& [name, outcomes] : by_background)
+      tracker.backgrounds[name] = measures::mean_of(outcomes);
+  }
+
+  const std::vector<TruthClip>& truths_;
+  std::pair<int, int> eao_range_;
+  bool until_loss_ = false;
+};
+
+TrackerPair compared(const ScoredTracker& a, const ScoredTracker& b) {
+  TrackerPair comparison{a.name, b.name, 0, {}};
+  std::vector<double> of_a;
+  std::vector<double> of_b;
+  for (const ScoredSequence& mine : a.sequences)
+    for (const ScoredSequence& other : b.sequences)
+      if (mine.truth == other.truth && mine.score && other.score) {
+        of_a.push_back(mine.score->auc);
+        of_b.push_back(other.score->auc);
+      }
+  comparison.sequences = std::ssize(of_a);
+  comparison.auc = evaluation::paired(of_a, of_b);
+  return comparison;
+}
+
+std::pair<int, int> range_of(const std::vector<TruthClip>& truths) {
+  std::vector<std::int64_t> lengths;
+  for (const TruthClip& truth : truths) lengths.push_back(std::ssize(truth.clip.frames));
+  const std::int64_t longest =
+      lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
+  return evaluation::within_curves(evaluation::eao_range(lengths), longest);
+}
+
+// Where a curve ends before the range over which its mean is taken. last: the range's last index.
+void warn_of_short_curve(const std::string& tracker,
+                         const char* protocol,
+                         std::size_t points,
+                         std::pair<int, int> range,
+                         int last,
+                         const Warn& warn) {
+  const int end = static_cast<int>(points) - 1;
+  if (range.first <= std::min(end, last) && last <= end) return;
+  airtruth::warn(
+      warn,
+      fmt::format("{}: the EAO curve of its {} runs ends at {}; of the range {} to {} {}",
+                  tracker,
+                  protocol,
+                  end,
+                  range.first,
+                  last,
+                  range.first <= end && range.first <= last
+                      ? "the part up to there counts"
+                      : "nothing is there, so it has no EAO"));
+}
+
+void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
+  const auto range = assessment.eao_range;
+  for (const ScoredTracker& tracker : assessment.trackers) {
+    if (tracker.restart)
+      warn_of_short_curve(
+          tracker.name, "restart", tracker.restart->eao_curve.size(), range, range.second, warn);
+    if (tracker.multistart)
+      warn_of_short_curve(tracker.name,
+                          "multistart",
+                          tracker.multistart->eao_curve.size(),
+                          range,
+                          range.second - 1,
+                          warn);
+  }
+}
+
+// By name, each tracker's results for each truth.
+using AllResults = std::map<std::string, std::vector<experiment::Results>>;
+
+// Videos of sequences without results are not read.
+void add_films(std::vector<TruthClip>& truths,
+               const AllResults& found,
+               const AssessOptions& options) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    if (std::any_of(
+            found.begin(), found.end(), [&](const auto& one) { return !one.second[i].empty(); }))
+      wanted.push_back(i);
+  const std::size_t each = std::clamp(
+      kMaxStills / std::max<std::size_t>(1, wanted.size()), kMinStillsOfOne, kMaxStillsOfOne);
+  in_parallel(
+      wanted.size(),
+      options.jobs,
+      [&](std::size_t i) { add_film(truths[wanted[i]], each, options.stop); },
+      options.progress,
+      options.stop);
+}
+
+}  // namespace
+
+const std::vector<Measure>& measures() {
+  static const std::vector<Measure> all = {
+      {"auc", &Score::auc, true, false},
+      {"precision_20px", &Score::precision_20px, true, false},
+      {"normalised_auc", &Score::normalised_auc, true, false},
+      {"average_overlap", &Score::average_overlap, true, true},
+      {"success_50", &Score::success_50, true, true},
+      {"success_75", &Score::success_75, true, true},
+      {"centre_mean_px", &Score::centre_mean_px, false, false},
+      {"x_mean_px", &Score::x_mean_px, false, false},
+      {"x_rmse_px", &Score::x_rmse_px, false, false},
+      {"x_most_px", &Score::x_most_px, false, false},
+      {"y_mean_px", &Score::y_mean_px, false, false},
+      {"y_rmse_px", &Score::y_rmse_px, false, false},
+      {"y_most_px", &Score::y_most_px, false, false},
+      {"frames_per_second", &Score::frames_per_second, true, false, true},
+      {"frames_per_second_median", &Score::frames_per_second_median, true, false, true}};
+  return all;
+}
+
+Assessment assess(const fs::path& set,
+                  const std::vector<fs::path>& results,
+                  const AssessOptions& options) {
+  Assessment assessment;
+  assessment.set = report::name_of_results(set);
+  assessment.until_loss = options.until_loss;
+  assessment.truths = truths_of(dataset::LabelledSet(set), options.warn);
+  assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
+  // Results are read first, so that their faults are reported before minutes of video are read.
+  AllResults found;
+  for (const fs::path& folder : results) {
+    const std::string name = report::name_of_results(folder);
+    if (found.contains(name))
+      throw Error("is the second folder of results called '" + name + "'", {folder.string()});
+    found[name] = results_in(folder, assessment.truths, options);
+  }
+  if (options.with_film) add_films(assessment.truths, found, options);
+  const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);
+  for (const fs::path& folder : results)
+    assessment.trackers.push_back(
+        scored(report::name_of_results(folder), found[report::name_of_results(folder)]));
+  warn_of_short_curves(assessment, options.warn);
+  std::stable_sort(assessment.trackers.begin(),
+                   assessment.trackers.end(),
+                   [](const ScoredTracker& a, const ScoredTracker& b) {
+                     return (a.overall ? a.overall->auc : -1) > (b.overall ? b.overall->auc : -1);
+                   });
+  for (std::size_t i = 0; i < assessment.trackers.size(); ++i)
+    for (std::size_t j = i + 1; j < assessment.trackers.size(); ++j)
+      if (assessment.trackers[i].overall && assessment.trackers[j].overall)
+        assessment.comparisons.push_back(compared(assessment.trackers[i], assessment.trackers[j]));
+  return assessment;
+}
+
+void check_evaluation(const fs::path& file) { agreement({}, file); }
+
+Agreement agreement(const Assessment& assessment, const fs::path& other) {
+  Agreement result;
+  std::vector<double> mine;
+  std::vector<double> theirs;
+  const JsonDocument record(other);
+  const std::vector<JsonObject> trackers = record.objects("trackers");
+  for (const ScoredTracker& tracker : assessment.trackers)
+    for (const JsonObject& that : trackers)
+      if (tracker.overall && that.text("name") == tracker.name && that.has("overall")) {
+        result.trackers.push_back(tracker.name);
+        mine.push_back(tracker.overall->auc);
+        theirs.push_back(that.object("overall").number("auc"));
+      }
+  result.tau = evaluation::kendall_tau(mine, theirs);
+  return result;
+}
+
+}  // namespace airtruth::tracker_evaluation

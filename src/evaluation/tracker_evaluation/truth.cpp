@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation/tracker_evaluation/truth.h"
+
+#include <algorithm>
+#include <set>
+
+#include "benchmark/experiment/frames.h"
+#include "foundation/base/error.h"
+#include "labels/annotation/in_view.h"
+#include "labels/annotation/lens_facts.h"
+#include "labels/exchange/exchange.h"
+#include "sequence/replay/finished.h"
+#include "show/drawing/thumbnails.h"
+
+namespace airtruth::tracker_evaluation {
+namespace {
+
+constexpr report::CutoutOptions kClose = {
+    .surroundings = 3, .most_of_picture = 3, .side = 200, .quality = 8};
+
+std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
+  if (set.is_imported(name)) return std::nullopt;
+  return annotation::lens_of(sequence::open_finished(set.folder(name)).truth.lens);
+}
+
+TruthClip truth_from(exchange::Clip clip) {
+  TruthClip truth;
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    const exchange::Label* label = frame.labels.empty() ? nullptr : &frame.labels.front();
+    truth.range_m.push_back(label != nullptr ? label->range_m : std::nullopt);
+    truth.size_px.push_back(label != nullptr
+                                ? std::optional(std::max(label->box_px.width, label->box_px.height))
+                                : std::nullopt);
+  }
+  truth.contrast.resize(clip.frames.size());
+  truth.clip = std::move(clip);
+  return truth;
+}
+
+PixelBox covered(const Box& box) {
+  const PixelBox touched = pixels_of(box);
+  return {touched.x, touched.y, std::max(1, touched.width), std::max(1, touched.height)};
+}
+
+TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Picture& picture) {
+  TruthClip::Still still;
+  still.index = i;
+  still.width = picture.width;
+  still.whole = report::small_jpeg(picture, TruthClip::kWholeWidth, kClose.quality);
+  if (const auto box = truth.box(i)) still.close = report::cutout_of(picture, *box, kClose);
+  return still;
+}
+
+}  // namespace
+
+evaluation::VotTruth TruthClip::vot() const {
+  evaluation::VotTruth result{{}, clip.width, clip.height};
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) result.boxes.push_back(box(i));
+  return result;
+}
+
+std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn) {
+  const dataset::Boxes boxes = set.usual_boxes(warn);
+  std::vector<TruthClip> truths;
+  for (const std::string& name : set.names()) {
+    const auto lens = lens_of(set, name);
+    const std::string background = fs::path(set.facts(name).background).filename().string();
+    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
+      truths.push_back(truth_from(std::move(clip)));
+      truths.back().lens = lens;
+      truths.back().background = background;
+    }
+  }
+  std::sort(truths.begin(), truths.end(), [](const TruthClip& a, const TruthClip& b) {
+    return a.clip.name < b.clip.name;
+  });
+  return truths;
+}
+
+void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop) {
+  if (truth.clip.media.empty()) return;
+  const std::size_t count = truth.clip.frames.size();
+  const std::set<std::size_t> wanted = report::spread_over(count, stills);
+  experiment::Frames frames(truth.clip.media, {});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    const image::Picture* picture = frames.at(truth.clip.frames[i].frame);
+    if (picture == nullptr)
+      throw Error("ends before the labels of " + truth.clip.name + " do",
+                  {truth.clip.media.string()});
+    if (const auto box = truth.box(i))
+      truth.contrast[i] = drawing::contrast(*picture, covered(*box));
+    if (wanted.count(i) > 0) truth.stills.push_back(still_of(truth, i, *picture));
+  }
+}
+
+}  // namespace airtruth::tracker_evaluation

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <airtruth/labels.h>
+#include <airtruth/vot.h>
+
+#include "camera/lens/lens.h"
+#include "dataset/labelled/labelled_set.h"
+#include "evaluation/report/cutout.h"
+#include "foundation/base/log.h"
+
+namespace airtruth::tracker_evaluation {
+
+// The truth for one object of a sequence, from the first frame that shows it whole to the last
+// frame that shows it, with further facts about those frames.
+struct TruthClip {
+  exchange::Clip clip;
+  // File name of the background video; for an imported clip, of its own video.
+  std::string background;
+  // Set for rendered sequences.
+  std::optional<lens::Lens> lens;
+  // By frame of the clip; empty where the object is not visible or the value is unknown.
+  std::vector<std::optional<double>> range_m;
+  std::vector<std::optional<double>> size_px;  // longer side of the box, px
+  // Contrast in grey levels (show/drawing/thumbnails.h), filled in by add_film().
+  std::vector<std::optional<double>> contrast;
+
+  // Small JPEGs of some frames for the page.
+  struct Still {
+    std::size_t index = 0;  // index in clip.frames
+    int width = 0;          // width of the video's picture, px
+    // The whole picture, at most kWholeWidth pixels wide.
+    std::string whole;
+    // The surroundings of the object; empty without a truth box.
+    report::Cutout close;
+  };
+  static constexpr int kWholeWidth = 400;
+  std::vector<Still> stills;
+
+  std::optional<Box> box(std::size_t i) const {
+    const auto& labels = clip.frames[i].labels;
+    return labels.empty() ? std::nullopt : std::optional(labels.front().box_px);
+  }
+  evaluation::VotTruth vot() const;
+};
+
+// Returns every object of every sequence, sorted by name, with its covered boxes
+// (LabelledSet::usual_boxes).
+std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn);
+
+// Reads the clip's video once and fills in the contrast of each frame and `stills` pictures spread
+// over the clip. A clip without a video gets neither.
+void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop);
+
+}  // namespace airtruth::tracker_evaluation
