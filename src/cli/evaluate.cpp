@@ -8,6 +8,7 @@
 #include "cli/evaluate_detections.h"
 #include "evaluation/detector_evaluation/page.h"
 #include "evaluation/detector_evaluation/tables.h"
+#include "evaluation/report/plots.h"
 #include "evaluation/tracker_evaluation/assess.h"
 #include "evaluation/tracker_evaluation/page.h"
 #include "evaluation/tracker_evaluation/tables.h"

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 bool holds_detections(const fs::path& results, bool is_mot_of_detector = false);
 
 struct AssessOptions {
-  // Radius of found.h.
+  // Radius of matching/boxes.h.
   double centre_px = 10;
   scores::PointOptions point;
   // Seconds that a manoeuvre needs before the volume is violated. Needs `volume`.

@@ -16,7 +16,7 @@ void write_page(const scores::Assessment& assessment,
                 const std::filesystem::path& out,
                 const FilmOptions& options);
 
-// Writes the plots (detection_plots.h) into out/figures as detection_NAME.png, .pdf or .svg, each
+// Writes the plots (plots.h) into out/figures as detection_NAME.png, .pdf or .svg, each
 // with its gnuplot script and data beside it, and detection_ranking, the average precisions with
 // their intervals.
 // Throws Error where `format` is another.

@@ -232,7 +232,7 @@ Json point_options_of(const scores::Assessment& assessment) {
 
 }  // namespace
 
-void write_tables(const scores::Assessment& assessment, const fs::path& out) {
+void write_tables(const scores::Assessment& assessment, const std::filesystem::path& out) {
   Json all = {{"format", kFormat},
               {"version", kVersion},
               {"dataset", assessment.set},

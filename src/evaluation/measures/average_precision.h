@@ -42,7 +42,7 @@ struct ScoredImage {
 };
 
 // How a detection resembles a truth, and the thresholds: overlap (intersection over union), or
-// distance of the centres with the rule of found.h.
+// distance of the centres with the rule of matching/boxes.h.
 enum class Likeness { kOverlap, kCentre };
 
 struct AreaRange {
@@ -59,7 +59,7 @@ constexpr int kRecallSteps = 101;
 
 struct PrecisionOptions {
   Likeness likeness = Likeness::kOverlap;
-  // Least overlap; with kCentre the radius of found.h, px.
+  // Least overlap; with kCentre the radius of matching/boxes.h, px.
   double threshold = 0.5;
   AreaRange areas = kAllAreas;
   int max_detections = 100;

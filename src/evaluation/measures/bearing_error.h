@@ -34,8 +34,8 @@ struct Spread {
   // The 95th percentile of the absolute value.
   double within_95 = 0;
   std::int64_t count = 0;
-  // 95 % intervals of the four by the percentile bootstrap over sequences (cluster_draws.h); empty
-  // where fewer than two sequences have a value.
+  // 95 % intervals of the four by the percentile bootstrap over sequences (statistics/bootstrap.h);
+  // empty where fewer than two sequences have a value.
   struct Intervals {
     evaluation::Interval mean, deviation, rms, within_95;
   };

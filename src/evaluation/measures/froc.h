@@ -12,8 +12,8 @@
 // detection against false alarms, as the threshold on the score falls.
 //
 // An aircraft in a frame is a trial; it succeeds where a detection with that score or more finds it
-// (found.h). False alarms are detections that find nothing and are not ignored; several on one
-// aircraft are none.
+// (scores/detection_match.h). False alarms are detections that find nothing and are not ignored;
+// several on one aircraft are none.
 //
 // Example: 10 frames of one sequence at 10 Hz show an aircraft. Detections of score 9 find it in 6
 // of them, and one false alarm has score 5. At 9 the probability of detection is 0.6 at 0 false

@@ -12,7 +12,7 @@
 
 // Probability of detection by a quantity: of the aircraft in frames, the share that is found. With
 // the weights of sequences that were drawn from an encounter model it is also the share of the
-// aircraft in frames that the model has (share.h).
+// aircraft in frames that the model has (statistics/proportion.h).
 namespace airtruth::scores {
 
 // One aircraft in one frame.

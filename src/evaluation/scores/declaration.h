@@ -17,9 +17,10 @@
 
 // When a detector's tracks declare an aircraft, and whether that leaves time for a manoeuvre.
 //
-// A track declares an aircraft in the first frame in which it is on it (found.h) and from which on
-// it is kept: in the kKeep_s seconds that follow, or as many as show the aircraft, the same track
-// is on it in at least half of the frames that show it (AOT's rule: half of 30 frames at 10 Hz).
+// A track declares an aircraft in the first frame in which it is on it (scores/detection_match.h)
+// and from which on it is kept: in the kKeep_s seconds that follow, or as many as show the
+// aircraft, the same track is on it in at least half of the frames that show it (AOT's rule: half
+// of 30 frames at 10 Hz).
 //
 // Example: an aircraft is in view from 0 s on, and its closest approach is at 40 s. Track 3 is on
 // it at 6 s for one frame, and from 9 s on in all frames; the range at 9 s is 2100 m. It is
