@@ -172,7 +172,7 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   ASSERT_TRUE(score.weighted_detection);
   EXPECT_EQ(score.weighted_detection->value, 1);
   EXPECT_EQ(score.weighted_detection->trials, 3 * score.point->detection.trials);
-  const nlohmann::ordered_json json = json_of(score, assessment);
+  const nlohmann::ordered_json json = json_of_detector(score, assessment);
   EXPECT_EQ(json["point"]["weighted_detection"]["share"], 1);
   for (const auto& bin : json["by"]["range_m"]) {
     EXPECT_EQ(bin["share"], 1);
