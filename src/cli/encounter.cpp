@@ -8,7 +8,6 @@
 
 #include "cli/commands.h"
 #include "encounter/tracks_file/tracks_file.h"
-#include "encounter/tracks_file/tracks_writer.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
 

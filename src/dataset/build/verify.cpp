@@ -11,7 +11,6 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
-#include "labels/annotation/in_view.h"
 #include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"

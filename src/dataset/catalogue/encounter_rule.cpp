@@ -11,7 +11,7 @@
 #include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/names.h"
 #include "encounter/model/sampler.h"
-#include "encounter/track/units.h"
+#include "encounter/track/track.h"
 #include "foundation/base/seed.h"
 
 namespace airtruth::dataset {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces every number of the user's files by extreme values. The list of numbers comes from the
-// readers themselves (scene/scene/key_log.h), so that the test covers a new key automatically.
+// readers themselves (scene/scene/table_reader.h), so that the test covers a new key automatically.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -23,7 +23,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/truth.h"
-#include "scene/scene/key_log.h"
+#include "scene/scene/table_reader.h"
 #include "scene/trajectory/path.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/sequence/sequence.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "labels/annotation/in_view.h"
 #include "labels/annotation/lens_facts.h"
 #include "labels/annotation/object_class.h"
 #include "picture/video/reader.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "encounter/model/bayes_model.h"
+#include "encounter/model/model_file.h"
 #include "foundation/base/seed.h"
 
 // The part of a model's traffic that a user wants.

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/model/bayes_model.h"
+#include "encounter/model/model_file.h"
 #include "encounter/model/model_fields.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

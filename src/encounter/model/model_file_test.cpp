@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/model/bayes_model.h"
+#include "encounter/model/model_file.h"
 #include "encounter/model/small_model.h"
 #include "foundation/base/error.h"
 

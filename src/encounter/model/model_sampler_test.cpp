@@ -10,7 +10,7 @@
 #include "encounter/model/sampler.h"
 #include "encounter/model/small_model.h"
 #include "encounter/track/chi_square.h"
-#include "encounter/track/units.h"
+#include "encounter/track/track.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::encounter {

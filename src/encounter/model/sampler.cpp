@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/track/units.h"
+#include "encounter/track/track.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::encounter {

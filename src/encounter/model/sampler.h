@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "encounter/model/bayes_model.h"
+#include "encounter/model/model_file.h"
 #include "encounter/model/cut.h"
 #include "encounter/track/track.h"
 #include "foundation/base/seed.h"

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "encounter/passage/geometry_class.h"
 #include "encounter/separation/random_encounter.h"
 
 namespace airtruth::encounter {

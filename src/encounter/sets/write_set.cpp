@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/tracks_file/tracks_writer.h"
+#include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/track/units.h"
+#include "encounter/track/track.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 

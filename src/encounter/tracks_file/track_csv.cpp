@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/track/units.h"
+#include "encounter/track/track.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 

@@ -2,9 +2,13 @@
 #include "encounter/tracks_file/tracks_file.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "encounter/tracks_file/encounter_csv.h"
 #include "encounter/tracks_file/state_table.h"
@@ -13,6 +17,7 @@
 #include "encounter/tracks_file/waypoint_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/unfinished.h"
 
 namespace airtruth::encounter {
 namespace {
@@ -72,6 +77,82 @@ std::vector<Encounter> fitted(std::vector<Encounter> encounters,
     all.aircraft.push_back(std::move(track));
   }
   return {std::move(all)};
+}
+
+namespace {
+
+constexpr std::size_t kMaxEncounters = 0xffffffff;
+
+}  // namespace
+
+struct TracksWriter::Part {
+  fs::path file;
+  fs::path part = part_path(file);
+  Unfinished unfinished = Unfinished::path(part);
+  std::FILE* stream = std::fopen(part.c_str(), "wbe");
+
+  [[noreturn]] void fail() const {
+    throw Error(fmt::format("cannot write: {}", std::strerror(errno)), {file.string()});
+  }
+  ~Part() {
+    if (stream != nullptr) std::fclose(stream);
+    ::unlink(part.c_str());
+  }
+};
+
+TracksWriter::TracksWriter(const fs::path& file, std::uint32_t encounters, std::uint32_t aircraft)
+    : part_(new Part{file}) {
+  if (part_->stream == nullptr) part_->fail();
+  const TracksFormat format = tracks_format_of(file);
+  if (format == TracksFormat::kCsv) append(encounter_csv_head());
+  if (format == TracksFormat::kWaypoints) append(waypoint_head(encounters, aircraft));
+}
+
+TracksWriter::~TracksWriter() = default;
+
+void TracksWriter::append(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), part_->stream) != bytes.size()) part_->fail();
+}
+
+void TracksWriter::finish() {
+  if (std::fflush(part_->stream) != 0) part_->fail();
+  if (::fsync(::fileno(part_->stream)) != 0 && errno != EINVAL && errno != EROFS) part_->fail();
+  if (std::fclose(std::exchange(part_->stream, nullptr)) != 0) part_->fail();
+  part_->unfinished.finish([&] {
+    if (::rename(part_->part.c_str(), part_->file.c_str()) != 0) part_->fail();
+  });
+}
+
+std::string bytes_of(const Encounter& encounter,
+                     TracksFormat format,
+                     std::uint64_t number,
+                     std::uint32_t aircraft) {
+  switch (format) {
+    case TracksFormat::kCsv:
+      return encounter_csv_rows(encounter, number);
+    case TracksFormat::kDaa:
+      return daa_of(encounter);
+    case TracksFormat::kTable:
+      return state_table_of(encounter);
+    case TracksFormat::kWaypoints:
+      return waypoints_of(encounter, aircraft);
+  }
+  return {};
+}
+
+void write_encounters(const fs::path& file, const std::vector<Encounter>& encounters) {
+  check(!encounters.empty(), "there are encounters to write");
+  const TracksFormat format = tracks_format_of(file);
+  if (encounters.size() > kMaxEncounters)
+    throw Error(
+        fmt::format(
+            "would hold {} encounters; expected up to {}", encounters.size(), kMaxEncounters),
+        {file.string()});
+  const auto aircraft = static_cast<std::uint32_t>(encounters.front().aircraft.size());
+  TracksWriter writer(file, static_cast<std::uint32_t>(encounters.size()), aircraft);
+  for (std::size_t i = 0; i < encounters.size(); ++i)
+    writer.append(bytes_of(encounters[i], format, i + 1, aircraft));
+  writer.finish();
 }
 
 }  // namespace airtruth::encounter

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/tracks_file/tracks_writer.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 

@@ -28,7 +28,7 @@ struct AssessOptions {
   scores::PointOptions point;
   // Seconds that a manoeuvre needs before the volume is violated. Needs `volume`.
   std::optional<double> manoeuvre_s;
-  // Name of a volume (encounter/separation/volumes.h, or the scenes' own).
+  // Name of a volume (encounter/separation/violation.h, or the scenes' own).
   std::string volume;
   // Regions in which detections count neither way (ignored_regions.h); empty: ignore.csv of the
   // data set where it is there.

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "encounter/separation/violation.h"
-#include "encounter/separation/volumes.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
 #include "sequence/replay/finished.h"

@@ -9,7 +9,7 @@
 
 #include "dataset/sequences/labels_of_truth.h"
 #include "encounter/separation/measures.h"
-#include "encounter/separation/volumes.h"
+#include "encounter/separation/violation.h"
 #include "evaluation/scores/truth.h"
 
 // The truth of a sequence that `render` made; a part of set_truth.h.

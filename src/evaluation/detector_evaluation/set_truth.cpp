@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "benchmark/experiment/frames.h"
-#include "encounter/separation/volumes.h"
+#include "encounter/separation/violation.h"
 #include "evaluation/detector_evaluation/contrast_to_noise.h"
 #include "evaluation/detector_evaluation/rendered_truth.h"
 #include "evaluation/scores/ignored_regions.h"

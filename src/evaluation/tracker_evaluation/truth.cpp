@@ -6,7 +6,6 @@
 
 #include "benchmark/experiment/frames.h"
 #include "foundation/base/error.h"
-#include "labels/annotation/in_view.h"
 #include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
 #include "sequence/replay/finished.h"

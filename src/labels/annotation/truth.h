@@ -38,7 +38,7 @@ enum class State {
 // "visible" and so on.
 const char* name(State state);
 
-// Whether an intruder violates a volume (encounter/separation/volumes.h).
+// Whether an intruder violates a volume (encounter/separation/violation.h).
 struct VolumeTruth {
   std::string name;
   bool inside = false;
@@ -146,5 +146,11 @@ struct Truth {
   std::vector<Frame> frames;
 };
 Truth read_truth(const std::filesystem::path& file);
+
+// Describes the first inconsistency of a frame's truth; empty where it is consistent. The rules
+// are: numbers are finite, a visible box is present exactly where the intruder is visible, a
+// position is present exactly where it is in the world, and fractions lie within 0..1.
+std::optional<std::string> fault(const Frame& frame);
+std::optional<std::string> fault(const LensFacts& lens);
 
 }  // namespace airtruth::annotation

@@ -12,7 +12,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "labels/annotation/truth_rules.h"
 
 namespace airtruth::annotation {
 namespace {

@@ -225,7 +225,7 @@ struct Intruder {
 
 inline bool is_aircraft(const Intruder& intruder) { return !intruder.distractor; }
 
-// [[truth.volume]]: a volume of airspace by own thresholds (encounter/separation/volumes.h).
+// [[truth.volume]]: a volume of airspace by own thresholds (encounter/separation/violation.h).
 struct TruthVolume {
   std::string name;
   double horizontal_m = 0;

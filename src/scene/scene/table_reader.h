@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -111,5 +113,55 @@ bool is_plain_file_name(std::string_view name);
 
 // The number as messages show it: the shortest text that parses to the same number.
 std::string shown(double number);
+
+// Records the keys that readers of TOML tables use, so that a test can visit every key of a format
+// without its own list. This header is not installed.
+
+enum class NumberShape { kOne, kList, kTuple, kPoints };
+
+struct NumberKey {
+  NumberShape shape = NumberShape::kOne;
+  // One range for all numbers, or one for each place of a tuple or point.
+  std::vector<Limits> limits;
+};
+struct WholeKey {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+};
+
+// While a KeyLog exists, every TableReader of the same thread records the keys that it accepts, the
+// keys that it reads and their ranges. A key is named by its path: "background[0].lens.focal_px". A
+// thread holds one KeyLog at a time.
+class KeyLog {
+ public:
+  KeyLog();
+  ~KeyLog();
+  KeyLog(const KeyLog&) = delete;
+  KeyLog& operator=(const KeyLog&) = delete;
+
+  const std::set<std::string>& known() const { return known_; }
+  const std::set<std::string>& read() const { return read_; }
+  const std::map<std::string, NumberKey>& numbers() const { return numbers_; }
+  const std::map<std::string, WholeKey>& wholes() const { return wholes_; }
+
+  // TableReader calls these functions. They do nothing while the thread has no KeyLog.
+  static void note_known(const std::string& path);
+  static void note_read(const std::string& path);
+  static void note_numbers(const std::string& path,
+                           NumberShape shape,
+                           const std::vector<Limits>& limits);
+  static void note_whole(const std::string& path, std::int64_t low, std::int64_t high);
+
+ private:
+  std::set<std::string> known_;
+  std::set<std::string> read_;
+  std::map<std::string, NumberKey> numbers_;
+  std::map<std::string, WholeKey> wholes_;
+};
+
+// Throws Error where the text nests deeper than any scene does: arrays in arrays, or
+// a.long.dotted.key. The TOML parser and the destructors of its result are recursive, so a hostile
+// file could otherwise exhaust the stack.
+void refuse_deep_nesting(std::string_view text, const std::string& file);
 
 }  // namespace airtruth::scene

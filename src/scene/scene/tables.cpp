@@ -10,7 +10,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/line_of.h"
 #include "scene/scene/camera_keys.h"
-#include "scene/scene/toml_guard.h"
+#include "scene/scene/table_reader.h"
 
 namespace airtruth::scene {
 namespace {

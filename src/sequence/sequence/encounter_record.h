@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "encounter/passage/geometry_class.h"
+#include "encounter/passage/passage.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
 #include "sequence/setup/world.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
-#include "encounter/separation/volumes.h"
+#include "encounter/separation/violation.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"

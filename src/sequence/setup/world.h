@@ -11,7 +11,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "camera/lens/lens.h"
-#include "encounter/separation/volumes.h"
+#include "encounter/separation/violation.h"
 #include "foundation/base/log.h"
 #include "foundation/image/spot.h"
 #include "labels/annotation/truth.h"
