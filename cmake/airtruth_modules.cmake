@@ -77,9 +77,9 @@ function(add_module name)
   endif()
 endfunction()
 
-# add_late_library(NAME SOURCES a.cpp ... LIBRARIES target ...) makes airtruth-late-NAME.so, which stands beside the
-# program and is loaded when it is first needed (src/foundation/helper/late_library.h).
-function(add_late_library name)
+# add_lazy_library(NAME SOURCES a.cpp ... LIBRARIES target ...) makes airtruth-late-NAME.so, which stands beside the
+# program and is loaded when it is first needed (src/foundation/lazy_library/lazy_library.h).
+function(add_lazy_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(airtruth-late-${name} MODULE ${arg_SOURCES})
   set_target_properties(airtruth-late-${name} PROPERTIES PREFIX "" BUILD_RPATH ""

@@ -6,17 +6,16 @@
 #include <string_view>
 
 #include "aircraft/model/load_options.h"
-#include "foundation/helper/channel.h"
-#include "foundation/helper/wire.h"
+#include "foundation/sandbox/messages.h"
 
 // The protocol between the program and airtruth-model-reader over one socket. A message has a kind,
 // a length and bytes. The reader requests each file by name and receives its bytes; it never opens
 // a file.
 namespace airtruth::aircraft {
 
-using helper::bytes_of;
-using helper::Channel;
-using helper::error_from_bytes;
+using sandbox::bytes_of;
+using sandbox::Channel;
+using sandbox::error_from_bytes;
 
 enum class Message : std::uint8_t {
   kJob = 1,  // to the reader: bytes_of(ReaderJob)

@@ -8,12 +8,12 @@
 #include "aircraft/confined/channel.h"
 #include "aircraft/confined/model_wire.h"
 #include "foundation/base/error.h"
-#include "foundation/helper/helper_process.h"
+#include "foundation/sandbox/sandbox.h"
 
 namespace airtruth::aircraft {
 namespace {
 
-constexpr helper::HelperProgram kReader{
+constexpr sandbox::Program kReader{
     "airtruth-model-reader", "AIRTRUTH_MODEL_READER", "the reader of 3D models"};
 constexpr std::size_t kMaxQuestionBytes = 65536;
 constexpr std::size_t kMaxQuestions = 200'000;
@@ -21,12 +21,12 @@ constexpr std::size_t kMaxSentBytes = std::size_t{1} << 30;  // of all files tog
 constexpr std::size_t kMaxHandedBackBytes =
     32 * kMaxCorners + 16 * kMaxTriangles + 4 * kMaxPixels + (std::size_t{64} << 20);
 
-void answer_kind(helper::HelperProcess& reader, DiskFiles& files, const std::string& path) {
+void answer_kind(sandbox::Process& reader, DiskFiles& files, const std::string& path) {
   const char kind = static_cast<char>(files.kind(path));
   reader.send(Message::kKind, std::string_view(&kind, 1));
 }
 
-void answer_file(helper::HelperProcess& reader,
+void answer_file(sandbox::Process& reader,
                  DiskFiles& files,
                  std::string_view question,
                  std::size_t& sent) {
@@ -43,12 +43,12 @@ void answer_file(helper::HelperProcess& reader,
   }
 }
 
-RawModel serve(helper::HelperProcess& reader, DiskFiles& files) {
+RawModel serve(sandbox::Process& reader, DiskFiles& files) {
   std::size_t sent = 0;
   for (std::size_t questions = 0; questions < kMaxQuestions; ++questions) {
     const Channel::Received received = reader.receive(kMaxHandedBackBytes);
     if (received.closed)
-      throw Error("cannot be read as a 3D model: " + helper::end_in_words(reader.end()));
+      throw Error("cannot be read as a 3D model: " + sandbox::end_in_words(reader.end()));
     switch (received.as<Message>()) {
       case Message::kAskKind:
         answer_kind(reader, files, received.bytes.substr(0, kMaxQuestionBytes));
@@ -69,11 +69,11 @@ RawModel serve(helper::HelperProcess& reader, DiskFiles& files) {
 
 }  // namespace
 
-fs::path model_reader_program() { return helper::path_of(kReader); }
+fs::path model_reader_program() { return sandbox::path_of(kReader); }
 
 RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions& options) {
   try {
-    helper::HelperProcess reader(kReader, options.stop);
+    sandbox::Process reader(kReader, options.stop);
     reader.set_deadline(kReaderSeconds,
                         "is not read within " + std::to_string(static_cast<int>(kReaderSeconds)) +
                             " s; a model that is whole takes a fraction of that");

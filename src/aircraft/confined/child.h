@@ -8,7 +8,7 @@
 #include "aircraft/wrapper/model_files.h"
 
 // Untrusted models are read in a child process, airtruth-model-reader, which can only return plain
-// arrays: see src/foundation/helper/confine.h.
+// arrays: see foundation/sandbox.
 namespace airtruth::aircraft {
 
 // The wall time in seconds after which the child is ended. Chosen: the largest aircraft of the

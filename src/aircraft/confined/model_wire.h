@@ -5,13 +5,13 @@
 #include <string_view>
 
 #include "aircraft/model/raw_model.h"
-#include "foundation/helper/wire.h"
+#include "foundation/sandbox/messages.h"
 
 // A RawModel as bytes, for the socket between the program and its reader and for the cache.
 namespace airtruth::aircraft {
 
-using helper::WireReader;
-using helper::WireWriter;
+using sandbox::WireReader;
+using sandbox::WireWriter;
 
 std::string bytes_of(const RawModel& model);
 

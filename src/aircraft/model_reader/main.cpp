@@ -2,9 +2,8 @@
 // airtruth-model-reader reads one 3D model for the program that started it and returns plain
 // arrays. Its standard input is a socket, through which it requests files by name and receives
 // them.
-#include <cstdlib>
-#include <exception>
-#include <new>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include <unistd.h>
@@ -14,7 +13,8 @@
 #include "aircraft/model_reader/other_formats.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
-#include "foundation/helper/confine.h"
+#include "foundation/sandbox/child.h"
+#include "foundation/sandbox/confine.h"
 
 namespace {
 
@@ -56,35 +56,24 @@ class AskedFiles : public ModelFiles {
   Channel& parent_;
 };
 
-void do_job(Channel& parent) {
-  try {
-    helper::confine({});
-    const Channel::Received received = parent.receive(kMaxMessageBytes);
-    if (received.closed || !received.is(Message::kJob)) return;
-    const ReaderJob job = job_from_bytes(received.bytes);
-    AskedFiles files(parent, job);
-    parent.send(
-        Message::kModel,
-        bytes_of(read_model(files, job.file, job.options, model_reader::append_other_format)));
-  } catch (const Error& error) {
-    parent.send(Message::kError, bytes_of(error));
-  } catch (const std::bad_alloc&) {
-    parent.send(Message::kError, bytes_of(Error("needs more memory than a model may take")));
-  } catch (const std::exception& error) {
-    parent.send(Message::kError,
-                bytes_of(Error(std::string("cannot be read as a 3D model: ") + error.what())));
-  }
+void read_for(Channel& parent) {
+  sandbox::confine({});
+  const Channel::Received received = parent.receive(kMaxMessageBytes);
+  if (received.closed || !received.is(Message::kJob)) return;
+  const ReaderJob job = job_from_bytes(received.bytes);
+  AskedFiles files(parent, job);
+  parent.send(
+      Message::kModel,
+      bytes_of(read_model(files, job.file, job.options, model_reader::append_other_format)));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2 || ::isatty(0) != 0) {
-    constexpr char kHint[] = "airtruth-model-reader is started by airtruth alone\n";
-    return ::write(2, kHint, sizeof(kHint) - 1) < 0 ? 1 : 2;
-  }
-  helper::end_with_parent(std::atoi(argv[1]));
-  helper::ToParent parent;
-  do_job(parent);
-  ::_exit(0);  // skips destructors, since sanitizers would open files at exit
+  constexpr sandbox::Faults kFaults{static_cast<std::uint8_t>(Message::kError),
+                                    "needs more memory than a model may take",
+                                    "cannot be read as a 3D model: "};
+  return sandbox::child_main(argc, argv, 0, [&](Channel& parent, std::span<char*>) {
+    sandbox::told(parent, kFaults, [&] { read_for(parent); });
+  });
 }

@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
-#include "foundation/helper/wire.h"
+#include "foundation/sandbox/messages.h"
 
 namespace airtruth::detection {
 namespace {
 
-constexpr helper::HelperProgram kRunner{
+constexpr sandbox::Program kRunner{
     "airtruth-network-runner", "AIRTRUTH_NETWORK_RUNNER", "which runs detectors' networks"};
 constexpr std::size_t kMostAnswerBytes = std::size_t{1} << 30;
 constexpr std::size_t kMostNameBytes = 1024;
@@ -21,7 +21,7 @@ constexpr std::size_t kMostOutputs = 16;
 }  // namespace
 
 std::string bytes_of(const NetworkJob& job) {
-  helper::WireWriter out;
+  sandbox::WireWriter out;
   out.put(static_cast<std::int32_t>(job.channels));
   for (const float mean : job.mean) out.put(mean);
   for (const float scale : job.scale) out.put(scale);
@@ -32,7 +32,7 @@ std::string bytes_of(const NetworkJob& job) {
 }
 
 NetworkJob job_from_bytes(std::string_view bytes) {
-  helper::WireReader in(bytes);
+  sandbox::WireReader in(bytes);
   NetworkJob job;
   job.channels = in.get<std::int32_t>();
   for (float& mean : job.mean) mean = in.get<float>();
@@ -53,7 +53,7 @@ NetworkChild::NetworkChild(const NetworkJob& job, int threads, std::stop_token s
 }
 
 std::vector<Tensor> NetworkChild::run(const Samples& samples) {
-  helper::WireWriter out;
+  sandbox::WireWriter out;
   out.put(static_cast<std::int32_t>(samples.width));
   out.put(static_cast<std::int32_t>(samples.height));
   out.put_raw(samples.values.data(), samples.values.size());
@@ -69,10 +69,10 @@ std::vector<Tensor> NetworkChild::run(const Samples& samples) {
 }
 
 std::string NetworkChild::answer(NetworkMessage wanted, const std::string& did_not) {
-  helper::Channel::Received received = process_.receive(kMostAnswerBytes);
-  if (received.closed) throw Error(did_not + ": " + helper::end_in_words(process_.end()));
+  sandbox::Channel::Received received = process_.receive(kMostAnswerBytes);
+  if (received.closed) throw Error(did_not + ": " + sandbox::end_in_words(process_.end()));
   if (received.is(NetworkMessage::kError)) {
-    throw Error(did_not + ": " + helper::error_from_bytes(received.bytes).message());
+    throw Error(did_not + ": " + sandbox::error_from_bytes(received.bytes).message());
   }
   if (!received.is(wanted)) throw Error("makes its reader say what it should not");
   return std::move(received.bytes);

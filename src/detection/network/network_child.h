@@ -9,7 +9,7 @@
 
 #include "detection/network/model_description.h"
 #include "detection/network/tensor.h"
-#include "foundation/helper/helper_process.h"
+#include "foundation/sandbox/sandbox.h"
 
 // A network in a child process, airtruth-network-runner, which can only return numbers: OpenCV's
 // reader of ONNX files was not written for files of strangers (docs/decisions/0035).
@@ -54,7 +54,7 @@ class NetworkChild {
  private:
   std::string answer(NetworkMessage wanted, const std::string& did_not);
 
-  helper::HelperProcess process_;
+  sandbox::Process process_;
 };
 
 }  // namespace airtruth::detection

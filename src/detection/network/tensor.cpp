@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
-#include "foundation/helper/wire.h"
+#include "foundation/sandbox/messages.h"
 
 namespace airtruth::detection {
 namespace {
@@ -28,7 +28,7 @@ std::string in_words(const std::vector<int>& shape) {
 }
 
 std::string bytes_of(const std::vector<Tensor>& tensors) {
-  helper::WireWriter out;
+  sandbox::WireWriter out;
   out.put(static_cast<std::uint64_t>(tensors.size()));
   for (const Tensor& tensor : tensors) {
     out.put(static_cast<std::uint64_t>(tensor.shape.size()));
@@ -40,7 +40,7 @@ std::string bytes_of(const std::vector<Tensor>& tensors) {
 }
 
 std::vector<Tensor> tensors_from_bytes(std::string_view bytes) {
-  helper::WireReader in(bytes);
+  sandbox::WireReader in(bytes);
   std::vector<Tensor> tensors(in.get_count(kMostTensors, 2 * sizeof(std::uint64_t)));
   for (Tensor& tensor : tensors) {
     tensor.shape.resize(in.get_count(kMostDimensions, sizeof(std::int32_t)));

@@ -6,8 +6,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <exception>
+#include <functional>
 #include <new>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -17,9 +18,9 @@
 
 #include "detection/network/network_child.h"
 #include "foundation/base/error.h"
-#include "foundation/helper/channel.h"
-#include "foundation/helper/confine.h"
-#include "foundation/helper/wire.h"
+#include "foundation/sandbox/child.h"
+#include "foundation/sandbox/confine.h"
+#include "foundation/sandbox/messages.h"
 
 namespace {
 
@@ -74,7 +75,7 @@ class Network {
   }
 
   std::vector<Tensor> run(std::string_view bytes) {
-    helper::WireReader in(bytes);
+    sandbox::WireReader in(bytes);
     const auto width = in.get<std::int32_t>();
     const auto height = in.get<std::int32_t>();
     net_.setInput(blob_of(in.rest(), width, height));
@@ -141,43 +142,39 @@ class Network {
   cv::dnn::Net net_;
 };
 
-// Calls `work` and tells the parent why where it fails. Returns whether it has succeeded.
+// Has OpenCV's exceptions say what a user can act on.
 template <typename Work>
-bool told(helper::Channel& parent, const Work& work) {
-  const auto failed = [&](const std::string& why) {
-    parent.send(NetworkMessage::kError, helper::bytes_of(Error(why)));
-    return false;
-  };
+void in_words(const Work& work) {
   try {
     work();
-    return true;
-  } catch (const Error& error) {
-    return failed(error.message());
-  } catch (const std::bad_alloc&) {
-    return failed("it needs more memory than a network may take");
   } catch (const cv::Exception& error) {
-    return failed(error.code == cv::Error::StsNoMem ? "it needs more memory than a network may take"
-                                                    : "OpenCV says: " + words_of(error));
-  } catch (const std::exception& error) {
-    return failed(error.what());
+    if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    throw Error("OpenCV says: " + words_of(error));
   }
 }
 
-void serve(helper::Channel& parent, int threads) {
+bool told(sandbox::Channel& parent, const std::function<void()>& work) {
+  constexpr sandbox::Faults kFaults{static_cast<std::uint8_t>(NetworkMessage::kError),
+                                    "it needs more memory than a network may take",
+                                    ""};
+  return sandbox::told(parent, kFaults, [&] { in_words(work); });
+}
+
+void serve(sandbox::Channel& parent, int threads) {
   std::optional<Network> network;
   const bool loaded = told(parent, [&] {
     start_threads(threads);
-    helper::confine(
+    sandbox::confine(
         {.memory_bytes = kMemoryBytes + static_cast<unsigned long>(threads) * kThreadBytes,
          .processor_s = 0});
-    const helper::Channel::Received received = parent.receive(kMaxMessageBytes);
+    const sandbox::Channel::Received received = parent.receive(kMaxMessageBytes);
     if (received.closed || !received.is(NetworkMessage::kLoad)) ::_exit(0);
     network.emplace(job_from_bytes(received.bytes));
     parent.send(NetworkMessage::kLoaded, {});
   });
   if (!loaded) return;
   for (;;) {
-    const helper::Channel::Received received = parent.receive(kMaxMessageBytes);
+    const sandbox::Channel::Received received = parent.receive(kMaxMessageBytes);
     if (received.closed || !received.is(NetworkMessage::kRun)) return;
     told(parent,
          [&] { parent.send(NetworkMessage::kOutputs, bytes_of(network->run(received.bytes))); });
@@ -187,16 +184,8 @@ void serve(helper::Channel& parent, int threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3 || ::isatty(0) != 0) {
-    constexpr char kHint[] = "airtruth-network-runner is started by airtruth alone\n";
-    return ::write(2, kHint, sizeof(kHint) - 1) < 0 ? 1 : 2;
-  }
-  helper::end_with_parent(std::atoi(argv[1]));
-  helper::ToParent parent;
-  try {
-    serve(parent, std::clamp(std::atoi(argv[2]), 1, kMostThreads));
-  } catch (const std::exception&) {
-    ::_exit(1);  // the parent reads the code
-  }
-  ::_exit(0);  // skips destructors, since sanitizers would open files at exit
+  return sandbox::child_main(
+      argc, argv, 1, [](sandbox::Channel& parent, std::span<char*> arguments) {
+        serve(parent, std::clamp(std::atoi(arguments[0]), 1, kMostThreads));
+      });
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/helper/late_library.h"
+#include "foundation/lazy_library/lazy_library.h"
 #include "picture/backdrop/backdrop.h"
 
 namespace airtruth::backdrop {
 
 std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& options) {
   static const auto open = *static_cast<const BackdropOpener*>(
-      helper::symbol_of({"airtruth-late-backdrop.so",
-                         "AIRTRUTH_LATE_BACKDROP",
-                         "the part with OpenGL for the method chroma-key"},
-                        kBackdropSymbol));
+      lazy_library::symbol_of({"airtruth-late-backdrop.so",
+                               "AIRTRUTH_LATE_BACKDROP",
+                               "the part with OpenGL for the method chroma-key"},
+                              kBackdropSymbol));
   return open(width, height, options);
 }
 

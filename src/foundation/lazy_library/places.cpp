@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/helper/places.h"
+#include "foundation/lazy_library/places.h"
 
 #include <dlfcn.h>
 
-namespace airtruth::helper {
+namespace airtruth::lazy_library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,4 +31,4 @@ std::vector<fs::path> places_of(const char* name) {
   return places;
 }
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::lazy_library

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-namespace airtruth::helper {
+namespace airtruth::lazy_library {
 
-// Where a helper program or a late library of this name may be, in the order of preference: beside
+// Where a child program or a lazy library of this name may be, in the order of preference: beside
 // this program, in ../libexec/airtruth from it, in PREFIX/libexec/airtruth for a libairtruth.so in
 // PREFIX/lib, or in the configured place of installation.
 std::vector<std::filesystem::path> places_of(const char* name);
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::lazy_library

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/helper/confine.h"
+#include "foundation/sandbox/confine.h"
 
 #include <cerrno>
 #include <cstddef>
@@ -11,7 +11,6 @@
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
-#include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -20,7 +19,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::helper {
+namespace airtruth::sandbox {
 namespace {
 
 #if defined(__x86_64__)
@@ -30,7 +29,7 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
 #elif defined(__riscv) && __riscv_xlen == 64
 constexpr std::uint32_t kMachine = AUDIT_ARCH_RISCV64;
 #else
-#error "state this machine's AUDIT_ARCH, so that a helper's system calls can be filtered"
+#error "state this machine's AUDIT_ARCH, so that a child's system calls can be filtered"
 #endif
 
 // System calls that reach nothing outside the process, whatever their arguments are.
@@ -51,13 +50,13 @@ constexpr int kFreeCalls[] = {__NR_brk,
                               __NR_rseq,
                               __NR_set_robust_list};
 
-using Program = std::vector<sock_filter>;
+using FilterCode = std::vector<sock_filter>;
 
-void add_statement(Program& program, std::uint16_t code, std::uint32_t value) {
+void add_statement(FilterCode& program, std::uint16_t code, std::uint32_t value) {
   program.push_back({code, 0, 0, value});
 }
 
-void add_jump(Program& program,
+void add_jump(FilterCode& program,
               std::uint16_t code,
               std::uint32_t value,
               std::uint8_t if_so,
@@ -71,16 +70,16 @@ constexpr std::uint32_t argument(std::uint32_t index) {  // its lower half; litt
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args)) + 8 * index;
 }
 
-void load_word(Program& program, std::uint32_t offset) {
+void load_word(FilterCode& program, std::uint32_t offset) {
   add_statement(program, BPF_LD | BPF_W | BPF_ABS, offset);
 }
 
-void give_answer(Program& program, std::uint32_t answer) {
+void give_answer(FilterCode& program, std::uint32_t answer) {
   add_statement(program, BPF_RET | BPF_K, answer);
 }
 
 // `call` is allowed where its argument, masked, has the value.
-void allow_where(Program& program,
+void allow_where(FilterCode& program,
                  int call,
                  std::uint32_t argument_index,
                  std::uint32_t mask,
@@ -94,7 +93,7 @@ void allow_where(Program& program,
 }
 
 // mmap is allowed for anonymous private memory that is not executable.
-void allow_own_memory(Program& program) {
+void allow_own_memory(FilterCode& program) {
   add_jump(program, BPF_JMP | BPF_JEQ | BPF_K, __NR_mmap, 0, 7);
   load_word(program, argument(2));
   add_jump(program, BPF_JMP | BPF_JSET | BPF_K, PROT_EXEC, 4, 0);
@@ -105,8 +104,8 @@ void allow_own_memory(Program& program) {
   give_answer(program, kDeny);
 }
 
-Program filter() {
-  Program program;
+FilterCode filter() {
+  FilterCode program;
   load_word(program, offsetof(seccomp_data, arch));
   add_jump(program, BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0);
   give_answer(program, SECCOMP_RET_KILL_PROCESS);
@@ -133,11 +132,6 @@ void limit(int what, unsigned long value) {
 
 }  // namespace
 
-void end_with_parent(int parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // the parent ended before the call above
-}
-
 void confine(const Limits& limits) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(AIRTRUTH_SANITIZED)
   limit(RLIMIT_AS, limits.memory_bytes);
@@ -147,7 +141,7 @@ void confine(const Limits& limits) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_NOFILE, 1);
   ::prctl(PR_SET_DUMPABLE, 0);
-  Program program = filter();
+  FilterCode program = filter();
   const sock_fprog code{static_cast<unsigned short>(program.size()), program.data()};
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
       ::syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &code) != 0)
@@ -156,4 +150,4 @@ void confine(const Limits& limits) {
                 std::strerror(errno));
 }
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::sandbox

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/helper/helper_process.h"
+#include "foundation/sandbox/sandbox.h"
 
 #include <array>
 #include <cerrno>
@@ -16,11 +16,11 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
-#include "foundation/helper/places.h"
+#include "foundation/lazy_library/places.h"
 
 extern "C" char** environ;
 
-namespace airtruth::helper {
+namespace airtruth::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,15 +46,13 @@ class Descriptor {
   int fd_;
 };
 
-[[noreturn]] void fail_to_start(const HelperProgram& program,
-                                int error,
-                                const fs::path& path = {}) {
+[[noreturn]] void fail_to_start(const Program& program, int error, const fs::path& path = {}) {
   throw Error(std::string(program.what) + " cannot be started: " + std::strerror(error),
               {path.string()});
 }
 
 // Moves a descriptor away from 0, 1 and 2, which the child's end of the socket is copied to.
-int moved_up(const HelperProgram& program, int fd) {
+int moved_up(const Program& program, int fd) {
   const int moved = ::fcntl(fd, F_DUPFD_CLOEXEC, kLowestOwnFd);
   const int error = errno;
   ::close(fd);
@@ -101,21 +99,21 @@ bool is_program(const fs::path& path) {
 
 }  // namespace
 
-fs::path path_of(const HelperProgram& program) {
+fs::path path_of(const Program& program) {
   if (const char* stated = std::getenv(program.variable); stated != nullptr && *stated != '\0') {
     if (!is_program(stated))
       throw Error(std::string("is what ") + program.variable + " names, but no program", {stated});
     return stated;
   }
-  for (const fs::path& candidate : places_of(program.name))
+  for (const fs::path& candidate : lazy_library::places_of(program.name))
     if (is_program(candidate)) return candidate;
   throw Error(std::string("the program ") + program.name + ", " + program.what +
               ", is not installed; install airtruth whole, or set " + program.variable + " to it");
 }
 
-HelperProcess::HelperProcess(const HelperProgram& program,
-                             std::stop_token stop,
-                             const std::vector<std::string>& arguments)
+Process::Process(const Program& program,
+                 std::stop_token stop,
+                 const std::vector<std::string>& arguments)
     : stop_(std::move(stop)) {
   std::array<int, 2> sockets{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
@@ -145,13 +143,13 @@ HelperProcess::HelperProcess(const HelperProgram& program,
   socket_ = ours.release();
 }
 
-void HelperProcess::set_deadline(double seconds, std::string late) {
+void Process::set_deadline(double seconds, std::string late) {
   deadline_ = Clock::now() +
               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   late_ = std::move(late);
 }
 
-int HelperProcess::end() {
+int Process::end() {
   if (process_ < 0) return 0;
   ::close(socket_);
   socket_ = -1;
@@ -164,7 +162,7 @@ int HelperProcess::end() {
 }
 
 template <typename Operation>
-std::size_t HelperProcess::transfer(short event, const Operation& operation) {
+std::size_t Process::transfer(short event, const Operation& operation) {
   for (;;) {
     if (stop_.stop_requested()) throw Interrupted();
     if (Clock::now() > deadline_) throw Error(late_);
@@ -177,11 +175,11 @@ std::size_t HelperProcess::transfer(short event, const Operation& operation) {
   }
 }
 
-std::size_t HelperProcess::read_some(char* data, std::size_t size) {
+std::size_t Process::read_some(char* data, std::size_t size) {
   return transfer(POLLIN, [&] { return ::recv(socket_, data, size, MSG_DONTWAIT); });
 }
 
-std::size_t HelperProcess::write_some(const char* data, std::size_t size) {
+std::size_t Process::write_some(const char* data, std::size_t size) {
   return transfer(POLLOUT,
                   [&] { return ::send(socket_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
 }
@@ -195,4 +193,4 @@ std::string end_in_words(int status) {
   return std::string("its reader broke on it (") + ::strsignal(signal) + ")";
 }
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::sandbox

@@ -9,34 +9,41 @@
 
 #include <sys/types.h>
 
-#include "foundation/helper/channel.h"
+#include "foundation/sandbox/messages.h"
 
-// A helper: a program of ours that reads an untrusted file in a child process, which can only
-// answer through its socket (docs/decisions/0013). Its end of the socket is ToParent.
-namespace airtruth::helper {
+// A program of ours that reads an untrusted file in a child process, which can only answer through
+// its socket (docs/decisions/0013). This is the parent's side; the child's is child.h, what it may
+// do is confine.h, and what both say to each other is messages.h.
+//
+//   sandbox::Process reader(kModelReader, stop);
+//   reader.set_deadline(20, "is not read within 20 s");
+//   reader.send(Message::kJob, bytes_of(job));
+//   const auto answer = reader.receive(kMaxAnswerBytes);
+//   if (answer.closed) throw Error(sandbox::end_in_words(reader.end()));
+namespace airtruth::sandbox {
 
-struct HelperProgram {
+struct Program {
   const char* name;      // airtruth-model-reader
   const char* variable;  // the environment variable that names another path
   const char* what;      // "the reader of 3D models", for messages
 };
 
-// The path of the program: the variable's value, else the first of its places (places.h). Throws
-// Error where none of these exists.
-std::filesystem::path path_of(const HelperProgram& program);
+// The path of the program: the variable's value, else the first of its places
+// (foundation/lazy_library). Throws Error where none of these exists.
+std::filesystem::path path_of(const Program& program);
 
 // The child and the parent's end of the socket. The destructor ends the child and waits for it. The
 // child has the socket as standard input, no other open file, and no Ctrl-C from the terminal; its
-// first argument is this process's number, for end_with_parent().
-class HelperProcess : public Channel {
+// first argument is this process's number.
+class Process : public Channel {
  public:
   // Throws Error where the program cannot be started.
-  HelperProcess(const HelperProgram& program,
-                std::stop_token stop,
-                const std::vector<std::string>& arguments = {});
-  ~HelperProcess() override { end(); }
-  HelperProcess(const HelperProcess&) = delete;
-  HelperProcess& operator=(const HelperProcess&) = delete;
+  Process(const Program& program,
+          std::stop_token stop,
+          const std::vector<std::string>& arguments = {});
+  ~Process() override { end(); }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
 
   // From now on, receive() and send() throw Error{late} after this time and Interrupted within
   // 0.1 s of a requested stop.
@@ -65,4 +72,4 @@ class HelperProcess : public Channel {
 // took too much time or memory and was ended", "its reader broke on it (Segmentation fault)".
 std::string end_in_words(int status);
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::sandbox

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/helper/late_library.h"
+#include "foundation/lazy_library/lazy_library.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -8,13 +8,13 @@
 #include <dlfcn.h>
 
 #include "foundation/base/error.h"
-#include "foundation/helper/places.h"
+#include "foundation/lazy_library/places.h"
 
-namespace airtruth::helper {
+namespace airtruth::lazy_library {
 namespace {
 
-// A program in the build folder knows the place of its late libraries as the dynamic linker does.
-std::string path_of(const LateLibrary& library) {
+// A program in the build folder knows the place of its lazy libraries as the dynamic linker does.
+std::string path_of(const Library& library) {
   if (const char* stated = std::getenv(library.variable); stated != nullptr && *stated != '\0')
     return stated;
   std::error_code ignored;
@@ -23,7 +23,7 @@ std::string path_of(const LateLibrary& library) {
   return library.name;
 }
 
-[[noreturn]] void fail(const LateLibrary& library) {
+[[noreturn]] void fail(const Library& library) {
   const char* reason = ::dlerror();
   throw Error(std::string(library.name) + ", " + library.what + ", cannot be loaded (" +
               (reason != nullptr ? reason : "no reason is known") +
@@ -32,7 +32,7 @@ std::string path_of(const LateLibrary& library) {
 
 }  // namespace
 
-void* symbol_of(const LateLibrary& library, const char* symbol) {
+void* symbol_of(const Library& library, const char* symbol) {
   void* loaded = ::dlopen(path_of(library).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (loaded == nullptr) fail(library);
   void* address = ::dlsym(loaded, symbol);
@@ -40,4 +40,4 @@ void* symbol_of(const LateLibrary& library, const char* symbol) {
   return address;
 }
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::lazy_library

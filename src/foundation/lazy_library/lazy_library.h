@@ -3,17 +3,17 @@
 
 // A shared library of ours that is loaded when it is first needed. The libraries that it depends on
 // would otherwise be loaded at the start of every command (docs/optimisations.md).
-namespace airtruth::helper {
+namespace airtruth::lazy_library {
 
-struct LateLibrary {
+struct Library {
   const char* name;      // airtruth-late-opencv.so
   const char* variable;  // the environment variable that names another path
   const char* what;      // "the part with OpenCV's trackers", for messages
 };
 
-// The address of a symbol. The library is looked for where path_of() looks for a helper program,
+// The address of a symbol. The library is looked for in its places (places.h),
 // then as the dynamic linker does. It stays loaded to the end of the process. Throws Error where
 // the library or the symbol is not there.
-void* symbol_of(const LateLibrary& library, const char* symbol);
+void* symbol_of(const Library& library, const char* symbol);
 
-}  // namespace airtruth::helper
+}  // namespace airtruth::lazy_library

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/lazy_library/lazy_library.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::lazy_library {
+namespace {
+
+std::string reason_of(const Library& library, const char* symbol) {
+  try {
+    symbol_of(library, symbol);
+    return {};
+  } catch (const Error& error) {
+    return error.message();
+  }
+}
+
+// The C library's mathematics stand for a library of ours, in the place that the variable names.
+TEST(LazyLibrary, GivesTheAddressOfASymbol) {
+  const Library library{"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"};
+  ::setenv("AIRTRUTH_TEST_LATE", "libm.so.6", 1);
+  EXPECT_EQ(reinterpret_cast<double (*)(double)>(symbol_of(library, "fabs"))(-3), 3);
+  EXPECT_THAT(reason_of(library, "no_such_function"), testing::HasSubstr("no_such_function"));
+  ::unsetenv("AIRTRUTH_TEST_LATE");
+}
+
+TEST(LazyLibrary, IsNamedWhereItIsNotThere) {
+  EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, "fabs"),
+              testing::AllOf(testing::HasSubstr("no-such.so, the tested part, cannot be loaded"),
+                             testing::HasSubstr("set AIRTRUTH_TEST_LATE to it")));
+}
+
+}  // namespace
+}  // namespace airtruth::lazy_library
