@@ -6,7 +6,7 @@
 
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/ac3d/ac_mesh.h"
-#include "aircraft/confined/model_wire.h"
+#include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

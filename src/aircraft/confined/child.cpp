@@ -5,8 +5,7 @@
 #include <string>
 
 #include "aircraft/ac3d/ac_file.h"
-#include "aircraft/confined/channel.h"
-#include "aircraft/confined/model_wire.h"
+#include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
 #include "foundation/sandbox/sandbox.h"
 

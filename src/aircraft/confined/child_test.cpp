@@ -15,8 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "aircraft/confined/channel.h"
-#include "aircraft/confined/model_wire.h"
+#include "aircraft/confined/protocol.h"
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/wrapper/model_files.h"
 #include "foundation/base/error.h"

@@ -2,9 +2,8 @@
 #include "aircraft/confined/model_cache.h"
 
 #include "aircraft/ac3d/ac_file.h"
-#include "aircraft/confined/channel.h"
 #include "aircraft/confined/child.h"
-#include "aircraft/confined/model_wire.h"
+#include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_stamp.h"
 #include "foundation/base/files.h"

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "aircraft/fleet/size_table.h"
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "aircraft/model/mesh.h"
@@ -49,5 +50,10 @@ void scale_mesh(Mesh& mesh, double factor);
 // "Cessna 172P: scaled by 1.142 to the published span of 11.00 m; the length is +7.2 % off (8.28
 // m)".
 std::string size_words(const Extents& loaded, double scale, const PublishedSize* published);
+
+// The content of data/aircraft-sizes/sizes.csv, which the build embeds in the program.
+// published_sizes() parses it; data/aircraft-sizes/README.md describes the columns and
+// the sources.
+std::string_view size_table();
 
 }  // namespace airtruth::aircraft

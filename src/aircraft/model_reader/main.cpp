@@ -8,8 +8,7 @@
 
 #include <unistd.h>
 
-#include "aircraft/confined/channel.h"
-#include "aircraft/confined/model_wire.h"
+#include "aircraft/confined/protocol.h"
 #include "aircraft/model_reader/other_formats.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"

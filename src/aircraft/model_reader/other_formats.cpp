@@ -3,18 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include "aircraft/model_reader/assimp_files.h"
+#include "aircraft/ac3d/ac_file.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 
@@ -25,11 +28,83 @@ namespace fs = std::filesystem;
 using aircraft::Assembly;
 using aircraft::Batch;
 using aircraft::ChoosePart;
+using aircraft::ModelFiles;
 using aircraft::PartChoice;
 
 constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
 constexpr int kMaxNodeDepth = 256;
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
+
+class MemoryStream : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  std::size_t Read(void* target, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+    if (whole > 0) std::memcpy(target, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET   ? 0
+                             : origin == aiOrigin_CUR ? at_
+                                                      : bytes_.size();
+    const std::size_t to = from + offset;  // modulo 2^64: an offset may be negative
+    if (to > bytes_.size()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+// Normalises a path as models spell it: "..\x.mtl", "./x.mtl".
+fs::path plain_path(const char* path) {
+  std::string text = path;
+  std::replace(text.begin(), text.end(), '\\', '/');
+  return fs::path(text).lexically_normal();
+}
+
+// The file system that assimp sees: the model's files, complete and read-only. The class records
+// the requested files that do not exist.
+class AssimpFiles : public Assimp::IOSystem {
+ public:
+  explicit AssimpFiles(ModelFiles& files) : files_(files) {}
+
+  bool Exists(const char* path) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+  const std::set<std::string>& missing() const { return missing_; }
+
+ private:
+  ModelFiles& files_;
+  std::set<std::string> missing_;
+};
+
+bool AssimpFiles::Exists(const char* path) const {
+  return files_.kind(plain_path(path)) == ModelFiles::Kind::kFile;
+}
+
+Assimp::IOStream* AssimpFiles::Open(const char* path, const char* mode) {
+  const std::filesystem::path plain = plain_path(path);
+  if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
+  if (files_.kind(plain) != ModelFiles::Kind::kFile) {
+    missing_.insert(plain.string());
+    return nullptr;
+  }
+  return new MemoryStream(files_.read(plain, aircraft::kMaxModelBytes));
+}
+
+void AssimpFiles::Close(Assimp::IOStream* stream) { delete stream; }
 
 float srgb_channel(float linear) {
   const float c = std::clamp(linear, 0.0f, 1.0f);

@@ -1,13 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/texture_file/picture.h"
 
+#include <memory>
 #include <string>
 
-#include "aircraft/texture_file/picture_kinds.h"
+#include <png.h>
+#include <turbojpeg.h>
+
+#include "aircraft/texture_file/picture_sgi.h"
+#include "aircraft/texture_file/picture_tga.h"
 #include "foundation/base/error.h"
 #include "foundation/base/huge_pages.h"
 
 namespace airtruth::aircraft {
+namespace {
+
+// libpng's own state, freed however the reading ends.
+class PngImage {
+ public:
+  PngImage() { image_.version = PNG_IMAGE_VERSION; }
+  ~PngImage() { png_image_free(&image_); }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
+  png_image* operator->() { return &image_; }
+  png_image* get() { return &image_; }
+  [[noreturn]] void fail() const {
+    throw Error(std::string("is a PNG file with a fault: ") + image_.message);
+  }
+
+ private:
+  png_image image_{};
+};
+
+bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+
+Picture read_png(std::string_view bytes, const PictureLimits& limits) {
+  PngImage image;
+  if (png_image_begin_read_from_memory(image.get(), bytes.data(), bytes.size()) == 0) image.fail();
+  Picture picture = blank_picture(image->width, image->height, limits);
+  image->format = PNG_FORMAT_RGBA;
+  // A negative stride: the last row of the file comes first.
+  const auto stride = -static_cast<png_int_32>(4 * picture.width);
+  if (png_image_finish_read(image.get(), nullptr, picture.rgba.data(), stride, nullptr) == 0)
+    image.fail();
+  return picture;
+}
+
+struct CloseJpeg {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+
+[[noreturn]] void fail_jpeg(void* handle) {
+  throw Error(std::string("is a JPEG file with a fault: ") + tjGetErrorStr2(handle));
+}
+
+bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
+
+Picture read_jpeg(std::string_view bytes, const PictureLimits& limits) {
+  const std::unique_ptr<void, CloseJpeg> handle(tjInitDecompress());
+  if (!handle) throw Error("is a JPEG file, for which libjpeg-turbo has no memory");
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const auto size = static_cast<unsigned long>(bytes.size());
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int colours = 0;
+  if (tjDecompressHeader3(handle.get(), data, size, &width, &height, &subsampling, &colours) != 0)
+    fail_jpeg(handle.get());
+  if (colours == TJCS_CMYK || colours == TJCS_YCCK)
+    throw Error("is a JPEG file of printing colours (CMYK); expected RGB or gray");
+  if (width <= 0 || height <= 0) throw Error("is a JPEG file without pixels");
+  Picture picture =
+      blank_picture(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), limits);
+  const int flags = TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS | TJFLAG_ACCURATEDCT;
+  if (tjDecompress2(
+          handle.get(), data, size, picture.rgba.data(), width, 0, height, TJPF_RGBA, flags) != 0)
+    fail_jpeg(handle.get());
+  return picture;
+}
+
+}  // namespace
 
 Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLimits& limits) {
   const auto side = static_cast<std::uint64_t>(limits.side_px);

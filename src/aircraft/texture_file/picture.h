@@ -29,4 +29,7 @@ struct PictureLimits {
 // have another format, are faulty or end early, or where the picture exceeds the limits.
 Picture read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
+// A black picture of that size. Throws Error, which names the exceeded limit, for a larger one.
+Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLimits& limits);
+
 }  // namespace airtruth::aircraft

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "aircraft/ac3d/batch.h"
+#include "aircraft/ac3d/ac_mesh.h"
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
 

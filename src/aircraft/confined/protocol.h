@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "aircraft/model/load_options.h"
+#include "aircraft/model/raw_model.h"
 #include "foundation/sandbox/messages.h"
 
 // The protocol between the program and airtruth-model-reader over one socket. A message has a kind,
@@ -16,6 +17,8 @@ namespace airtruth::aircraft {
 using sandbox::bytes_of;
 using sandbox::Channel;
 using sandbox::error_from_bytes;
+using sandbox::WireReader;
+using sandbox::WireWriter;
 
 enum class Message : std::uint8_t {
   kJob = 1,  // to the reader: bytes_of(ReaderJob)
@@ -36,5 +39,11 @@ struct ReaderJob {
 
 std::string bytes_of(const ReaderJob& job);
 ReaderJob job_from_bytes(std::string_view bytes);
+
+// A RawModel as bytes, for the socket and for the cache.
+std::string bytes_of(const RawModel& model);
+
+// Throws Error where the bytes are not exactly one model that passes check_model.
+RawModel model_from_bytes(std::string_view bytes);
 
 }  // namespace airtruth::aircraft
