@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr double kBegin = 2, kEnd = 3;
   double last_s = kBegin;
-  for (const auto& sample : airtruth::motion::gyro_from_gpmf({data, size}, kBegin, kEnd)) {
+  for (const auto& sample : airtruth::gyro::gyro_from_gpmf({data, size}, kBegin, kEnd)) {
     if (!(sample.time_s >= last_s && sample.time_s < kEnd)) std::abort();
     if (!sample.rate_radps.allFinite()) std::abort();
     last_s = sample.time_s;

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "camera/focal_length/lens_estimate.h"
+#include "camera/focal_length/lens_estimator.h"
 #include "camera/lens/calibration_file.h"
-#include "camera/lens/calibration_write.h"
 #include "cli/commands.h"
 #include "cli/picture_size.h"
 #include "foundation/base/error.h"
@@ -25,14 +24,14 @@ struct EstimateArguments {
   bool overwrite = false;
 };
 
-lens::Lens lens_of(const motion::LensEstimator::Result& found, lens::ImageSize size) {
+lens::Lens lens_of(const focal_length::LensEstimator::Result& found, lens::ImageSize size) {
   const Pixel focal(found.focal_px, found.focal_px);
   const Pixel middle(size.width / 2.0, size.height / 2.0);
   if (found.fisheye) return lens::Lens(lens::Fisheye{focal, middle, {0, 0, 0, 0}}, size);
   return lens::Lens(lens::Pinhole{focal, middle}, size);
 }
 
-std::string words_of(const motion::LensEstimator::Result& found) {
+std::string words_of(const focal_length::LensEstimator::Result& found) {
   return fmt::format(
       "{}, focal_px {:.1f} +- {:.1f}, {:.0f} to {:.0f} fit as well ({} turns of the camera; "
       "{:.2f} px left over, {:.2f} as a {})",
@@ -48,7 +47,7 @@ std::string words_of(const motion::LensEstimator::Result& found) {
 }
 
 // The result of an estimate: a file, or a table to copy.
-void hand_over(const motion::LensEstimator::Result& found,
+void hand_over(const focal_length::LensEstimator::Result& found,
                const std::string& why,
                lens::ImageSize size,
                const EstimateArguments& arguments,
@@ -79,7 +78,7 @@ void estimate(const EstimateArguments& arguments, Context& context) {
   const video::StreamInfo info = reader.info();
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  motion::LensEstimator estimator(info.width, info.height, mask ? &*mask : nullptr);
+  focal_length::LensEstimator estimator(info.width, info.height, mask ? &*mask : nullptr);
   while (const auto frame = reader.next()) {
     if (context.stop.stop_requested()) throw Interrupted();
     estimator.add(frame->picture, frame->begins_shot);

@@ -6,10 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "camera/focal_length/lens_estimate.h"
+#include "camera/focal_length/lens_estimator.h"
 #include "camera/gyro/gyro.h"
 #include "camera/lens/calibration_file.h"
 #include "camera/lens/lens.h"
+#include "camera/motion/estimator.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"

@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "camera/lens/calibration_file.h"
-#include "camera/motion/reach.h"
+#include "camera/motion/estimator.h"
+#include "camera/motion/shake.h"
 #include "camera/motion/stabilise.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
@@ -77,7 +78,7 @@ void check_outputs(const MotionArguments& arguments) {
   if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
 }
 
-void report_gyro(const std::optional<motion::GyroFit>& fit, bool has_gyro, Console& console) {
+void report_gyro(const std::optional<gyro::GyroFit>& fit, bool has_gyro, Console& console) {
   if (fit)
     console.result(
         fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
@@ -125,7 +126,7 @@ void measure(const MotionArguments& arguments, Context& context) {
       sequence::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
-  const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<motion::GyroSample>();
+  const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<gyro::GyroSample>();
   report_gyro(sequence::bridge_by_gyro(gyro, all), !gyro.empty(), console);
   all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
             ? motion::smoothed(all, options)

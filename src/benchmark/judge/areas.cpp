@@ -7,7 +7,7 @@
 
 #include <opencv2/ml.hpp>
 
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/base/median.h"
 #include "foundation/base/seed.h"
 
@@ -70,7 +70,7 @@ double area_of_judge(const std::vector<Patches>& train, const Patches& asked) {
     samples.push_back(rows_of(clip));
     for (const int real : clip.real) answers.push_back(real);
   }
-  const auto boost = late::opencv().boost();
+  const auto boost = opencv_plugin::functions().boost();
   boost->setBoostType(cv::ml::Boost::GENTLE);
   boost->setWeakCount(80);
   boost->setMaxDepth(2);

@@ -17,7 +17,7 @@
 #include <opencv2/tracking/tracking_legacy.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 
@@ -165,7 +165,7 @@ class Legacy : public Tracker {
     window_ = Window(least_px_ > 0 ? whole(box) : box, least_px_, frame_);
     const Box window = least_px_ > 0 ? whole(window_.window()) : window_.window();
     try {
-      broken_ = !late::opencv().init(
+      broken_ = !opencv_plugin::functions().init(
           *tracker_, frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
     } catch (const cv::Exception&) {
       broken_ = true;
@@ -176,7 +176,7 @@ class Legacy : public Tracker {
     const Answer answer = answer_of(
         [&](Box& box) {
           cv::Rect2d found;
-          if (!late::opencv().update(*tracker_, frame_, found)) return false;
+          if (!opencv_plugin::functions().update(*tracker_, frame_, found)) return false;
           box = window_.object_in({found.x, found.y, found.width, found.height});
           return true;
         },
@@ -251,7 +251,7 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   // A state of 0 would stay 0.
   const std::uint64_t state = seed * 2 + 1;
   if (!name.starts_with("opencv-")) return nullptr;
-  const late::OpenCv& opencv = late::opencv();
+  const opencv_plugin::Functions& opencv = opencv_plugin::functions();
   const auto modern = [&](auto make, double least_px = 0) {
     return std::make_unique<Modern>(make, state, least_px);
   };

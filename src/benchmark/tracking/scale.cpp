@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "benchmark/tracking/luma_window.h"
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/base/median.h"
 
 namespace airtruth::tracking {
@@ -80,7 +80,7 @@ Flow followed(const cv::Mat& before, const cv::Mat& after, const Points& points)
   // The search for a point ends after 30 rounds, or once it moves by less than 0.01 px; the last
   // number is the least eigenvalue of the normal matrix. All are OpenCV's defaults.
   const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01);
-  const auto flow = late::opencv().calc_optical_flow_pyr_lk;
+  const auto flow = opencv_plugin::functions().calc_optical_flow_pyr_lk;
   flow(before, after, points, there, found, unused, window, 2, enough, 0, 1e-4);
   flow(after, before, there, back, returned, unused, window, 2, enough, 0, 1e-4);
   std::vector<float> off;

@@ -13,6 +13,7 @@
 #include "calibration/sensor/noise.h"
 #include "calibration/sensor/readout.h"
 #include "camera/horizon/horizon.h"
+#include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"
@@ -243,7 +244,7 @@ class Session {
     const lens::ImageSize size{result_.width, result_.height};
     const lens::Lens lens =
         options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
-    const motion::HorizonFinder finder(lens, options_.own_aircraft);
+    const horizon::HorizonFinder finder(lens, options_.own_aircraft);
     const Horizons horizons = accepted_horizons(finder, sampled_, [this] { stop_if_asked(); });
     take_horizons(horizons);
     result_.sky_picture = tinted_sky(lens, sampled_, horizons.found);
@@ -256,7 +257,7 @@ class Session {
       if (first_from_level && cam_from_first)
         air.add(picture, *cam_from_first * *first_from_level);
       else if (!options_.lens && horizons.found[i])
-        air.add(picture, motion::cam_from_level(horizons.found[i]->up_in_cam));
+        air.add(picture, horizon::cam_from_level(horizons.found[i]->up_in_cam));
     }
     const Air measured = air.air(options_.stop);
     put(quantities().airlight, measured.airlight);
@@ -272,7 +273,7 @@ class Session {
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       const FoundHorizon& found = horizons.found[i];
       if (!found) continue;
-      const YawPitchRoll attitude = motion::attitude_from_up(found->up_in_cam);
+      const YawPitchRoll attitude = horizon::attitude_from_up(found->up_in_cam);
       result_.horizons.push_back(
           {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found->separation});
     }

@@ -9,7 +9,7 @@
 
 namespace airtruth::calibration {
 
-Horizons accepted_horizons(const motion::HorizonFinder& finder,
+Horizons accepted_horizons(const horizon::HorizonFinder& finder,
                            const std::vector<SampledFrame>& frames,
                            const std::function<void()>& before_each) {
   Horizons result;
@@ -58,7 +58,7 @@ std::optional<Quaternion> level_attitude(const std::vector<SampledFrame>& frames
     for (const Vector3& up : ups) values.push_back(up[axis]);
     middle[axis] = median(std::move(values));
   }
-  const Quaternion cam_from_heading = motion::cam_from_level(middle.normalized());
+  const Quaternion cam_from_heading = horizon::cam_from_level(middle.normalized());
   const Quaternion heading(Eigen::AngleAxisd(-radians(heading_deg), Vector3::UnitZ()));
   return cam_from_heading * heading;
 }

@@ -25,7 +25,7 @@ struct SampledFrame {
   std::optional<Quaternion> cam_from_first;
 };
 
-using FoundHorizon = std::optional<motion::HorizonFinder::Found>;
+using FoundHorizon = std::optional<horizon::HorizonFinder::Found>;
 
 struct Horizons {
   // One entry for each sampled frame, empty if its horizon is not accepted.
@@ -37,7 +37,7 @@ struct Horizons {
 // A horizon is accepted if it is a sharp line. If most frames show a sky whose boundary is not a
 // sharp line, the lines in the other frames are accidental too, and no horizon is accepted.
 // `before_each` is called before each frame and may throw to end the search.
-Horizons accepted_horizons(const motion::HorizonFinder& finder,
+Horizons accepted_horizons(const horizon::HorizonFinder& finder,
                            const std::vector<SampledFrame>& frames,
                            const std::function<void()>& before_each);
 

@@ -132,7 +132,7 @@ TEST(Horizon, LiesAlongHandMarkedOnes) {
       read_file(std::string(shared) + "/evision/horizon/HorizonLineData_1.txt"));
   const lens::ImageSize size{1280, 720};
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, size);
-  const motion::HorizonFinder finder(lens, nullptr);
+  const horizon::HorizonFinder finder(lens, nullptr);
   std::vector<double> off_px;
   int frames = 0, found = 0, line_number = 0;
   for (std::string line; std::getline(lines, line);) {

@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"

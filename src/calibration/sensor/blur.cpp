@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "camera/motion/corners.h"
-#include "camera/motion/differentiator.h"
+#include "camera/motion/shake.h"
 
 namespace airtruth::calibration {
 namespace {

@@ -8,7 +8,7 @@
 // GoPro's telemetry, GPMF: elements of a key, a type, the size of one structure, their count, and
 // the values, big-endian and padded to four bytes. Devices (DEVC) hold streams (STRM), and streams
 // hold values. Source: GoPro, "GPMF Introduction" (github.com/gopro/gpmf-parser, README).
-namespace airtruth::motion {
+namespace airtruth::gyro {
 
 struct GpmfElement {
   std::string_view key;
@@ -58,4 +58,4 @@ inline std::uint32_t big_endian(std::span<const std::uint8_t> data,
   return value;
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::gyro

@@ -7,8 +7,9 @@
 
 #include "camera/gyro/gpmf.h"
 #include "camera/motion/rotation_fit.h"
+#include "foundation/geometry/within_frame.h"
 
-namespace airtruth::motion {
+namespace airtruth::gyro {
 namespace {
 
 // The number of index `at`, big-endian. The types 's' and 'l' of GPMF have 16 and 32 bits.
@@ -59,10 +60,12 @@ struct Step {
   Vector3 rate;  // in cam
 };
 
-std::vector<Step> steps_of(const std::vector<FrameMotion>& motion) {
+std::vector<Step> steps_of(const std::vector<motion::FrameMotion>& motion) {
   std::vector<Step> steps;
   for (std::size_t k = 1; k < motion.size(); ++k) {
-    const auto good = [](State s) { return s == State::kMeasured || s == State::kReference; };
+    const auto good = [](motion::State s) {
+      return s == motion::State::kMeasured || s == motion::State::kReference;
+    };
     if (!motion[k].rotation || !good(motion[k].state) || !good(motion[k - 1].state)) continue;
     const double dt = motion[k].time_s - motion[k - 1].time_s;
     if (!(dt > 0)) continue;
@@ -77,7 +80,7 @@ std::vector<Step> steps_of(const std::vector<FrameMotion>& motion) {
 std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
                               const std::vector<Step>& steps,
                               double offset_s) {
-  std::vector<Bearings> pairs;
+  std::vector<motion::Bearings> pairs;
   Vector3 mean_gyro = Vector3::Zero(), mean_cam = Vector3::Zero();
   for (const Step& s : steps) {
     const auto rate = mean_rate(gyro, s.begin_s + offset_s, s.end_s + offset_s);
@@ -89,13 +92,13 @@ std::optional<GyroFit> fit_at(const std::vector<GyroSample>& gyro,
   if (pairs.size() < kMinSteps) return std::nullopt;
   mean_gyro /= double(pairs.size());
   mean_cam /= double(pairs.size());
-  for (Bearings& b : pairs) b.in_reference -= mean_gyro, b.in_cam -= mean_cam;
+  for (motion::Bearings& b : pairs) b.in_reference -= mean_gyro, b.in_cam -= mean_cam;
   GyroFit fit;
   fit.offset_s = offset_s;
-  fit.cam_from_gyro = best_rotation(pairs, std::vector<double>(pairs.size(), 1.0));
+  fit.cam_from_gyro = motion::best_rotation(pairs, std::vector<double>(pairs.size(), 1.0));
   fit.bias_radps = mean_cam - fit.cam_from_gyro * mean_gyro;
   double dot = 0, a = 0, b = 0, rest = 0;
-  for (const Bearings& p : pairs) {
+  for (const motion::Bearings& p : pairs) {
     const Vector3 turned = fit.cam_from_gyro * p.in_reference;
     dot += turned.dot(p.in_cam), a += turned.squaredNorm(), b += p.in_cam.squaredNorm();
     rest += (turned - p.in_cam).squaredNorm();
@@ -133,6 +136,8 @@ std::optional<GyroFit> best_fit(const std::vector<GyroSample>& gyro,
                                 const std::vector<Step>& steps,
                                 const OffsetRange& range,
                                 const IsWanted& is_wanted) {
+  // Spacing of the offsets that are tried, s: the coarse one is below a quarter of a period of a
+  // shake of 10 Hz, 0.025 s, and the fine one is the resolution of the result.
   constexpr double kCoarseS = 0.01, kFineS = 0.001;
   std::optional<GyroFit> best;
   const auto look = [&](const std::vector<Step>& at, double offset_s) {
@@ -173,7 +178,7 @@ std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
 }
 
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
-                                const std::vector<FrameMotion>& motion,
+                                const std::vector<motion::FrameMotion>& motion,
                                 const OffsetRange& range) {
   constexpr double kMinCorrelation = 0.5;  // chosen by judgement: half of the turning is explained
   const auto best = best_fit(gyro, steps_of(motion), range, [](double) { return true; });
@@ -181,7 +186,7 @@ std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
 }
 
 std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
-                                 const std::vector<FrameMotion>& motion,
+                                 const std::vector<motion::FrameMotion>& motion,
                                  const OffsetRange& range,
                                  const GyroFit& best,
                                  double apart_s) {
@@ -190,15 +195,15 @@ std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
   });
 }
 
-std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
-                                         const std::vector<GyroSample>& gyro,
-                                         const GyroFit& fit) {
-  std::vector<FrameMotion> result = motion;
+std::vector<motion::FrameMotion> bridged_by_gyro(const std::vector<motion::FrameMotion>& motion,
+                                                 const std::vector<GyroSample>& gyro,
+                                                 const GyroFit& fit) {
+  std::vector<motion::FrameMotion> result = motion;
   for (std::size_t k = 1; k < motion.size(); ++k) {
     // The rotation against the previous frame is measured where both are linked; otherwise the
     // motion continues from the end of the bridge.
-    if (motion[k].state == State::kMeasured && motion[k - 1].state != State::kCut) {
-      if (motion[k - 1].state != State::kBridged) {
+    if (motion[k].state == motion::State::kMeasured && motion[k - 1].state != motion::State::kCut) {
+      if (motion[k - 1].state != motion::State::kBridged) {
         result[k].rotation =
             (*motion[k].rotation * motion[k - 1].rotation->conjugate() * *result[k - 1].rotation)
                 .normalized();
@@ -217,4 +222,4 @@ std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
   return result;
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::gyro

@@ -7,7 +7,7 @@
 
 #include "camera/motion/motion.h"
 
-namespace airtruth::motion {
+namespace airtruth::gyro {
 
 // One measurement of a camera's gyroscope: the rates of rotation about the axes of the gyroscope,
 // whose directions in the camera are unknown.
@@ -44,21 +44,21 @@ struct OffsetRange {
 // squares; axes by Kabsch 1976). The result is empty where fewer than 40 measured steps contain a
 // rotation, or where the correlation is below 0.5.
 std::optional<GyroFit> fit_gyro(const std::vector<GyroSample>& gyro,
-                                const std::vector<FrameMotion>& motion,
+                                const std::vector<motion::FrameMotion>& motion,
                                 const OffsetRange& range = {});
 
 // The best fit whose offset is at least `apart_s` from that of `best`: where it correlates nearly
 // as well, the offset is ambiguous. Empty where nothing fits.
 std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
-                                 const std::vector<FrameMotion>& motion,
+                                 const std::vector<motion::FrameMotion>& motion,
                                  const OffsetRange& range,
                                  const GyroFit& best,
                                  double apart_s);
 
 // The motion with the rotation of unmeasured frames replaced by the gyroscope's. The frames after
 // such a bridge continue from its end. Replaced frames keep the state kBridged.
-std::vector<FrameMotion> bridged_by_gyro(const std::vector<FrameMotion>& motion,
-                                         const std::vector<GyroSample>& gyro,
-                                         const GyroFit& fit);
+std::vector<motion::FrameMotion> bridged_by_gyro(const std::vector<motion::FrameMotion>& motion,
+                                                 const std::vector<GyroSample>& gyro,
+                                                 const GyroFit& fit);
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::gyro

@@ -8,10 +8,12 @@
 
 #include "camera/horizon/horizon_edge.h"
 
-namespace airtruth::motion {
+namespace airtruth::horizon {
 namespace {
 
-constexpr int kAcross = 56;  // blocks along the longer side
+// Blocks along the longer side. Chosen by judgement. Twice as many take four times as long to look
+// at every attitude, and a block holds too few pixels for its texture.
+constexpr int kAcross = 56;
 // Both limits are chosen by judgement; a line that passes them must also be sharp
 // (HorizonFinder::kSharp).
 // The least share of the blocks on either side of the plane.
@@ -185,4 +187,4 @@ HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
   return {edge.up_in_cam, 0, edge.sharpness};
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

@@ -9,7 +9,7 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::motion {
+namespace airtruth::horizon {
 
 // Finds the horizon in one picture. Sky and ground are the two sides of a plane through the camera,
 // so the horizon may be a curve in the picture of a wide lens. find() first takes the plane that
@@ -65,4 +65,4 @@ YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
 // cam_from_level, where level is the north-east-down frame turned to the camera's yaw.
 Quaternion cam_from_level(const Vector3& up_in_cam);
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

@@ -6,7 +6,7 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::motion {
+namespace airtruth::horizon {
 
 struct HorizonEdge {
   Vector3 up_in_cam{0, -1, 0};
@@ -31,4 +31,4 @@ HorizonEdge horizon_edge_beside(const image::Picture& picture,
                                 const image::Mask* own_aircraft,
                                 const Vector3& guess_up_in_cam);
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

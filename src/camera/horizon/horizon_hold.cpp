@@ -5,14 +5,16 @@
 
 #include "foundation/geometry/within_frame.h"
 
-namespace airtruth::motion {
+namespace airtruth::horizon {
 namespace {
 
 // The variance of one sighting, rad^2. A detected horizon is off by 0.3 degrees (hills), and the
 // error is nearly the same half a second later. The factor 10 counts ten correlated sightings as
 // one independent sighting.
 const double kSightingVariance = 10 * std::pow(radians(0.3), 2);
-constexpr double kGate = 4;  // standard deviations beyond which a sighting is discarded
+// Standard deviations beyond which a sighting is discarded: one in 3,000 right ones (a Rayleigh
+// distribution).
+constexpr double kGate = 4;
 
 // The shortest rotation that maps one unit vector to another.
 Quaternion turn_between(const Vector3& from, const Vector3& to) {
@@ -72,4 +74,4 @@ Quaternion HorizonHold::held(const Quaternion& cam_from_reference) const {
   return (cam_from_reference * turn).normalized();
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

@@ -7,7 +7,7 @@
 
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::motion {
+namespace airtruth::horizon {
 
 // Corrects the drift of a measured rotation in pitch and roll by the horizons that are detected on
 // the way. Yaw is not observable. The filter (Kalman 1960) has two unknowns, each an angle in two
@@ -37,4 +37,4 @@ class HorizonHold {
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();  // of up and stray
 };
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

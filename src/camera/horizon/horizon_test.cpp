@@ -11,7 +11,7 @@
 
 // A horizon is a line that is sharp over the whole width. The tests draw pictures ray by ray from a
 // known attitude, and check that a boundary between two colours without such a line is refused.
-namespace airtruth::motion {
+namespace airtruth::horizon {
 namespace {
 
 constexpr int kSkyWidth = 640, kSkyHeight = 480;
@@ -175,4 +175,4 @@ TEST(Horizon, ATiltedBankOfCloudsIsRefused) {
 }
 
 }  // namespace
-}  // namespace airtruth::motion
+}  // namespace airtruth::horizon

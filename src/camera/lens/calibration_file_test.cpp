@@ -8,7 +8,6 @@
 #include <opencv2/core.hpp>
 #include <unistd.h>
 
-#include "camera/lens/calibration_write.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 

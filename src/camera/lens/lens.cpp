@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <string>
 
-#include "camera/lens/model_kind.h"
 #include "camera/lens/models.h"
 #include "foundation/base/error.h"
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 #include <vector>
 
+#include "foundation/base/enum_names.h"
 #include "foundation/geometry/transform.h"
 
 // A lens maps points in the camera frame (x right, y down, z forward; metres) to pixels, and pixels
@@ -56,6 +58,15 @@ struct Fisheye {
 };
 
 using Model = std::variant<Pinhole, BrownConrady, Fisheye>;
+
+// The models in the order of Model. Scenes and truth.jsonl use these names.
+enum class ModelKind { kPinhole, kBrownConrady, kFisheye };
+
+constexpr auto enum_names(ModelKind) {
+  return std::to_array<EnumName<ModelKind>>({{ModelKind::kPinhole, "pinhole"},
+                                             {ModelKind::kBrownConrady, "brown_conrady"},
+                                             {ModelKind::kFisheye, "fisheye"}});
+}
 
 // A lens with the size of the image for which it was calibrated. A Lens is immutable, and threads
 // may share it.

@@ -7,22 +7,30 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>  // constants alone
 
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 
 namespace airtruth::motion {
 namespace {
 
+// The pyramid levels above the picture itself, for a corner without a guess. On the coarsest, half
+// a window is 6 samples of 16 px, which bounds the motion between two frames to some 100 px. Twice
+// as many would make levels that are smaller than a window.
 constexpr int kPyramidLevels = 4;
 // The pyramid levels for a corner with a guessed position, which is good to a pixel or two.
 constexpr int kGuessedLevels = 1;
 // The pyramid levels for tracking back, which starts at the corner's original position.
 constexpr int kBackLevels = 1;
+// The side of the window around a corner, px. Chosen by judgement. Twice as wide, it takes four
+// times as long, and more windows hold both far and near objects, which move differently.
 constexpr int kWindowPx = 13;
-// Corners are spread over kGrid x kGrid cells.
+// Corners are spread over kGrid x kGrid cells. Chosen by judgement: with 16, a cell keeps two of
+// the 320 corners, and the weak ones of cells without texture displace strong ones.
 constexpr int kGrid = 8;
-// The least distance of a corner from the own aircraft.
+// The least distance of a corner from the own aircraft, px by row and by column: half a window, and
+// 3 px for an outline that is soft. Twice as much loses what is between parts of the own aircraft.
 constexpr int kMaskMarginPx = 9;
-// The limit on far corners per cell, as a multiple of the limit on other corners.
+// The limit on far corners per cell, as a multiple of the limit on other corners. Chosen by
+// judgement: the strip along the horizon has some 16 of the 64 cells, and half of the corners.
 constexpr int kFarInCell = 3;
 
 }  // namespace
@@ -38,14 +46,14 @@ cv::Mat luma_of(const image::Picture& picture) {
 
 Pyramid pyramid_of(const cv::Mat& grey) {
   Pyramid pyramid;
-  late::opencv().build_optical_flow_pyramid(grey,
-                                            pyramid,
-                                            cv::Size(kWindowPx, kWindowPx),
-                                            kPyramidLevels,
-                                            true,
-                                            cv::BORDER_REFLECT_101,
-                                            cv::BORDER_CONSTANT,
-                                            true);
+  opencv_plugin::functions().build_optical_flow_pyramid(grey,
+                                                        pyramid,
+                                                        cv::Size(kWindowPx, kWindowPx),
+                                                        kPyramidLevels,
+                                                        true,
+                                                        cv::BORDER_REFLECT_101,
+                                                        cv::BORDER_CONSTANT,
+                                                        true);
   return pyramid;
 }
 
@@ -140,17 +148,17 @@ std::vector<unsigned char> tracked(const Pyramid& from,
   constexpr double kMinEigenvalue = 1e-4;
   std::vector<unsigned char> found;
   std::vector<float> unused;
-  late::opencv().calc_optical_flow_pyr_lk(from,
-                                          to,
-                                          corners,
-                                          moved,
-                                          found,
-                                          unused,
-                                          {kWindowPx, kWindowPx},
-                                          levels,
-                                          enough,
-                                          guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
-                                          kMinEigenvalue);
+  opencv_plugin::functions().calc_optical_flow_pyr_lk(from,
+                                                      to,
+                                                      corners,
+                                                      moved,
+                                                      found,
+                                                      unused,
+                                                      {kWindowPx, kWindowPx},
+                                                      levels,
+                                                      enough,
+                                                      guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
+                                                      kMinEigenvalue);
   return found;
 }
 
@@ -178,6 +186,95 @@ std::vector<bool> follow(const Pyramid& from,
     good[i] = allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) != 0;
   }
   return good;
+}
+
+namespace {
+
+// Both constants are chosen by judgement; docs/optimisations.md has what other methods cost.
+constexpr std::size_t kFew = 64;
+// The longer side of the level on which a guess ends, in samples. A search there is good to a tenth
+// of a sample, and a search on the finest level reaches kPatchPx / 4 pixels.
+constexpr int kMaxGuessSide = 512;
+
+// `count` of `size` things, evenly spread.
+std::size_t spread(std::size_t i, std::size_t count, std::size_t size) { return i * size / count; }
+
+int guess_level(const Levels& levels) {
+  const int coarsest = static_cast<int>(levels.size()) - 1;
+  int level = std::min(1, coarsest);
+  const auto side = [&](int l) {
+    const cv::Mat& grey = levels[static_cast<std::size_t>(l)];
+    return std::max(grey.cols, grey.rows);
+  };
+  while (level < coarsest && side(level) > kMaxGuessSide) ++level;
+  return level;
+}
+
+}  // namespace
+
+void Steps::take(const Levels& levels, const std::vector<Pixel>& positions) {
+  cv::Mat finest = levels_.empty() ? cv::Mat() : levels_.front();
+  levels.front().copyTo(finest);  // the samples of the picture will be gone
+  levels_ = levels;
+  levels_.front() = finest;
+  corners_.clear();
+  const std::size_t count = std::min(kMaxSteps, positions.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pixel& position = positions[spread(i, count, positions.size())];
+    if (const auto patch = LevelPatch::around(levels, 0, position)) corners_.push_back(*patch);
+  }
+}
+
+// Follows a corner from the coarsest level to `finest`. A level on which it is not found is left
+// out, but for the last.
+std::optional<Step> Steps::follow(const Pixel& from, const Levels& now, int finest) const {
+  Pixel way(0, 0);
+  bool is_found = false;
+  for (int level = static_cast<int>(levels_.size()) - 1; level >= finest; --level) {
+    const auto patch = LevelPatch::around(levels_, level, from);
+    const auto at = patch ? patch->find(now, patch->middle() + way) : std::nullopt;
+    is_found = at.has_value();
+    if (is_found) way = *at - patch->middle();
+  }
+  if (!is_found) return std::nullopt;
+  return Step{from, from + way};
+}
+
+std::vector<Step> Steps::coarse(const Levels& now) const {
+  std::vector<Step> steps;
+  const int finest = guess_level(levels_);
+  const std::size_t count = std::min(kFew, corners_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const LevelPatch& corner = corners_[spread(i, count, corners_.size())];
+    if (const auto step = follow(corner.middle(), now, finest)) steps.push_back(*step);
+  }
+  return steps;
+}
+
+std::vector<Step> Steps::fine(const Levels& now, const Guess& guess) const {
+  std::vector<Step> steps;
+  for (const LevelPatch& corner : corners_)
+    if (const auto near = guess(corner.middle()))
+      if (const auto to = corner.find(now, *near)) steps.push_back({corner.middle(), *to});
+  return steps;
+}
+
+std::vector<Step> Steps::alone(const Levels& now,
+                               const cv::Mat& allowed,
+                               const Options& options) const {
+  // OpenCV's positions are those of the middles of samples.
+  constexpr float kHalf = 0.5f;
+  std::vector<cv::Point2f> from;
+  for (const LevelPatch& corner : corners_)
+    from.emplace_back(static_cast<float>(corner.middle().x()) - kHalf,
+                      static_cast<float>(corner.middle().y()) - kHalf);
+  std::vector<cv::Point2f> to;
+  const auto good = airtruth::motion::follow(
+      pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from, to, false, options);
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < good.size(); ++i)
+    if (good[i]) steps.push_back({corners_[i].middle(), Pixel(to[i].x + kHalf, to[i].y + kHalf)});
+  return steps;
 }
 
 }  // namespace airtruth::motion

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/estimator.h"
+
 #include "camera/horizon/horizon.h"
 #include "camera/horizon/horizon_hold.h"
 #include "camera/motion/corners.h"
 #include "camera/motion/follower.h"
-#include "camera/motion/motion.h"
+#include "camera/motion/planar.h"
+#include "camera/motion/spherical.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::motion {
@@ -39,18 +42,23 @@ class HorizonWatch {
   }
 
  private:
-  std::optional<HorizonFinder::Found> look(const image::Picture& picture,
-                                           const Quaternion& cam_from_reference) const {
+  std::optional<horizon::HorizonFinder::Found> look(const image::Picture& picture,
+                                                    const Quaternion& cam_from_reference) const {
     const auto expected = hold_.expected_up(cam_from_reference);
     if (expected && hold_.uncertainty_rad() < kLostRad) return finder_.follow(picture, *expected);
     return finder_.find(picture);
   }
 
+  // The time between two detections of the horizon, s. Chosen by judgement: the error of a
+  // detection is nearly the same within half a second (horizon_hold.cpp), so that more would tell
+  // little. While the rotation is uncertain, the pause is a third of it.
   static constexpr double kPause_s = 0.5;
   static constexpr double kPauseWhenLost_s = 0.15;
+  // The error of the rotation beyond which it is uncertain, rad: 1.1 degrees, since follow() looks
+  // for a horizon within 1.5 degrees. Doubled, follow() would miss horizons that find() finds.
   static constexpr double kLostRad = 0.02;
-  HorizonFinder finder_;
-  HorizonHold hold_;
+  horizon::HorizonFinder finder_;
+  horizon::HorizonHold hold_;
   std::optional<double> last_s_;
 };
 
@@ -94,22 +102,6 @@ FrameMotion Estimator::next(const image::Picture& picture,
   if (impl_->horizon)
     impl_->follower->set_up(impl_->horizon->hold(motion, picture, impl_->follower->stray_rad()));
   return motion;
-}
-
-const char* name(State state) {
-  switch (state) {
-    case State::kReference:
-      return "reference";
-    case State::kMeasured:
-      return "measured";
-    case State::kBridged:
-      return "bridged";
-    case State::kTurnedAway:
-      return "turned_away";
-    case State::kCut:
-      return "cut";
-  }
-  return "";
 }
 
 }  // namespace airtruth::motion

@@ -1,17 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "camera/motion/level_patch.h"
-#include "camera/motion/levels.h"
+#include <opencv2/core.hpp>
+
+#include "camera/lens/lens.h"
+#include "camera/motion/patch.h"
 #include "camera/motion/rotation_fit.h"
-#include "camera/motion/view.h"
+#include "foundation/geometry/transform.h"
 
 namespace airtruth::motion {
+
+// The directions that the pixels of a camera show, and where in its pictures corners are allowed.
+class View {
+ public:
+  // `allowed` is 255 where corners are allowed (corners.h).
+  View(lens::Lens lens, cv::Mat allowed) : lens_(std::move(lens)), allowed_(std::move(allowed)) {}
+
+  std::optional<Vector3> bearing(const Pixel& p) const { return lens_.ray_from_pixel(p); }
+  std::optional<Pixel> pixel(const Vector3& in_cam) const { return lens_.pixel_from_cam(in_cam); }
+  bool is_allowed(const Pixel& p) const {
+    const int x = static_cast<int>(std::floor(p.x()));
+    const int y = static_cast<int>(std::floor(p.y()));
+    return x >= 0 && y >= 0 && x < allowed_.cols && y < allowed_.rows &&
+           allowed_.at<unsigned char>(y, x) != 0;
+  }
+  const cv::Mat& allowed() const { return allowed_; }
+  double focal_px() const { return lens_.focal_px(); }
+
+ private:
+  lens::Lens lens_;
+  cv::Mat allowed_;
+};
 
 // A landmark of a key frame that was found in another frame.
 struct Sighting {
@@ -29,7 +55,7 @@ struct FitLimits {
   double limit_rad = 0;  // the largest residual of an inlier
   int min_inliers = 0;
   std::uint64_t seed = 0;
-  // The up direction in the reference camera, where a horizon is known (nearness.h).
+  // The up direction in the reference camera, where a horizon is known (rotation_fit.h).
   std::optional<Vector3> up_in_reference;
 
   Bearings bearings(const Vector3& in_reference, const Vector3& in_cam, std::int64_t frames) const;

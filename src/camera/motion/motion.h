@@ -3,16 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
-#include "camera/lens/lens.h"
+#include "foundation/disk_cache/disk_cache.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/geometry/within_frame.h"
-#include "foundation/image/layer.h"
-#include "foundation/image/picture.h"
 
 // The motion of the camera, measured from the video. The estimator selects strong corners (Shi and
 // Tomasi 1994) that are spread over the image outside the own aircraft. It tracks them by pyramidal
@@ -44,7 +40,7 @@ enum class State {
   // The scene changed: nothing links the frame to the frames before it. Its motion is extrapolated.
   kCut,
   // Homographies only: the camera has turned so far from the first frame that no plane map holds
-  // both pictures (reach.h). The motion is that of the last frame within reach.
+  // both pictures (ReachGuard). The motion is that of the last frame within reach.
   kTurnedAway,
 };
 // The name of a state in motion.csv: "reference", "measured", "bridged", "cut" or "turned_away".
@@ -88,48 +84,59 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-// Measures the motion frame by frame, in order. Its memory does not grow with the number of frames.
-// Only one thread at a time may use an Estimator.
-class Estimator {
- public:
-  // Model homography.
-  Estimator(int width,
-            int height,
-            const Options& options,
-            const image::Mask* own_aircraft = nullptr);
-  // Model rotation.
-  Estimator(const lens::Lens& lens,
-            const Options& options,
-            const image::Mask* own_aircraft = nullptr);
-  ~Estimator();
-  Estimator(Estimator&&) noexcept;
-  // The motion of the next frame against the first frame. The model homography reads the luma plane
-  // alone. A `damaged` frame is bridged. A frame that begins a shot (foundation/image/cuts.h) is a
-  // cut, unless most corners are tracked into it; this happens when an object suddenly covers a
-  // part of the view.
-  FrameMotion next(const image::Picture& picture,
-                   double time_s,
-                   bool damaged = false,
-                   bool begins_shot = false);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-// The motion of each frame against a Gaussian-smoothed camera path, which is the shake, from the
-// motion against the first frame. The function needs all frames at once (a few hundred bytes each).
-std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
-                                  const Options& options);
-
-// The shake of frame k and its change per second, from the neighbouring frames. Motion blur and a
-// rolling shutter are computed from it.
-Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k);
-
 // The text of motion.csv, and back. The columns are frame,time_s,h11,...,h33,inliers,rms_px,state
 // for homographies and frame,time_s,qw,qx,qy,qz,inliers,rms_px,state for rotations. Numbers
 // round-trip exactly.
 std::string csv_from_motion(const std::vector<FrameMotion>& motion);
 std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& name);
+
+// The limit of a homography. One plane shows only what lies ahead of the reference camera: for
+// a turn, the map of unit determinant from the frame to the reference has at a pixel the
+// denominator cos(a) / cos(b), where a and b are the angles of the pixel's ray from the axes of
+// reference and frame (Hartley and Zisserman, Multiple View Geometry, 13.2: H = K R K^-1). It is
+// independent of the focal length. Where it is not above 0 the pixel's ray leaves the reference
+// camera backward, and the plane shows it somewhere else; shortly before that a pixel of the frame
+// is stretched over hundreds on the plane.
+//
+// A frame with such a pixel is not measured against the reference, even where its motion against
+// its neighbours is known. It gets the state kTurnedAway and the motion of the last frame within
+// reach.
+class ReachGuard {
+ public:
+  ReachGuard(int width, int height) : width_(width), height_(height) {}
+
+  // In order of time, against the first frame. A rotation has no such limit and is left as it is.
+  FrameMotion next(FrameMotion motion);
+
+ private:
+  int width_;
+  int height_;
+  std::optional<FrameMotion> last_;
+};
+
+// The same for all frames of a clip.
+std::vector<FrameMotion> within_reach(std::vector<FrameMotion> against_first,
+                                      int width,
+                                      int height);
+
+// Measured motion in a cache. The motion of a frame depends on earlier frames only, so the motion
+// of a longer clip also serves a shorter one.
+struct CacheKey {
+  std::string video_sha256;
+  std::string mask_sha256;  // "" without a mask
+  std::int64_t first_frame = 0;
+  std::int64_t frame_count = -1;  // -1: to the end
+  std::string lens;               // the lens's parameters as text; "" for the model homography
+  Options options;
+  // Everything but frame_count.
+  disk_cache::Key entry() const;
+};
+
+// The motion of exactly the frames of the key. Empty where the cache does not hold all of them.
+std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache, const CacheKey& key);
+// Keeps the motion, unless the cache already holds more frames for this key.
+void store(const disk_cache::Cache& cache,
+           const CacheKey& key,
+           const std::vector<FrameMotion>& motion);
 
 }  // namespace airtruth::motion

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
 namespace airtruth::motion {
 namespace {
 
@@ -21,12 +23,13 @@ constexpr std::array<std::int16_t, kPatchPx * kPatchPx> weights() {
   return all;
 }
 constexpr std::array<std::int16_t, kPatchPx* kPatchPx> kWeight = weights();
-constexpr double kWeightOfAll = 52.0 * 52.0;
+constexpr double kWeightOfAll = 52.0 * 52.0;  // the sum of kWeight
 // The least eigenvalue of the normal matrix, per sample, in squared code values per sample.
 constexpr double kMinEigenvalue = 0.2;
 // The variance of the difference of two pictures by noise alone, in squared code values: that of a
 // cheap camera.
 constexpr double kNoiseVariance = 4;
+// Rounds of a search at most. Chosen by judgement; twice as many cost time where nothing is found.
 constexpr int kMaxRounds = 8;
 // A search ends after a step of less than this many samples: the next step would be shorter by an
 // order of magnitude.
@@ -162,6 +165,59 @@ std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, dou
     return Found{x, y, std::sqrt(std::max(0.0, variance - kNoiseVariance)) / contrast_};
   }
   return std::nullopt;
+}
+
+Levels levels_of(const cv::Mat& grey) {
+  // The coarsest level has at least this many samples on its shorter side: a patch is a third of
+  // it.
+  constexpr int kMinSide = 48;
+  Levels levels{grey};
+  while (std::min(levels.back().cols, levels.back().rows) / 2 >= kMinSide) {
+    const cv::Mat& fine = levels.back();
+    const cv::Mat even = fine(cv::Rect(0, 0, fine.cols / 2 * 2, fine.rows / 2 * 2));
+    cv::Mat half;
+    cv::resize(even, half, {even.cols / 2, even.rows / 2}, 0, 0, cv::INTER_AREA);
+    levels.push_back(std::move(half));
+  }
+  return levels;
+}
+
+namespace {
+
+// A patch is found where what remains is at most this share of the patch's contrast.
+constexpr double kMaxUnlikeness = 0.7;
+
+double scale_of(int level) { return static_cast<double>(1 << level); }
+
+}  // namespace
+
+std::optional<LevelPatch> LevelPatch::around(const Levels& levels,
+                                             int level,
+                                             const Pixel& position) {
+  const cv::Mat& grey = levels[static_cast<std::size_t>(level)];
+  const auto first_of = [&](double p) {
+    return static_cast<int>(std::lround(p / scale_of(level))) - kPatchPx / 2;
+  };
+  cv::Point first(first_of(position.x()), first_of(position.y()));
+  if (level > 0) {
+    first.x = std::max(1, std::min(first.x, grey.cols - kPatchPx - 1));
+    first.y = std::max(1, std::min(first.y, grey.rows - kPatchPx - 1));
+  }
+  const auto patch = Patch::at(grey, first.x, first.y);
+  if (!patch) return std::nullopt;
+  return LevelPatch(level, first, *patch);
+}
+
+Pixel LevelPatch::middle() const {
+  return scale_of(level_) * Pixel(first_.x + kPatchPx / 2, first_.y + kPatchPx / 2);
+}
+
+std::optional<Pixel> LevelPatch::find(const Levels& levels, const Pixel& guess) const {
+  const Pixel half(kPatchPx / 2, kPatchPx / 2);
+  const Pixel first = guess / scale_of(level_) - half;
+  const auto found = patch_.find(levels[static_cast<std::size_t>(level_)], first.x(), first.y());
+  if (!found || found->unlikeness > kMaxUnlikeness) return std::nullopt;
+  return scale_of(level_) * (Pixel(found->x, found->y) + half);
 }
 
 }  // namespace airtruth::motion

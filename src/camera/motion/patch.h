@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -51,6 +52,32 @@ class Patch {
   double mean_slope_x_ = 0, mean_slope_y_ = 0;               // weighted, of the differences
   double inverse_xx_ = 0, inverse_xy_ = 0, inverse_yy_ = 0;  // of the normal matrix of the slopes
   double contrast_ = 0;  // root mean square about the mean, in code values
+};
+
+// A picture at half, quarter, ... of its size. Level 0 shares the samples of the picture. A sample
+// of level n + 1 is the mean of two by two samples of level n, so a position p in pixels of the
+// picture (corner origin) is p / 2^n in samples of level n.
+using Levels = std::vector<cv::Mat>;
+Levels levels_of(const cv::Mat& grey);
+
+// A patch of one level of a picture. Its positions are those of its middle, in pixels of the
+// picture (corner origin).
+class LevelPatch {
+ public:
+  // The patch around the whole sample nearest to a position. On a coarse level a patch at the rim
+  // is moved inward, so that its middle is elsewhere. Empty where Patch::at() is.
+  static std::optional<LevelPatch> around(const Levels& levels, int level, const Pixel& position);
+
+  Pixel middle() const;
+  // The position in another picture, from a guess. Empty where nothing similar is found.
+  std::optional<Pixel> find(const Levels& levels, const Pixel& guess) const;
+
+ private:
+  LevelPatch(int level, const cv::Point& first, const Patch& patch)
+      : level_(level), first_(first), patch_(patch) {}
+  int level_;
+  cv::Point first_;  // sample of the patch
+  Patch patch_;
 };
 
 }  // namespace airtruth::motion

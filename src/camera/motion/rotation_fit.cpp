@@ -12,14 +12,24 @@
 namespace airtruth::motion {
 namespace {
 
+// At most: enough for kConfidence where 17 % of the points are inliers (trials_for()).
 constexpr int kMaxTrials = 300;
+// The probability that a pair of inliers is among the trials. Chosen: a failure in 10,000 frames.
 constexpr double kConfidence = 0.9999;
-constexpr int kRefinements = 12;  // at most
+// At most. The scale of the weights shrinks to its end in four of them, and the rest settle.
+constexpr int kRefinements = 12;
 // A refinement that turns by less than this share of the limit is the last: the next would be
 // smaller.
 constexpr double kSettledShare = 1e-4;
+// The least share of all points that turns as one. Chosen by judgement: half of a scene may be near
+// ground, and clouds take more. Doubled, frames with much near ground are not measured.
 constexpr double kMinTurnShare = 0.15;
-constexpr double kMinSpreadRad = 0.02;  // rms distance of the inliers from their mean direction
+// The least rms distance of the inliers from their mean direction, rad: 1.1 degrees. The rotation
+// about that direction has the error of a bearing over this distance, so 50 times that of a
+// bearing.
+constexpr double kMinSpreadRad = 0.02;
+// The least angle between the two directions of a pair, rad (its sine): the error about their
+// middle is that of a bearing over half of it, so up to 40 times that of a bearing.
 constexpr double kShortestBaseRad = 0.05;
 constexpr int kFarSteps = 4;  // of kRefinements: the steps that use far points alone
 

@@ -1,13 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "camera/motion/nearness.h"
+#include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 
+// The weights of near points. While the camera flies, near ground moves against far points
+// (parallax), and an intruder moves with the far points. Over level ground the parallax of a point
+// is at most (distance flown / height) x sine of its depression below the horizon, because its
+// range is height / sine. The amount of parallax is estimated from the corners themselves.
 namespace airtruth::motion {
+
+// The depression below the horizon, in degrees, under which ground counts as far: its range is then
+// 14 heights or more. At 25 m/s and a height of 50 m such ground moves by 0.05 mrad per frame of
+// 1/30 s against the horizon.
+constexpr double kFarDepressionDeg = 4;
+
+struct Nearness {
+  // The sine of the depression times the number of frames between two views. It is 0 above the
+  // horizon, and where the horizon is unknown.
+  double value = 0;
+  bool is_far = true;  // above the horizon or less than kFarDepressionDeg under it
+};
+
+// The ray and the up direction are in the same camera frame; up is a unit vector.
+inline Nearness nearness_of(const Vector3& ray_in_any,
+                            const Vector3& up_in_any,
+                            std::int64_t frames) {
+  const double sine = std::max(0.0, -up_in_any.dot(ray_in_any) / ray_in_any.norm());
+  return {sine * static_cast<double>(frames), sine < std::sin(radians(kFarDepressionDeg))};
+}
+
+// Estimates the variance that parallax adds to the squared residual of two coordinates, per squared
+// nearness: the median over the near points of their squared residual beyond noise. It is 0 where
+// there are no near points.
+class Parallax {
+ public:
+  explicit Parallax(double noise) : noise_(noise) {}
+  void add(double squared_miss, const Nearness& near) {
+    if (!near.is_far)
+      ratios_.push_back(std::max(0.0, squared_miss - 2 * noise_ * noise_) /
+                        (near.value * near.value));
+  }
+  double variance() {
+    // Mean over median of chi squared with two degrees of freedom.
+    constexpr double kMeanOverMedian = 2 / 1.386;
+    return ratios_.empty() ? 0 : kMeanOverMedian * median(std::move(ratios_));
+  }
+
+ private:
+  double noise_;
+  std::vector<double> ratios_;
+};
+
+// The weight of a point: (noise / (noise + parallax))^2, both as variances, times the weight of
+// Geman and McClure (1987) against outliers. The ratio is squared because the parallax of
+// neighbours is correlated and does not average out. Ground without parallax has full weight, as
+// below a camera at great height or at rest.
+inline double weight_of(
+    double squared_miss, double noise, double scale, double limit, double of_parallax) {
+  if (squared_miss > limit * limit + 4 * of_parallax) return 0;
+  const double share = noise * noise / (noise * noise + of_parallax);
+  const double e = squared_miss / (scale * scale + of_parallax);
+  return share * share / ((1 + e) * (1 + e));
+}
 
 // The directions of a point in two frames, as unit vectors.
 struct Bearings {
@@ -31,7 +92,7 @@ struct RotationFit {
 //
 // Where enough points are far, the far points alone determine the rotation with which the fit
 // starts. The parallax of the near points is then measured, and it reduces their weights
-// (nearness.h).
+// (rotation_fit.h).
 std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
                                         double limit_rad,
                                         int min_inliers,

@@ -8,6 +8,7 @@
 #include "camera/horizon/horizon_hold.h"
 #include "camera/motion/motion.h"
 #include "camera/motion/rotation_fit.h"
+#include "camera/motion/shake.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 
@@ -146,14 +147,14 @@ double off_level_deg(const Quaternion& measured, const Quaternion& truth, const 
 
 // A key frame per second for two hours, each linked with an error of a fiftieth of a degree, drifts
 // by more than a degree in all. The horizons are accurate to a third of a degree.
-TEST(HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
+TEST(horizon::HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
   Random random(5);
   const auto noise = [&](double sigma_deg) {
     return turn(0, sigma_deg * random.normal(), sigma_deg * random.normal());
   };
   const Vector3 up = Vector3(0.1, -1, 0.2).normalized();
   for (const double sigma_deg : {0.02, 0.0}) {
-    HorizonHold hold;
+    horizon::HorizonHold hold;
     Quaternion error = Quaternion::Identity();
     double worst_free = 0, worst_held = 0;
     for (int k = 0; k < 7200; ++k) {
@@ -174,9 +175,9 @@ TEST(HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
   }
 }
 
-TEST(HorizonHold, PutsRightWhatWasLostAndForgetsWhatCannotBe) {
+TEST(horizon::HorizonHold, PutsRightWhatWasLostAndForgetsWhatCannotBe) {
   const Vector3 up = Vector3(0, -1, 0.1).normalized();
-  HorizonHold hold;
+  horizon::HorizonHold hold;
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(hold.see(Quaternion::Identity(), up));
   // A line in another place, which is straight and level as well.
   EXPECT_FALSE(hold.see(Quaternion::Identity(), turn(0, 0, 25) * up));
@@ -196,13 +197,14 @@ TEST(Gpmf, AGyroStreamIsRead) {
   const auto stream =
       element("STRM", 0, 1, static_cast<std::uint16_t>(stream_data.size()), stream_data);
   const auto packet = element("DEVC", 0, 1, static_cast<std::uint16_t>(stream.size()), stream);
-  const auto samples = gyro_from_gpmf(packet, 2, 3);
+  const auto samples = gyro::gyro_from_gpmf(packet, 2, 3);
   ASSERT_EQ(samples.size(), 2u);
   EXPECT_DOUBLE_EQ(samples[0].time_s, 2.25);
   EXPECT_TRUE(samples[0].rate_radps.isApprox(Vector3(1, -1, 0.5)));
   EXPECT_TRUE(samples[1].rate_radps.isApprox(Vector3(0, 0, 2)));
   // A packet that is cut off anywhere is read up to that place or not at all.
-  for (std::size_t n = 0; n < packet.size(); ++n) gyro_from_gpmf(std::span(packet).first(n), 0, 1);
+  for (std::size_t n = 0; n < packet.size(); ++n)
+    gyro::gyro_from_gpmf(std::span(packet).first(n), 0, 1);
 }
 
 TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
@@ -210,7 +212,7 @@ TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
   const Quaternion gyro_from_cam = turn(90, 0, 180);
   const Vector3 bias(0.01, -0.02, 0.005);
   const double offset_s = 0.137;
-  std::vector<GyroSample> gyro;
+  std::vector<gyro::GyroSample> gyro;
   for (int i = 0; i < 2000; ++i) {
     const double t = i / 400.0 - 0.3;
     const double h = 1e-4;
@@ -220,7 +222,7 @@ TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
     const Vector3 in_cam = -vector_from_rotation(at(t + h) * at(t - h).conjugate()) / (2 * h);
     gyro.push_back({t + offset_s, gyro_from_cam * (in_cam - bias)});
   }
-  const auto fit = fit_gyro(gyro, motion);
+  const auto fit = gyro::fit_gyro(gyro, motion);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->offset_s, offset_s, 0.003);
   EXPECT_GT(fit->correlation, 0.98);
@@ -230,7 +232,7 @@ TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
     motion[k].state = State::kBridged;
     motion[k].rotation = motion[59].rotation;
   }
-  const auto bridged = bridged_by_gyro(motion, gyro, *fit);
+  const auto bridged = gyro::bridged_by_gyro(motion, gyro, *fit);
   for (std::size_t k = 60; k < 66; ++k) {
     const double carried_on = degrees(motion[k].rotation->angularDistance(*truth[k].rotation));
     const double by_gyro = degrees(bridged[k].rotation->angularDistance(*truth[k].rotation));

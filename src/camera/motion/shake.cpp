@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/shake.h"
+
+#include <algorithm>
 #include <cmath>
 
-#include "camera/motion/differentiator.h"
+#include <unsupported/Eigen/MatrixFunctions>
+
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::motion {
-
 namespace {
 
+// The number of frames on each side from which a rate is computed. With 8 the differentiator keeps
+// most of a shake of 10 Hz at 30 frames/s (differentiator_weight()); a cut within that many frames
+// shortens it. Doubled, it would keep a little more and join motions that are half a second apart.
 constexpr int kReach = 8;
 
 bool is_away(const FrameMotion& motion) { return motion.state == State::kTurnedAway; }
@@ -66,6 +72,116 @@ Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
   else if (k > 0 && goes_on(motion, k))
     add(k - 1, -1 / (now.time_s - motion[k - 1].time_s));
   return shake;
+}
+
+namespace {
+
+Homography unit_determinant(const Homography& h) {
+  // The cube root keeps the sign. A scale of h33 = 1 turns H into -H beyond a turn of 90 degrees.
+  const double d = h.determinant();
+  return d != 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
+}
+
+// The map between neighbouring frames, b_from_a, from the composed maps.
+Homography step(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+  return unit_determinant(motion[to].frame_from_reference *
+                          motion[from].frame_from_reference.inverse());
+}
+
+// The rotation of frame `to` against frame `from`, as a rotation vector.
+Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+  const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
+  return turned.angle() * turned.axis();
+}
+
+// The same on the group of rotations. Here every frame of the window is compared with frame k
+// directly.
+void smooth_rotations(const std::vector<FrameMotion>& against_first,
+                      double sigma_s,
+                      std::vector<FrameMotion>& result) {
+  for (std::size_t k = 0; k < against_first.size(); ++k) {
+    Vector3 sum = Vector3::Zero();
+    double total = 1;
+    const auto add = [&](std::size_t i) {
+      const double dt = (against_first[i].time_s - against_first[k].time_s) / sigma_s;
+      if (std::abs(dt) > 2.5) return false;
+      const double weight = std::exp(-0.5 * dt * dt);
+      sum += weight * turn(against_first, k, i);
+      total += weight;
+      return true;
+    };
+    for (std::size_t i = k + 1; i < against_first.size(); ++i)
+      if (against_first[i].state == State::kCut || !add(i)) break;
+    for (std::size_t i = k; i > 0; --i)
+      if (against_first[i].state == State::kCut || !add(i - 1)) break;
+    const Vector3 steady = sum / total;
+    const double angle = steady.norm();
+    result[k].rotation =
+        angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle)) : Quaternion::Identity();
+  }
+}
+
+// The weighted sum over the neighbours of a frame.
+struct NeighbourSum {
+  Homography sum = Homography::Zero();
+  double weight = 1;  // of the frame itself, whose logarithm is zero
+};
+
+// Adds the neighbours of frame k in one direction: log(i_from_k) with a Gaussian weight in time.
+void add_neighbours(const std::vector<FrameMotion>& against_first,
+                    std::size_t k,
+                    int direction,
+                    double sigma_s,
+                    NeighbourSum& all) {
+  // Where the Gaussian ends, in standard deviations: its weight there is 0.04.
+  constexpr double kMaxSigmas = 2.5;
+  Homography i_from_k = Homography::Identity();
+  std::size_t i = k;
+  while (direction > 0 ? i + 1 < against_first.size() : i > 0) {
+    const std::size_t next = direction > 0 ? i + 1 : i - 1;
+    if (against_first[std::max(i, next)].state == State::kCut) return;
+    const double dt = (against_first[next].time_s - against_first[k].time_s) / sigma_s;
+    if (std::abs(dt) > kMaxSigmas) return;
+    i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
+    const double weight = std::exp(-0.5 * dt * dt);
+    // The logarithm of a matrix near the identity, to third order. This is exact enough in the
+    // window.
+    const Homography e = i_from_k - Homography::Identity();
+    const Homography log =
+        e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3) : Homography(i_from_k.log());
+    if (!log.allFinite()) return;
+    all.sum += weight * log;
+    all.weight += weight;
+    i = next;
+  }
+}
+
+}  // namespace
+
+// The neighbours i of frame k are compared with it by i_from_k. The steady camera is the one for
+// which the weighted mean of log(i_from_k) is zero: steady_from_k = exp(sum w_i log(i_from_k)), a
+// first-order mean on the group of homographies (Fletcher 2004). The frame's shake is the inverse.
+// Only maps between frames that are close in time are used, since no homography describes a long
+// turn. Nothing is smoothed across a cut.
+std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
+                                  const Options& options) {
+  check(options.smoothing_s > 0, "smoothing takes time");
+  std::vector<FrameMotion> result = against_first;
+  const std::size_t n = against_first.size();
+  const double sigma = options.smoothing_s;
+  if (n > 0 && against_first.front().rotation) {
+    smooth_rotations(against_first, sigma, result);
+    return result;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    NeighbourSum all;
+    for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma, all);
+    const Homography steady_from_k = (all.sum / all.weight).exp();
+    const Homography shake = steady_from_k.inverse();
+    result[k].frame_from_reference =
+        shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());
+  }
+  return result;
 }
 
 }  // namespace airtruth::motion

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "camera/motion/spherical.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -7,15 +9,12 @@
 #include "camera/motion/corners.h"
 #include "camera/motion/follower.h"
 #include "camera/motion/key_frames.h"
-#include "camera/motion/levels.h"
 #include "camera/motion/rotation_fit.h"
-#include "camera/motion/steps.h"
-#include "camera/motion/view.h"
 
 // The rotation of the camera from far points, whose directions in the reference camera are
 // constant. The rotation of a frame is the one that maps these directions to the detected corners.
 // Corners are tracked from the key frame that they were selected in, so that no drift accumulates
-// while a key frame is in use (key_frames.h). Corners of the previous frame (steps.h) tell where
+// while a key frame is in use (key_frames.h). Corners of the previous frame (corners.h) tell where
 // the landmarks are to be looked for, and couple neighbouring frames.
 namespace airtruth::motion {
 namespace {

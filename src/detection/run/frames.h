@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "detection/detector/detector.h"
 #include "detection/run/clips.h"

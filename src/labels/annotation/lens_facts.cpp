@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "camera/lens/model_kind.h"
+#include "camera/lens/lens.h"
 
 namespace airtruth::annotation {
 

@@ -9,8 +9,8 @@
 namespace airtruth::flight_log {
 namespace {
 
-using motion::big_endian;
-using motion::GpmfElement;
+using gyro::big_endian;
+using gyro::GpmfElement;
 
 constexpr std::uint32_t kGpmfFix3d = 3;
 // GPS9 holds seven 32-bit numbers and two 16-bit ones, the last of which is the kind of fix.
@@ -55,7 +55,7 @@ void read_positions(const GpmfElement& e, Stream& stream) {
 
 Stream stream_of(std::span<const std::uint8_t> bytes) {
   Stream stream;
-  motion::each_gpmf_element(bytes, [&](const GpmfElement& e) {
+  gyro::each_gpmf_element(bytes, [&](const GpmfElement& e) {
     if (e.key == "SCAL") read_scale(e, stream);
     if (e.key == "GPSF" && e.type == 'L' && e.size == 4 && e.count > 0)
       stream.fix = big_endian(e.data, 0, 4);
@@ -70,7 +70,7 @@ void add_gpmf_packet(FlightLog& log,
                      std::span<const std::uint8_t> packet,
                      double begin_s,
                      double end_s) {
-  motion::each_gpmf_stream(packet, [&](std::span<const std::uint8_t> bytes) {
+  gyro::each_gpmf_stream(packet, [&](std::span<const std::uint8_t> bytes) {
     const Stream stream = stream_of(bytes);
     const auto count = static_cast<double>(stream.fixes.size());
     for (std::size_t i = 0; i < stream.fixes.size(); ++i) {

@@ -18,8 +18,8 @@ constexpr double kMinUnexplainedRatio = 2;
 
 constexpr double kMinRateHz = 100;  // three samples in a frame of 30 a second
 
-std::vector<motion::GyroSample> stated_or_implied(const FlightLog& log) {
-  std::vector<motion::GyroSample> samples;
+std::vector<gyro::GyroSample> stated_or_implied(const FlightLog& log) {
+  std::vector<gyro::GyroSample> samples;
   for (const Rates& rates : log.rates) samples.push_back({rates.time_s, rates.in_body_radps});
   if (!samples.empty()) return samples;
   for (std::size_t i = 1; i < log.attitudes.size(); ++i) {
@@ -32,16 +32,16 @@ std::vector<motion::GyroSample> stated_or_implied(const FlightLog& log) {
   return samples;
 }
 
-std::vector<motion::GyroSample> interpolated(const std::vector<motion::GyroSample>& samples) {
+std::vector<gyro::GyroSample> interpolated(const std::vector<gyro::GyroSample>& samples) {
   const double first_s = samples.front().time_s;
   const auto count =
       static_cast<std::size_t>(std::floor((samples.back().time_s - first_s) * kMinRateHz)) + 1;
-  std::vector<motion::GyroSample> result;
+  std::vector<gyro::GyroSample> result;
   std::size_t next = 1;
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = first_s + static_cast<double>(i) / kMinRateHz;
     while (next + 1 < samples.size() && samples[next].time_s < time_s) ++next;
-    const motion::GyroSample &a = samples[next - 1], &b = samples[next];
+    const gyro::GyroSample &a = samples[next - 1], &b = samples[next];
     const double share = (time_s - a.time_s) / (b.time_s - a.time_s);
     result.push_back({time_s, a.rate_radps + share * (b.rate_radps - a.rate_radps)});
   }
@@ -50,7 +50,7 @@ std::vector<motion::GyroSample> interpolated(const std::vector<motion::GyroSampl
 
 }  // namespace
 
-std::vector<motion::GyroSample> gyro_samples(const FlightLog& log) {
+std::vector<gyro::GyroSample> gyro_samples(const FlightLog& log) {
   const auto samples = stated_or_implied(log);
   if (samples.size() < 2) return samples;
   const double span_s = samples.back().time_s - samples.front().time_s;
@@ -58,11 +58,11 @@ std::vector<motion::GyroSample> gyro_samples(const FlightLog& log) {
                                                                    : samples;
 }
 
-Alignment aligned(const std::vector<motion::GyroSample>& rates,
+Alignment aligned(const std::vector<gyro::GyroSample>& rates,
                   const std::vector<motion::FrameMotion>& motion) {
   Alignment result;
-  const motion::OffsetRange range{rates.front().time_s - motion.front().time_s,
-                                  rates.back().time_s - motion.back().time_s};
+  const gyro::OffsetRange range{rates.front().time_s - motion.front().time_s,
+                                rates.back().time_s - motion.back().time_s};
   if (!(range.to_s > range.from_s)) {
     result.why =
         fmt::format("it lasts {:.1f} s and the clip {:.1f} s; expected a log of the whole clip",
@@ -70,16 +70,16 @@ Alignment aligned(const std::vector<motion::GyroSample>& rates,
                     motion.back().time_s - motion.front().time_s);
     return result;
   }
-  const auto best = motion::fit_gyro(rates, motion, range);
+  const auto best = gyro::fit_gyro(rates, motion, range);
   if (!best) {
     result.why =
         "its turn rates and the clip's measured rotation agree at no offset; expected a log "
         "of the same flight, and a clip that turns";
     return result;
   }
-  if (const auto other = motion::other_fit(rates, motion, range, *best, kApartS)) {
+  if (const auto other = gyro::other_fit(rates, motion, range, *best, kApartS)) {
     result.other_correlation = other->correlation;
-    const auto unexplained = [](const motion::GyroFit& fit) { return 1 - fit.correlation; };
+    const auto unexplained = [](const gyro::GyroFit& fit) { return 1 - fit.correlation; };
     if (unexplained(*other) < kMinUnexplainedRatio * unexplained(*best)) {
       result.why = fmt::format(
           "it fits at {:.2f} s (correlation {:.2f}) and at {:.2f} s ({:.2f}); "

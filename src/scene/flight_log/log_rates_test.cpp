@@ -60,7 +60,7 @@ TEST(LogRates, TheOffsetOfAKnownFlightIsFound) {
 TEST(LogRates, RatesAreThoseOfTheAttitudes) {
   FlightLog log;
   for (int i = 0; i < 400; ++i) log.attitudes.push_back({i / 200.0, {30 * i / 200.0, 0, 0}});
-  for (const motion::GyroSample& sample : gyro_samples(log))
+  for (const gyro::GyroSample& sample : gyro_samples(log))
     EXPECT_NEAR((sample.rate_radps - Vector3(0, 0, radians(30))).norm(), 0, 1e-9);
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "camera/lens/model_kind.h"
+#include "camera/lens/lens.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"

@@ -7,8 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "camera/focal_length/lens_estimate.h"
+#include "camera/focal_length/lens_estimator.h"
 #include "camera/lens/calibration_file.h"
+#include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/median.h"
 #include "scene/synthetic/flight.h"
@@ -295,7 +296,7 @@ TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
     options.frame_count = 260;
     options.roll_deg = 25;
     const Flight flight(options);
-    motion::LensEstimator estimator(640, 480, &flight.own_aircraft());
+    focal_length::LensEstimator estimator(640, 480, &flight.own_aircraft());
     for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
     std::string why;
     const auto found = estimator.result(why);
@@ -323,7 +324,7 @@ TEST(LensYardstick, AStillCameraIsRefused) {
   options.frame_count = 20;
   options.shake_deg = 0;
   const Flight flight(options);
-  motion::LensEstimator estimator(320, 240);
+  focal_length::LensEstimator estimator(320, 240);
   for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
   std::string why;
   EXPECT_FALSE(estimator.result(why));

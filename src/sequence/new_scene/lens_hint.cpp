@@ -43,10 +43,10 @@ std::optional<double> equivalent_mm_in_subtitles(std::string_view text) {
 
 std::optional<double> diagonal_view_deg(std::span<const std::uint8_t> packet) {
   std::optional<double> view;
-  motion::each_gpmf_stream(packet, [&](std::span<const std::uint8_t> stream) {
-    motion::each_gpmf_element(stream, [&](const motion::GpmfElement& e) {
+  gyro::each_gpmf_stream(packet, [&](std::span<const std::uint8_t> stream) {
+    gyro::each_gpmf_element(stream, [&](const gyro::GpmfElement& e) {
       if (e.key != "ZFOV" || e.type != 'f' || e.size != 4 || e.count == 0) return;
-      const float degrees = std::bit_cast<float>(motion::big_endian(e.data, 0, 4));
+      const float degrees = std::bit_cast<float>(gyro::big_endian(e.data, 0, 4));
       if (degrees >= kMinViewDeg && degrees <= kMaxViewDeg) view = degrees;
     });
   });

@@ -7,10 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "camera/focal_length/lens_estimate.h"
+#include "camera/focal_length/lens_estimator.h"
 #include "camera/horizon/horizon.h"
 #include "camera/lens/calibration_file.h"
-#include "camera/lens/calibration_write.h"
+#include "camera/motion/estimator.h"
+#include "camera/motion/shake.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
@@ -87,7 +88,7 @@ std::optional<LensWords> estimated_lens(const fs::path& video, const NewSceneOpt
   reader_options.with_cuts = true;
   video::Reader reader(video, reader_options, options.warn);
   const lens::ImageSize size{reader.info().width, reader.info().height};
-  motion::LensEstimator estimator(size.width, size.height);
+  focal_length::LensEstimator estimator(size.width, size.height);
   const std::int64_t total = std::min(kMaxEstimateFrames, reader.info().frame_count_estimate);
   while (const auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
@@ -122,9 +123,9 @@ LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOp
 
 // Pitch and roll of the camera in a picture with a horizon.
 std::optional<YawPitchRoll> attitude_in(const image::Picture& picture, const lens::Lens& lens) {
-  const auto found = motion::HorizonFinder(lens, nullptr).find(picture);
+  const auto found = horizon::HorizonFinder(lens, nullptr).find(picture);
   if (!found || !found->is_sharp()) return std::nullopt;
-  return motion::attitude_from_up(found->up_in_cam);
+  return horizon::attitude_from_up(found->up_in_cam);
 }
 
 // The log beside the video or within it; empty where there is none with positions.

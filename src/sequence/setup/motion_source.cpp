@@ -6,6 +6,8 @@
 
 #include <fmt/ranges.h>
 
+#include "camera/motion/estimator.h"
+#include "camera/motion/shake.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/lens_facts.h"
@@ -157,20 +159,20 @@ void MotionSource::store() const {
   if (is_to_be_stored()) motion::store(cache_, key_, against_first_);
 }
 
-std::vector<motion::GyroSample> gyro_of(const fs::path& video) {
-  std::vector<motion::GyroSample> gyro;
+std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
+  std::vector<gyro::GyroSample> gyro;
   for (const video::TelemetryPacket& packet : video::read_telemetry(video))
-    for (const motion::GyroSample& sample :
-         motion::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
+    for (const gyro::GyroSample& sample :
+         gyro::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
       gyro.push_back(sample);
   return gyro;
 }
 
-std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
-                                              std::vector<motion::FrameMotion>& motion) {
+std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>& gyro,
+                                            std::vector<motion::FrameMotion>& motion) {
   if (gyro.empty() || motion.empty() || !motion.front().rotation) return std::nullopt;
-  const auto fit = motion::fit_gyro(gyro, motion);
-  if (fit) motion = motion::bridged_by_gyro(motion, gyro, *fit);
+  const auto fit = gyro::fit_gyro(gyro, motion);
+  if (fit) motion = gyro::bridged_by_gyro(motion, gyro, *fit);
   return fit;
 }
 

@@ -9,9 +9,8 @@
 
 #include "camera/gyro/gyro.h"
 #include "camera/lens/lens.h"
-#include "camera/motion/cache.h"
+#include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
-#include "camera/motion/reach.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
@@ -78,8 +77,8 @@ class MotionSource {
 
   bool none_ = false;
   bool needs_change_ = false;
-  std::vector<motion::GyroSample> gyro_;  // bridges what cannot be measured; empty: none
-  std::optional<lens::Lens> lens_;        // of the model rotation
+  std::vector<gyro::GyroSample> gyro_;  // bridges what cannot be measured; empty: none
+  std::optional<lens::Lens> lens_;      // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
@@ -99,13 +98,13 @@ class MotionSource {
 scene::MotionModel motion_model(const scene::Scene& scene);
 
 // Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
-std::vector<motion::GyroSample> gyro_of(const fs::path& video);
+std::vector<gyro::GyroSample> gyro_of(const fs::path& video);
 
 // Replaces rotations that could not be measured by the gyroscope's, where the gyroscope agrees with
 // the measured ones. Returns how well it fits. Returns empty and changes nothing where it does not
 // agree.
-std::optional<motion::GyroFit> bridge_by_gyro(const std::vector<motion::GyroSample>& gyro,
-                                              std::vector<motion::FrameMotion>& motion);
+std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>& gyro,
+                                            std::vector<motion::FrameMotion>& motion);
 
 // Measures the motion of a whole clip against its first frame, as a rotation where a lens is given.
 // Calls `seen` after each frame. Throws Interrupted on stop.

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "foundation/geometry/within_frame.h"
+
 namespace airtruth::motion {
 namespace {
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
+#include "camera/motion/motion.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/geometry/within_frame.h"
 
 namespace airtruth::motion {
 
@@ -17,5 +20,14 @@ inline double differentiator_weight(int j, int reach) {
   const double window = 0.5 * (1 + std::cos(kPi * j / (reach + 1)));
   return (j % 2 == 1 ? 1.0 : -1.0) / j * window;
 }
+
+// The motion of each frame against a Gaussian-smoothed camera path, which is the shake, from the
+// motion against the first frame. The function needs all frames at once (a few hundred bytes each).
+std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
+                                  const Options& options);
+
+// The shake of frame k and its change per second, from the neighbouring frames. Motion blur and a
+// rolling shutter are computed from it.
+Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k);
 
 }  // namespace airtruth::motion

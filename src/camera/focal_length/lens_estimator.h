@@ -9,7 +9,7 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::motion {
+namespace airtruth::focal_length {
 
 // Estimates the focal length of a lens without distortion from a video alone. While the camera
 // turns, the angles between far points stay constant; through a wrong lens they would appear to
@@ -51,4 +51,4 @@ class LensEstimator {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::focal_length

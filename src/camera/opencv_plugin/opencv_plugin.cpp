@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 
 #include "foundation/lazy_library/lazy_library.h"
 
-namespace airtruth::late {
+namespace airtruth::opencv_plugin {
 
-const OpenCv& opencv() {
-  static const auto& functions = *static_cast<const OpenCv*>(
+const Functions& functions() {
+  static const auto& loaded = *static_cast<const Functions*>(
       lazy_library::symbol_of({"airtruth-late-opencv.so",
                                "AIRTRUTH_LATE_OPENCV",
                                "the part that follows corners and objects"},
-                              kOpenCvSymbol));
-  return functions;
+                              kSymbol));
+  return loaded;
 }
 
-}  // namespace airtruth::late
+}  // namespace airtruth::opencv_plugin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/focal_length/lens_estimate.h"
+#include "camera/focal_length/lens_estimator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "camera/motion/rotation_fit.h"
 #include "foundation/base/median.h"
 
-namespace airtruth::motion {
+namespace airtruth::focal_length {
 namespace {
 
 // The limits below are chosen by judgement, but for kMaxMisfitRatio (docs/lenses.md).
@@ -18,10 +18,14 @@ namespace {
 constexpr double kMinCornerShiftShare = 0.09;
 // The largest number of frames between the two of a pair.
 constexpr int kMaxPairSpanFrames = 40;
+// The number of pairs: at most, which bounds the time, and at least, since two halves of two pairs
+// give the uncertainty.
 constexpr std::size_t kMaxPairs = 40;
 constexpr std::size_t kMinPairs = 4;
 // The least number of corners that are tracked through a pair.
 constexpr int kMinPairCorners = 30;
+// The residual at which a corner is cut off, px: beyond it a corner does not turn with the far
+// scene.
 constexpr double kOutlierPx = 2.5;
 // The shortest and longest focal length that is tried, in widths of the image.
 constexpr double kShortest = 0.25;
@@ -29,6 +33,7 @@ constexpr double kLongest = 6.0;
 // A lens fits as well as the best where its mean squared misfit is below this multiple of the
 // least.
 constexpr double kMaxMisfitRatio = 1.02;
+// The ratio of two focal lengths that are tried for the ends of that interval: 5 %.
 constexpr double kIntervalStep = 1.05;
 // The limits of a certain estimate, as shares of the focal length: its uncertainty, and the excess
 // of the longest focal length that fits as well.
@@ -49,7 +54,7 @@ lens::Lens candidate(bool fisheye, double focal_px, const lens::ImageSize& size)
 
 // The mean squared residual of a pair's points, px^2, each cut off at kOutlierPx.
 double miss_of(const Pair& pair, const lens::Lens& lens) {
-  std::vector<Bearings> bearings;
+  std::vector<motion::Bearings> bearings;
   std::vector<const Match*> known;
   for (const Match& m : pair) {
     const auto a = lens.ray_from_pixel(m.before);
@@ -57,7 +62,8 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
     if (a && b) bearings.push_back({*a, *b}), known.push_back(&m);
   }
   constexpr double kCut = kOutlierPx * kOutlierPx;
-  const auto fit = fit_rotation(bearings, kOutlierPx / lens.focal_px(), kMinPairCorners / 2, 1);
+  const auto fit =
+      motion::fit_rotation(bearings, kOutlierPx / lens.focal_px(), kMinPairCorners / 2, 1);
   if (!fit) return kCut;
   double sum = kCut * double(pair.size() - known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -119,27 +125,27 @@ double end_of_fit(double focal_px, double factor, const lens::ImageSize& size, c
 struct LensEstimator::Impl {
   lens::ImageSize size;
   cv::Mat allowed;
-  Options options;
-  Pyramid previous;
+  motion::Options options;
+  motion::Pyramid previous;
   std::vector<cv::Point2f> begun, now;
   int frames = 0;
   std::vector<Pair> pairs;
 
   void begin(const cv::Mat& grey) {
-    begun = now = spread_corners(grey, allowed, options);
+    begun = now = motion::spread_corners(grey, allowed, options);
     frames = 0;
   }
 
   void add(const cv::Mat& grey, bool begins_shot) {
     if (pairs.size() >= kMaxPairs) return;
-    Pyramid pyramid = pyramid_of(grey);
+    motion::Pyramid pyramid = motion::pyramid_of(grey);
     if (previous.empty() || begins_shot) {
       begin(grey);
       previous = std::move(pyramid);
       return;
     }
     std::vector<cv::Point2f> moved;
-    const auto good = follow(previous, pyramid, allowed, now, moved, false, options);
+    const auto good = motion::follow(previous, pyramid, allowed, now, moved, false, options);
     std::vector<cv::Point2f> kept_begun, kept_now;
     std::vector<double> far;
     for (std::size_t i = 0; i < good.size(); ++i) {
@@ -167,12 +173,12 @@ struct LensEstimator::Impl {
 LensEstimator::LensEstimator(int width, int height, const image::Mask* own_aircraft)
     : impl_(std::make_unique<Impl>()) {
   impl_->size = {width, height};
-  impl_->allowed = allowed_area(width, height, own_aircraft);
+  impl_->allowed = motion::allowed_area(width, height, own_aircraft);
 }
 LensEstimator::~LensEstimator() = default;
 
 void LensEstimator::add(const image::Picture& picture, bool begins_shot) {
-  impl_->add(luma_of(picture), begins_shot);
+  impl_->add(motion::luma_of(picture), begins_shot);
 }
 
 std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) const {
@@ -213,4 +219,4 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   return result;
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::focal_length

@@ -19,9 +19,9 @@ class Boost;
 }
 }  // namespace cv
 
-namespace airtruth::late {
+namespace airtruth::opencv_plugin {
 
-struct OpenCv {
+struct Functions {
   // calib3d
   cv::Mat (*find_homography)(cv::InputArray from,
                              cv::InputArray to,
@@ -73,9 +73,9 @@ struct OpenCv {
 };
 
 // Throws Error where the library is not installed.
-const OpenCv& opencv();
+const Functions& functions();
 
-// The library holds an OpenCv of this name.
-constexpr const char* kOpenCvSymbol = "airtruth_late_opencv";
+// The library holds a Functions of this name.
+constexpr const char* kSymbol = "airtruth_late_opencv";
 
-}  // namespace airtruth::late
+}  // namespace airtruth::opencv_plugin

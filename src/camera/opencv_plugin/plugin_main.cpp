@@ -6,7 +6,7 @@
 #include <opencv2/tracking/tracking_legacy.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "camera/late_opencv/late_opencv.h"
+#include "camera/opencv_plugin/opencv_plugin.h"
 
 namespace {
 
@@ -18,8 +18,9 @@ cv::Ptr<Base> made() {
 }  // namespace
 
 extern "C" {
-extern __attribute__((visibility("default"))) const airtruth::late::OpenCv airtruth_late_opencv;
-const airtruth::late::OpenCv airtruth_late_opencv = {
+extern __attribute__((visibility("default")))
+const airtruth::opencv_plugin::Functions airtruth_late_opencv;
+const airtruth::opencv_plugin::Functions airtruth_late_opencv = {
     .find_homography = &cv::findHomography,
     .estimate_affine_partial_2d = &cv::estimateAffinePartial2D,
     .build_optical_flow_pyramid = &cv::buildOpticalFlowPyramid,
