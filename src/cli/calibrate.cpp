@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera_file/calibrate.h"
+
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "calibration/camera_file/calibration.h"
 #include "calibration/camera_file/join.h"
 #include "calibration/camera_file/plot.h"
 #include "calibration/camera_file/profile.h"
@@ -44,7 +45,7 @@ struct CalibrateArguments {
 // One line per profile: its name and camera, and the appearance of its edges.
 std::string profile_lines() {
   std::string lines;
-  for (const calibration::CameraProfile& profile : calibration::camera_profiles())
+  for (const camera_file::CameraProfile& profile : camera_file::camera_profiles())
     lines += fmt::format("{:<18} {} x {} px, {} clip{}: {}\n",
                          profile.name,
                          profile.width,
@@ -58,17 +59,17 @@ std::string profile_lines() {
 // All texts of one kind, such as the reasons for missing values, in the order of their keys.
 using Texts = std::map<std::string, std::string>;
 
-Texts texts(const calibration::Quantities& quantities, std::string calibration::Quantity::*kind) {
+Texts texts(const camera_file::Quantities& quantities, std::string camera_file::Quantity::*kind) {
   Texts result;
-  for (const calibration::QuantityKey& key : calibration::kQuantityKeys)
+  for (const camera_file::QuantityKey& key : camera_file::kQuantityKeys)
     if (const std::string& text = quantities.*key.member.*kind; !text.empty())
       result[key.name] = text;
   return result;
 }
 
 // Reports what is not measured.
-void report_missing(const calibration::Calibration& found, Console& console) {
-  Texts missing = texts(found.quantities, &calibration::Quantity::missing);
+void report_missing(const camera_file::Calibration& found, Console& console) {
+  Texts missing = texts(found.quantities, &camera_file::Quantity::missing);
   if (!found.no_horizon.empty()) missing["horizon"] = found.no_horizon;
   for (const auto& [key, why] : missing) console.warning(key + " cannot be had: " + why);
   if (!found.horizon_note.empty()) console.warning("horizon is " + found.horizon_note);
@@ -77,20 +78,20 @@ void report_missing(const calibration::Calibration& found, Console& console) {
 }
 
 // Reports which values do not come from the clip alone, and which are doubtful.
-void report_sources(const calibration::Calibration& found, Console& console) {
-  for (const auto& [key, source] : texts(found.quantities, &calibration::Quantity::source)) {
-    const calibration::Estimate& value = found.quantities.at(key).value();
+void report_sources(const camera_file::Calibration& found, Console& console) {
+  for (const auto& [key, source] : texts(found.quantities, &camera_file::Quantity::source)) {
+    const measured::Estimate& value = found.quantities.at(key).value();
     console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}", key, value.value, value.sigma, source));
   }
-  for (const auto& [key, doubt] : texts(found.quantities, &calibration::Quantity::doubt))
+  for (const auto& [key, doubt] : texts(found.quantities, &camera_file::Quantity::doubt))
     console.warning(key + " is doubtful: " + doubt);
 }
 
 // Reports how many quantities were measured, and how many of them on the clip alone.
-void report_count(const calibration::Calibration& found, const std::string& out, Console& console) {
+void report_count(const camera_file::Calibration& found, const std::string& out, Console& console) {
   std::size_t measured = 0, own = 0;
-  for (const calibration::QuantityKey& key : calibration::kQuantityKeys) {
-    const calibration::Quantity& quantity = found.quantities.*key.member;
+  for (const camera_file::QuantityKey& key : camera_file::kQuantityKeys) {
+    const camera_file::Quantity& quantity = found.quantities.*key.member;
     measured += quantity.is_measured() ? 1 : 0;
     own += quantity.is_measured() && quantity.source.empty() ? 1 : 0;
   }
@@ -103,11 +104,11 @@ void report_count(const calibration::Calibration& found, const std::string& out,
 }
 
 // The options but the mask, which the caller keeps.
-calibration::Options options_of(const CalibrateArguments& arguments,
+camera_file::Options options_of(const CalibrateArguments& arguments,
                                 const lens::ImageSize& size,
                                 Context& context) {
   Console& console = context.console();
-  calibration::Options options;
+  camera_file::Options options;
   if (!arguments.lens.empty()) options.lens = lens::read_calibration(arguments.lens, size);
   options.altitude_m = arguments.altitude_m;
   options.heading_deg = arguments.heading_deg;
@@ -124,29 +125,29 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
-  const calibration::CameraProfile profile = arguments.profile.empty()
-                                                 ? calibration::usual_camera()
-                                                 : calibration::camera_profile(arguments.profile);
+  const camera_file::CameraProfile profile = arguments.profile.empty()
+                                                 ? camera_file::usual_camera()
+                                                 : camera_file::camera_profile(arguments.profile);
   const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
-  calibration::check_joinable(clips, {});
+  camera_file::check_joinable(clips, {});
   const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
-  calibration::check_size(profile, info.width, info.height);
+  camera_file::check_size(profile, info.width, info.height);
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  calibration::Options options = options_of(arguments, {info.width, info.height}, context);
+  camera_file::Options options = options_of(arguments, {info.width, info.height}, context);
   options.own_aircraft = mask ? &*mask : nullptr;
-  std::vector<calibration::Calibration> measured;
-  for (const fs::path& clip : clips) measured.push_back(calibration::calibrate(clip, options));
+  std::vector<camera_file::Calibration> measured;
+  for (const fs::path& clip : clips) measured.push_back(camera_file::calibrate(clip, options));
   Console& console = context.console();
   console.end_progress();
-  const calibration::Calibration found =
-      calibration::with_profile(calibration::joined(std::move(measured)), profile);
-  write_file(arguments.out, calibration::toml_from(found));
+  const camera_file::Calibration found =
+      camera_file::with_profile(camera_file::joined(std::move(measured)), profile);
+  write_file(arguments.out, camera_file::toml_from(found));
   if (!arguments.plot.empty())
     video::write_still(arguments.plot,
-                       plot::picture_of({.plots = calibration::plots_of(found),
+                       plot::picture_of({.plots = camera_file::plots_of(found),
                                          .columns = 2,
                                          .height = 10,
                                          .legend = plot::Legend::kAbove}));
@@ -164,13 +165,13 @@ struct MaskArguments {
 void find_mask(const MaskArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
-  calibration::MaskOptions options;
+  own_aircraft::MaskOptions options;
   options.stop = context.stop;
   options.warn = console.warn();
   options.progress = [&](std::int64_t done, std::int64_t total) {
     console.progress("looking", done, total);
   };
-  const image::Mask mask = calibration::find_own_aircraft(arguments.video, options);
+  const image::Mask mask = own_aircraft::find_own_aircraft(arguments.video, options);
   console.end_progress();
   video::write_still(arguments.out, sequence::picture_of(mask));
   const auto own = std::count(mask.free.begin(), mask.free.end(), 0);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/air/ground_patches.h"
+#include "calibration/air/ground_seen.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // The grid of pixels at which the sky is sampled: first pixel and spacing.
@@ -94,4 +94,4 @@ Measured<Sun> AirMeter::sun() const {
   return sun_of(sky);
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "calibration/air/extinction.h"
+#include "calibration/air/ground_seen.h"
 #include "calibration/air/ground_track.h"
-#include "calibration/air/rays.h"
 #include "calibration/air/same_ground.h"
 #include "calibration/air/sky_curve.h"
 #include "calibration/air/sun.h"
@@ -19,7 +19,7 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 // The height from which the range of a ground point follows: a known lens gives the direction of a
 // pixel, and the altitude above level ground gives the range along that direction.
@@ -83,4 +83,4 @@ class AirMeter {
   std::vector<Glimpse> glimpses_;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/air/ground_patches.h"
+#include "calibration/air/ground_seen.h"
 #include "foundation/base/seed.h"
 
 // Air over ground that no two pictures share, so that only the darkest ground gives the extinction.
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 constexpr double kAltitudeM = 120;
@@ -108,4 +108,4 @@ TEST(AirMeter, TheHorizonsLookBoundsTheVisibilityFromBelow) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -8,7 +8,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -283,4 +283,4 @@ std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& gro
   return kVisibilityClassesKm.back();
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -8,7 +8,7 @@
 #include "calibration/air/sky_curve.h"
 #include "calibration/measured/measured.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 // Extinction from the fading of the darkest ground with range. The darkest ground (Chavez 1988:
 // woods and shadows; here the 3 % quantile) of a sector at the range r = altitude / sin(depression)
@@ -47,4 +47,4 @@ std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& gro
                                                const SkyCurves& sky,
                                                double altitude_m);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -9,7 +9,7 @@
 
 #include "camera/motion/corners.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -206,4 +206,4 @@ double peak_offset(double before, double middle, double after) {
   return bend > 0 ? std::clamp(0.5 * (after - before) / bend, -0.5, 0.5) : 0;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

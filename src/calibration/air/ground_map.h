@@ -14,7 +14,7 @@
 
 // Views of level ground, rectified to the ground plane and registered with one another. Lengths are
 // in heights: multiples of the camera's height above the ground.
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 struct GroundMapOptions {
   // Size of a cell of the maps.
@@ -62,4 +62,4 @@ class GroundMaps {
 // The position, from -1/2 to 1/2, of the maximum of a parabola through three neighbouring values.
 double peak_offset(double before, double middle, double after);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

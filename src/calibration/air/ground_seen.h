@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "calibration/air/extinction.h"
 #include "calibration/air/ground_track.h"
 #include "camera/lens/lens.h"
 #include "foundation/image/layer.h"
@@ -11,7 +12,7 @@
 
 // The light of level ground by its position on the ground. Lengths are in heights: multiples of the
 // camera's height above the ground.
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 // One square of the ground, one height wide, as one view shows it.
 struct SquareSeen {
@@ -46,4 +47,30 @@ GroundSeen ground_seen(const std::vector<GroundView>& views,
                        const image::Mask* own_aircraft,
                        const image::ToneCurve& tone);
 
-}  // namespace airtruth::calibration
+// The light of level ground, averaged over patches of equal size on the ground at any distance.
+// Without that, far ground would look more uniform than near ground because a far pixel covers
+// more of it. A patch is as large as the ground that one pixel covers at 2 degrees below the
+// horizon; farther away a patch is one pixel. The patches of all views follow one another in the
+// order of the views.
+std::vector<SeenLight> ground_patches(const std::vector<GroundView>& views,
+                                      const lens::Lens& lens,
+                                      const image::Mask* own_aircraft,
+                                      double altitude_m,
+                                      const image::ToneCurve& tone);
+
+// The direction in which a pixel of a lens looks.
+struct PixelRay {
+  int x = 0, y = 0;
+  Vector3 in_cam;
+};
+
+// The rays of a grid of pixels, row by row. The grid begins at pixel `first` in both directions and
+// has a spacing of `step` pixels. Pixels of the own aircraft (nullptr: there is no mask) and pixels
+// outside the image circle of the lens are left out. The rays are the same for all pictures of a
+// clip.
+std::vector<PixelRay> pixel_rays(const lens::Lens& lens,
+                                 const image::Mask* own_aircraft,
+                                 int first,
+                                 int step);
+
+}  // namespace airtruth::air

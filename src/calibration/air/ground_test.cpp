@@ -11,7 +11,7 @@
 
 // Ground that is seen again: the path of the camera over it, and the effect of the air on its
 // light.
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 struct Flown {
@@ -128,4 +128,4 @@ TEST(SameGround, TellsExtinctionAndAirlight) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

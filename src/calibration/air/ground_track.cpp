@@ -11,7 +11,7 @@
 #include "calibration/air/ground_map.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -173,4 +173,4 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
   return track;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

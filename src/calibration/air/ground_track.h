@@ -11,7 +11,7 @@
 #include "foundation/image/picture.h"
 
 // Estimates the path of a camera over level ground from the pictures of the ground alone.
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 // The largest error, degrees, that is searched for in the horizon of the views.
 constexpr double kMaxTiltDeg = 6;
@@ -52,4 +52,4 @@ std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
 // camera, in heights. Empty at the horizon and above.
 std::optional<Eigen::Vector2d> place_on_ground(const Vector3& direction_in_level);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -6,13 +6,101 @@
 #include <map>
 #include <vector>
 
-#include "calibration/air/fading_system.h"
+#include <Eigen/Cholesky>
 
-namespace airtruth::calibration {
+#include "calibration/air/sky_curve.h"
+
+namespace airtruth::air {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
 // surroundings_slow_test.cpp, whose figures are in docs/realism.md.
+
+// Error of the light of far ground: as a share of the light of the mean ground, and its lower bound
+// in linear light.
+constexpr double kFarError = 0.25, kMinFarError = 0.006;
+// Range in heights at which the loss of contrast among squares is stated.
+constexpr double kMixedRange = 15;
+
+// The equations of same_ground.h for one channel and one extinction.
+
+// The unknowns of one channel: the airlight of each sector, the mean light of the ground, and the
+// relative change of contrast among squares at the range kMixedRange, which grows with the range
+// squared.
+constexpr int kMean = kSectors, kMixed = kSectors + 1, kUnknowns = kSectors + 2;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+// One channel of a square in a view, or of a band of far ground.
+struct Row {
+  int square = 0, sector = 0;
+  double range = 0, light = 0;
+  // `contrast` is used for squares alone: their own light minus the mean.
+  double weight = 1, contrast = 0;
+};
+
+// Weighted least squares for one extinction. The squares' own light is eliminated, since each
+// occurs only in the rows of its own square.
+struct System {
+  struct Square {
+    double tt = 0, ty = 0;
+    Unknowns ta = Unknowns::Zero();
+  };
+  std::vector<Square> squares;
+  Normal aa = Normal::Zero();
+  Unknowns ay = Unknowns::Zero();
+  double yy = 0;
+
+  // Adds the prior that `unknown` is `value`, with the relative error `trust`.
+  void expect(int unknown, double value, double trust);
+  // Adds a square in a view, and a band of far ground; `t` is the share of its light that arrives.
+  void add_square(const Row& row, double t);
+  void add_far(const Row& row, double t, double mean_light);
+  // Eliminates the squares' own light. It is called once, after all squares were added.
+  void eliminate_own_light();
+
+  Unknowns solution() const { return aa.ldlt().solve(ay); }
+  double cost() const { return yy - ay.dot(solution()); }
+  Unknowns sigma() const { return aa.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt(); }
+  std::vector<double> own_light() const {
+    const Unknowns x = solution();
+    std::vector<double> own;
+    for (const Square& q : squares) own.push_back(q.tt > 0 ? (q.ty - q.ta.dot(x)) / q.tt : 0);
+    return own;
+  }
+};
+
+void System::expect(int unknown, double value, double trust) {
+  const double weight = 1 / (trust * value * trust * value);
+  aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
+}
+
+void System::add_square(const Row& r, double t) {
+  Square& q = squares[static_cast<std::size_t>(r.square)];
+  const double air = 1 - t;
+  const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
+  q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
+  q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
+  aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
+  aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
+  ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
+  yy += r.weight * r.light * r.light;
+}
+
+void System::eliminate_own_light() {
+  for (const Square& q : squares) {
+    if (q.tt == 0) continue;
+    aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
+  }
+}
+
+void System::add_far(const Row& r, double t, double mean_light) {
+  const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
+  const double w = 1 / (error * error);
+  Unknowns row = Unknowns::Zero();
+  row[r.sector] = 1 - t, row[kMean] = t;
+  aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
+}
 
 // Least number of squares for a fit: fewer do not average out that the light of ground depends on
 // the direction from which it is seen.
@@ -29,7 +117,7 @@ constexpr double kMeanPrior = 0.05;
 // Standard deviation of the prior that the airlight equals the light of the sky at the horizon: for
 // sectors in which the sky was seen, and for the others.
 constexpr double kSkyPrior = 0.03, kUnseenSkyPrior = 0.15;
-// Prior error of the loss of contrast among squares (fading_system.h). Large pixels and errors of
+// Prior error of the loss of contrast among squares (kMixedRange). Large pixels and errors of
 // the path mix the light of neighbouring squares.
 constexpr double kMixedPrior = 0.03;
 // The extinction follows the wavelength to the power of -slope (Angstrom 1929): mean and standard
@@ -247,4 +335,4 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
   return result;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -8,7 +8,7 @@
 
 // Measures extinction from ground that is seen again at a shorter range. The method compares each
 // piece of ground only with itself.
-namespace airtruth::calibration {
+namespace airtruth::air {
 
 // By Koschmieder (1924), the light L_ij of square i in view j at the range r_ij, and the light L_sb
 // of far ground in sector s and range band b, are
@@ -34,4 +34,4 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
                                                const SkyCurves& sky,
                                                double altitude_m);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -8,7 +8,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // Unit of the elevation in the polynomials, degrees.
@@ -121,4 +121,4 @@ std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation
   return mean;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -10,7 +10,12 @@
 #include "foundation/image/colour.h"
 
 // The light of the sky above the horizon, by sector of the azimuth.
-namespace airtruth::calibration {
+namespace airtruth::air {
+
+using measured::ColourEstimate;
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
 
 // The number of equal sectors into which azimuth is divided. Each sector has its own airlight,
 // since airlight is brighter towards the sun.
@@ -48,4 +53,4 @@ SkyCurves sky_curves(const std::vector<SeenLight>& seen, const SkyReach& reach =
 // The mean of the curves at an elevation; empty if no sector has a curve.
 std::optional<ColourEstimate> airlight_of(const SkyCurves& sky, double elevation_rad);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

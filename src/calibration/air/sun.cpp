@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace airtruth::calibration {
+namespace airtruth::air {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -43,7 +43,7 @@ constexpr double kMinSpreadDeg = 4, kMaxSpreadDeg = 45;
 // Least ratio between the greatest and the least cost.
 constexpr double kMinCostRatio = 1.03;
 
-using Row = Eigen::Matrix<double, 8, 1>;
+using Terms = Eigen::Matrix<double, 8, 1>;
 
 struct Direction {
   double azimuth_deg = 0, elevation_deg = 0;
@@ -55,12 +55,12 @@ struct Direction {
 };
 
 // The terms of the light from the direction `d`: four of the height, four of the angle to the sun.
-Row terms_of(const Vector3& d, const Vector3& sun) {
+Terms terms_of(const Vector3& d, const Vector3& sun) {
   const double up = std::max(0.0, -d.z());
   const double cosine = d.dot(sun);
   const double toward = std::max(0.0, cosine);
   const double p8 = std::pow(toward, 8);
-  Row row;
+  Terms row;
   row << 1, up, up * up, std::exp(-10 * up), cosine * cosine, p8, p8 * p8 * p8 * p8 * p8 * p8,
       toward * toward;
   return row;
@@ -69,13 +69,13 @@ Row terms_of(const Vector3& d, const Vector3& sun) {
 // The cost of the best sky with the sun in one direction; kNoFit if that sky is not brighter
 // towards the sun.
 double cost_of(const std::vector<SkySample>& samples, const Vector3& sun) {
-  std::vector<Row> rows;
+  std::vector<Terms> rows;
   for (const SkySample& s : samples) rows.push_back(terms_of(s.direction, sun));
-  Row solution = Row::Zero();
+  Terms solution = Terms::Zero();
   double cost = 0;
   for (int round = 0; round < kReweightingRounds; ++round) {
     Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Identity() * 1e-6;
-    Row right = Row::Zero();
+    Terms right = Terms::Zero();
     cost = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double light = std::min(samples[i].light, kSaturated);
@@ -157,4 +157,4 @@ Measured<Sun> sun_of(const std::vector<SkySample>& sky) {
   return Sun{{turn, spread / 2}, {search.best.elevation_deg, spread / 2}};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

@@ -7,7 +7,11 @@
 #include "foundation/geometry/transform.h"
 
 // The direction of the sun from the light of the sky.
-namespace airtruth::calibration {
+namespace airtruth::air {
+
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
 
 // Light that arrives from one direction above the horizon.
 struct SkySample {
@@ -33,4 +37,4 @@ struct Sun {
 // directions that explain the sky nearly as well span more than 45 degrees.
 Measured<Sun> sun_of(const std::vector<SkySample>& sky);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::air

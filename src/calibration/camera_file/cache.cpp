@@ -5,7 +5,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -104,4 +104,4 @@ Calibration calibrate_once(const fs::path& video,
   return measured;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

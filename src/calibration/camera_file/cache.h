@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/calibrate.h"
 #include "foundation/disk_cache/disk_cache.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 // The key of a cached calibration: everything that the measured values depend on.
 struct CacheKey {
@@ -39,4 +39,4 @@ Calibration calibrate_once(const fs::path& video,
                            const disk_cache::Cache& cache,
                            const CacheKey& key);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

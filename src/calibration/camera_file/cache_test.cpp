@@ -14,7 +14,7 @@
 #include "scene/synthetic/flight.h"
 #include "support/temporary_folder.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 class CalibrationCache : public testing::Test {
@@ -145,4 +145,4 @@ TEST_F(CalibrationCache, AFolderThatTakesNoFileCostsTheMeasurementAlone) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera_file/calibrate.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "calibration/air/air.h"
-#include "calibration/camera_file/calibration.h"
-#include "calibration/camera_file/extinction_quantity.h"
 #include "calibration/camera_file/level.h"
 #include "calibration/optics/edges.h"
 #include "calibration/sensor/blur.h"
@@ -18,10 +19,10 @@
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
-GroundRange ground_range(const Options& options) {
+air::GroundRange ground_range(const Options& options) {
   if (options.lens && options.altitude_m) return {options.altitude_m, ""};
   const std::string lens = "the lens (--lens)";
   const std::string altitude =
@@ -52,6 +53,52 @@ video::ReaderOptions reader_options(const Options& options) {
 
 bool is_measured(const motion::FrameMotion& motion) {
   return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
+}
+
+// Koschmieder (1924): extinction = 3.912 / visibility, the range at which 2 % of the contrast
+// remain.
+constexpr double kKoschmieder = 3.912;
+// The visibility beyond which the international visibility code calls the air exceptionally clear
+// (extinction.h).
+constexpr double kClearKm = air::kVisibilityClassesKm.back();
+
+Quantity hazy_prior(const air::Air& air, bool height_known) {
+  const double per_km = kKoschmieder / *air.visibility_km;
+  const Estimate hazy{per_km, per_km};
+  Quantity quantity;
+  quantity.values = {hazy, hazy, hazy};
+  quantity.note = fmt::format(
+      "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
+      "less{}: {}",
+      *air.visibility_km,
+      height_known ? "" : fmt::format(" from {} m above the ground", air::kAssumedHeightM),
+      air.extinction_per_km.why());
+  return quantity;
+}
+
+Quantity clear_air(const air::Air& air) {
+  const Estimate clear{0, kKoschmieder / kClearKm};
+  Quantity quantity;
+  quantity.values = {clear, clear, clear};
+  quantity.note = fmt::format("not measured, and drawn as clear air{}: {}",
+                              air.visibility_km ? ", as the horizon looks" : "",
+                              air.extinction_per_km.why());
+  return quantity;
+}
+
+// The extinction of a clip. One that is measured is stated as it is. One that is not measured is
+// not applied: air that may be clear is rendered clear. Its value is then 0, with the extinction of
+// exceptionally clear air as the error; or, where the horizon looks hazy, a prior from the
+// visibility that its look supports, with an error of the same size. A note says so.
+// `height_known`: the height above the ground was given and not assumed.
+Quantity extinction_quantity(const air::Air& air, bool height_known) {
+  if (air.extinction_per_km) {
+    Quantity quantity;
+    put(quantity, air.extinction_per_km);
+    return quantity;
+  }
+  if (air.visibility_km && *air.visibility_km < kClearKm) return hazy_prior(air, height_known);
+  return clear_air(air);
 }
 
 class Session {
@@ -174,9 +221,9 @@ class Session {
   void take_noise() {
     result_.noise = noise_.points();
     const auto found = noise_.result();
-    put(quantities().noise_gain, found, &NoiseMeter::Result::gain);
-    put(quantities().noise_floor, found, &NoiseMeter::Result::floor);
-    put(quantities().noise_correlation, found, &NoiseMeter::Result::correlation_px);
+    put(quantities().noise_gain, found, &sensor::NoiseMeter::Result::gain);
+    put(quantities().noise_floor, found, &sensor::NoiseMeter::Result::floor);
+    put(quantities().noise_correlation, found, &sensor::NoiseMeter::Result::correlation_px);
   }
 
   // Measures the step of the H.264 quantiser, which doubles when the quantisation parameter rises
@@ -203,9 +250,9 @@ class Session {
 
   void take_edges() {
     const auto found = edges_.result(codec_step());
-    put(quantities().point_spread, found, &StepResponse::point_spread_px);
-    put(quantities().sharpening, found, &StepResponse::sharpening);
-    put(quantities().sharpening_radius, found, &StepResponse::sharpening_px);
+    put(quantities().point_spread, found, &optics::StepResponse::point_spread_px);
+    put(quantities().sharpening, found, &optics::StepResponse::sharpening);
+    put(quantities().sharpening_radius, found, &optics::StepResponse::sharpening_px);
     if (!found) {
       quantities().chroma_spread.missing = found.why();
       return;
@@ -228,7 +275,8 @@ class Session {
 
   void take_shutter() {
     put(quantities().exposure, in_seconds(blur_.share()));
-    const auto downwards_s = in_seconds(readout_share(steps_, result_.width, result_.height));
+    const auto downwards_s =
+        in_seconds(sensor::readout_share(steps_, result_.width, result_.height));
     if (!downwards_s) {
       quantities().readout.missing = downwards_s.why();
       return;
@@ -248,7 +296,7 @@ class Session {
     const Horizons horizons = accepted_horizons(finder, sampled_, [this] { stop_if_asked(); });
     take_horizons(horizons);
     result_.sky_picture = tinted_sky(lens, sampled_, horizons.found);
-    AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
+    air::AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
     const auto first_from_level = level_attitude(sampled_, horizons.found, options_.heading_deg);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       const auto& [picture, frame, cam_from_first] = sampled_[i];
@@ -259,7 +307,7 @@ class Session {
       else if (!options_.lens && horizons.found[i])
         air.add(picture, horizon::cam_from_level(horizons.found[i]->up_in_cam));
     }
-    const Air measured = air.air(options_.stop);
+    const air::Air measured = air.air(options_.stop);
     put(quantities().airlight, measured.airlight);
     quantities().extinction =
         extinction_quantity(measured, options_.altitude_m.has_value() && options_.lens.has_value());
@@ -294,28 +342,28 @@ class Session {
     }
   }
 
-  void take_sun(const AirMeter& air, bool level_known) {
-    const auto sun = [&]() -> Measured<Sun> {
+  void take_sun(const air::AirMeter& air, bool level_known) {
+    const auto sun = [&]() -> Measured<air::Sun> {
       if (!options_.lens) return NotMeasured{"the lens is not known (--lens)"};
       if (!level_known) return NotMeasured{"no horizon is seen that says where level is"};
       return air.sun();
     }();
-    put(quantities().sun_azimuth, sun, &Sun::azimuth_deg);
-    put(quantities().sun_elevation, sun, &Sun::elevation_deg);
+    put(quantities().sun_azimuth, sun, &air::Sun::azimuth_deg);
+    put(quantities().sun_elevation, sun, &air::Sun::elevation_deg);
   }
 
   Options options_;
   video::Reader reader_;
   Calibration result_;
-  NoiseMeter noise_;
-  EdgeMeter edges_;
-  BlurMeter blur_;
+  sensor::NoiseMeter noise_;
+  optics::EdgeMeter edges_;
+  sensor::BlurMeter blur_;
   motion::Estimator planar_;
   std::optional<motion::Estimator> turning_;
   // Of the frame before, its motion from the reference; empty if that was not measured.
   std::optional<Homography> frame_before_;
   // One entry per shot.
-  std::vector<Steps> steps_ = std::vector<Steps>(1);
+  std::vector<sensor::Steps> steps_ = std::vector<sensor::Steps>(1);
   std::vector<double> quantisers_;
   // One rotation per frame; empty without a lens.
   std::vector<Quaternion> cam_from_first_;
@@ -330,8 +378,4 @@ Calibration calibrate(const fs::path& video, const Options& options) {
   return Session(video, options).run();
 }
 
-std::string lens_words(const lens::Lens& lens) {
-  return fmt::format("{} {:.1f} px", lens.name(), lens.focal_px());
-}
-
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

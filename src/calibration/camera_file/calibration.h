@@ -5,49 +5,35 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
-#include "calibration/air/frame_horizon.h"
 #include "calibration/camera_file/quantities.h"
 #include "calibration/measured/measured.h"
 #include "calibration/optics/edge_profile.h"
-#include "calibration/sensor/noise_point.h"
+#include "calibration/sensor/noise.h"
 #include "camera/lens/lens.h"
-#include "foundation/base/log.h"
-#include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 #include "scene/scene/scene.h"
 
-// Measures the camera model and the air of a scene from a video clip alone: point spread,
-// sharpening, noise, exposure, rolling shutter, codec step, airlight, extinction and sun. These are
-// the values of scene::CameraModel. Each value has a standard error, or the reason why the clip
+// The camera model and the air of a scene as they were measured, and the text of camera.toml. These
+// are the values of scene::CameraModel. Each value has a standard error, or the reason why the clip
 // does not show it.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  // The lens of the camera. Sun, horizon and extinction need it.
-  std::optional<lens::Lens> lens;
-  // Pixels that show the own aircraft; nullptr if none do. It must outlive the call.
-  const image::Mask* own_aircraft = nullptr;
-  // Height of the camera above the ground, metres. The extinction needs it.
-  std::optional<double> altitude_m;
-  // Heading of the camera in the first frame, degrees. The azimuth of the sun is relative to it.
-  double heading_deg = 0;
-  // The camera's tone curve. It is an input because one clip does not determine it.
-  image::ToneCurve tone;
-  // The frames to measure: `frame_count` of them from `first_frame` on; if empty, all.
-  std::int64_t first_frame = 0;
-  std::optional<std::int64_t> frame_count;
-  Warn warn;
-  std::stop_token stop;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
+// The horizon found in one frame.
+struct FrameHorizon {
+  std::int64_t frame = 0;
+  // Pitch of the camera, positive upwards.
+  double pitch_deg = 0;
+  // Roll of the camera, positive with the right wing down.
+  double roll_deg = 0;
+  // The distance between the colours of sky and ground, in their standard deviations.
+  double separation = 0;
 };
 
 // The result of a calibration.
@@ -76,16 +62,12 @@ struct Calibration {
   // sequence that begins at a later frame turns the azimuth of the sun by it. Empty without a lens
   // or a horizon; it ends at the first cut.
   std::vector<double> yaw_from_first_deg;
-  std::vector<NoisePoint> noise;
-  EdgeProfile edge;
+  std::vector<sensor::NoisePoint> noise;
+  optics::EdgeProfile edge;
   std::vector<FrameHorizon> horizons;
   // A frame with its sky tinted, for the plots.
   std::optional<image::Rgb8> sky_picture;
 };
-
-// Measures the clip in one pass over its frames. Throws Error if the file is not a video. What a
-// clip is too short or too still to show is not measured (quantities.h).
-Calibration calibrate(const fs::path& video, const Options& options);
 
 // Whether a readout time differs significantly from 0 and so shows a rolling shutter: its magnitude
 // exceeds twice its standard error.
@@ -100,4 +82,4 @@ scene::CameraModel model_of(const Calibration& calibration);
 // The name and the focal length of a lens, such as "fisheye 562.7 px", for messages and files.
 std::string lens_words(const lens::Lens& lens);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

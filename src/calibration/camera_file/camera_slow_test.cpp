@@ -11,7 +11,7 @@
 #include "picture/composite/sensor.h"
 
 // Camera effects that are applied to a virtual flight are measured from its clip.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
@@ -30,7 +30,7 @@ TEST(Calibrate, MeasuresTheNoiseThatWasInjected) {
     const Calibration c = calibrate(clip.path(), options);
     expect_within(c, "sensor.noise_correlation_px", what.sensor.noise_correlation_px, 0.1);
     // The curve as a whole: gain and floor trade against one another where little is dark.
-    for (const NoisePoint& p : c.noise) {
+    for (const sensor::NoisePoint& p : c.noise) {
       composite::Sensor fitted = what.sensor;
       fitted.noise_gain = c.quantities.at("sensor.noise_gain").value().value;
       fitted.noise_floor = c.quantities.at("sensor.noise_floor").value().value;
@@ -95,12 +95,13 @@ TEST(Calibrate, MeasuresWhatBecomesOfEdgesOverTheGroundAlone) {
     Clip clip;
     clip.write(synthetic::Flight(o), what);
     const Calibration c = calibrate(clip.path(), {});
-    const StepResponse truth{{put_in.spread_px, 0}, {put_in.amount, 0}, {put_in.radius_px, 0}};
-    const StepResponse found{c.quantities.at("optics.point_spread_px").value(),
-                             c.quantities.at("optics.sharpening").value(),
-                             c.quantities.at("optics.sharpening_px").value()};
-    const double truth_px = edge_spread_px(truth, 0.4, 0.6, {});
-    const double found_px = edge_spread_px(found, 0.4, 0.6, {});
+    const optics::StepResponse truth{
+        {put_in.spread_px, 0}, {put_in.amount, 0}, {put_in.radius_px, 0}};
+    const optics::StepResponse found{c.quantities.at("optics.point_spread_px").value(),
+                                     c.quantities.at("optics.sharpening").value(),
+                                     c.quantities.at("optics.sharpening_px").value()};
+    const double truth_px = optics::edge_spread_px(truth, 0.4, 0.6, {});
+    const double found_px = optics::edge_spread_px(found, 0.4, 0.6, {});
     std::printf("edge %.2f px (%.2f); spread %.3f (%.2f), sharpening %.3f (%.2f), %.2f px (%.2f)\n",
                 found_px,
                 truth_px,
@@ -222,4 +223,4 @@ TEST(Calibrate, MeasuresTheReadoutOfARollingShutter) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -11,7 +11,7 @@
 #include "foundation/image/colour.h"
 #include "picture/composite/spread.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 // The means of the squares of `finer` x `finer` samples of a plane.
@@ -187,4 +187,4 @@ void expect_within(const Calibration& c, const std::string& key, double truth, d
   EXPECT_NEAR(value, truth, share * truth) << key;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

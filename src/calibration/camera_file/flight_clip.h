@@ -5,14 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/calibrate.h"
 #include "picture/composite/sensor.h"
 #include "picture/video/writer.h"
 #include "scene/synthetic/flight.h"
 
 // For tests: writes virtual flights as video clips with a known camera effect, which the
 // calibration must then measure.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 // The camera effects that are applied to a flight.
 struct Injected {
@@ -58,4 +58,4 @@ synthetic::FlightOptions ideal(std::uint64_t seed);
 // `share` of `truth`.
 void expect_within(const Calibration& c, const std::string& key, double truth, double share);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -10,7 +10,7 @@
 #include "foundation/base/median.h"
 #include "picture/video/reader.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 struct Mean {
@@ -198,4 +198,4 @@ Calibration joined(std::vector<Calibration> clips) {
   return result;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -8,7 +8,7 @@
 #include "foundation/base/log.h"
 
 // Combines the calibrations of several clips of one camera into one.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 // The combination of several measurements of one quantity. If they agree, it is their mean weighted
 // by inverse variance, with the error of that mean. They disagree if chi-square exceeds its mean by
@@ -32,4 +32,4 @@ void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn&
 // `doubt`.
 Calibration joined(std::vector<Calibration> clips);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -7,7 +7,7 @@
 
 #include "foundation/base/seed.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 TEST(Join, AgreeingClipsMakeTheirWeightedMean) {
@@ -105,4 +105,4 @@ TEST(Join, ReadoutsOfBothWaysContradictOneAnother) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

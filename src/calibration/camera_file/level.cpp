@@ -7,7 +7,7 @@
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 Horizons accepted_horizons(const horizon::HorizonFinder& finder,
                            const std::vector<SampledFrame>& frames,
@@ -82,4 +82,4 @@ std::optional<image::Rgb8> tinted_sky(const lens::Lens& lens,
   return picture;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -14,7 +14,7 @@
 
 // The level of the world in a clip: the horizons of its sampled frames, and the attitude of the
 // camera that they have in common.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 // A frame that is used for horizon, sky and ground.
 struct SampledFrame {
@@ -52,4 +52,4 @@ std::optional<image::Rgb8> tinted_sky(const lens::Lens& lens,
                                       const std::vector<SampledFrame>& frames,
                                       const std::vector<FoundHorizon>& horizons);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 using plot::Plot;
@@ -21,12 +21,12 @@ Plot or_not_measured(Plot plot, bool is_measured) {
 }
 
 // Standard deviation of the noise over brightness.
-Plot noise_plot(const std::vector<NoisePoint>& points) {
+Plot noise_plot(const std::vector<sensor::NoisePoint>& points) {
   Plot plot{.title = "noise of luma",
             .x = {.label = "luma, 0 to 1", .min = 0, .max = 1},
             .y = {.label = "standard deviation, code values", .min = 0}};
   Series measured{.mark = plot::Mark::kPoints, .style = kMeasured};
-  for (const NoisePoint& p : points) {
+  for (const sensor::NoisePoint& p : points) {
     measured.x.push_back(p.luma);
     measured.y.push_back(p.sigma_codes);
   }
@@ -35,7 +35,7 @@ Plot noise_plot(const std::vector<NoisePoint>& points) {
 }
 
 // The profile of a sharp edge, measured and fitted. Heights beyond the axis are drawn at its end.
-Plot edge_plot(const EdgeProfile& edge) {
+Plot edge_plot(const optics::EdgeProfile& edge) {
   constexpr double kLowest = -0.3, kHighest = 1.3;
   Plot plot{.title = "step across sharp edges",
             .x = {.label = "px", .min = -6, .max = 6},
@@ -82,4 +82,4 @@ std::vector<Plot> plots_of(const Calibration& c) {
   return {noise_plot(c.noise), edge_plot(c.edge), horizon_plot(c), sky_plot(c)};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -12,7 +12,7 @@
 #include "foundation/base/median.h"
 #include "foundation/base/suggest.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 // The keys of the optics, which a clip shows together by its edges or not at all.
@@ -210,4 +210,4 @@ Calibration with_profile(Calibration measured, const CameraProfile& profile) {
   return measured;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -17,7 +17,7 @@
 // (v / s^2 + p / q^2) / (1 / s^2 + 1 / q^2) with the error 1 / sqrt(1 / s^2 + 1 / q^2). A value
 // with a large error moves to the profile; a value with a small error hardly changes. Example: 0.91
 // +- 0.45 px under a profile of 0.42 +- 0.10 px becomes 0.44 +- 0.10 px.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 struct CameraProfile {
   // Name of the profile, such as "gopro-karma"; empty if it does not describe one single camera.
@@ -68,4 +68,4 @@ Calibration with_profile(Calibration measured, const CameraProfile& profile);
 // known exactly.
 Estimate combined(const Estimate& a, const Estimate& b);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

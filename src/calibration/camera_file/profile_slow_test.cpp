@@ -11,7 +11,7 @@
 #include "picture/video/reader.h"
 
 // Virtual flights whose clips do not determine a value, or determine it several times.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 // The sky of a flight's picture, as a camera that looks up sees it. It has the noise of the
@@ -190,4 +190,4 @@ TEST(CalibrateWithProfile, JoinedClipsAgreeWithOneLongClip) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

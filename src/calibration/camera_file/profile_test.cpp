@@ -2,13 +2,14 @@
 #include "calibration/camera_file/profile.h"
 
 #include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
 #include "scene/scene/camera_keys.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 std::string said_by(const std::function<void()>& what) {
@@ -133,4 +134,4 @@ TEST(CameraProfile, IsRefusedForPicturesOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 
 void put(Quantity& quantity, const Measured<Estimate>& measured) {
   if (measured)
@@ -46,4 +46,4 @@ std::string_view QuantityKey::key() const {
   return whole.substr(whole.find('.') + 1);
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

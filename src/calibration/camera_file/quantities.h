@@ -16,7 +16,12 @@
 //   quantities.point_spread.values    -> {}
 //   quantities.point_spread.missing   -> "the clip shows 0 clean straight edges; it takes 12"
 //   quantities.at("sensor.noise_gain") is quantities.noise_gain
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
+
+using measured::ColourEstimate;
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
 
 // One quantity as a camera file states it.
 struct Quantity {
@@ -111,4 +116,4 @@ inline constexpr std::array<QuantityKey, 14> kQuantityKeys = {{
     {"light.sun_elevation_deg", "above the horizon", &Quantities::sun_elevation},
 }};
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

@@ -16,7 +16,7 @@
 #include "scene/synthetic/sky.h"
 
 // The surroundings of a camera are found from its clip: sun, air, horizon and the own aircraft.
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 // Calibrates an unchanged flight with its own lens.
@@ -117,7 +117,8 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
     Clip clip;
     clip.write(
         o, [&](int k) { return flight.frame(k); }, video::Format::kMp4);
-    const double iou = overlap(find_own_aircraft(clip.path(), {}), flight.own_aircraft());
+    const double iou =
+        overlap(own_aircraft::find_own_aircraft(clip.path(), {}), flight.own_aircraft());
     std::printf("own aircraft, flight %d: IoU %.3f\n", static_cast<int>(seed), iou);
     EXPECT_GE(iou, 0.95) << seed;
   }
@@ -214,11 +215,11 @@ TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
           return picture;
         },
         video::Format::kMp4);
-    const double iou = overlap(find_own_aircraft(clip.path(), {}), mask);
+    const double iou = overlap(own_aircraft::find_own_aircraft(clip.path(), {}), mask);
     std::printf("%s: IoU %.3f\n", name, iou);
     EXPECT_GE(iou, 0.93) << name;
   }
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::camera_file

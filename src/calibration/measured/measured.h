@@ -16,7 +16,7 @@
 //   share.why()      -> "too few frames in fast motion have a neighbour at rest"
 //
 // and of a clip that shows it, *share is {0.5, 0.02}: half of the frame interval, +- 2 % of it.
-namespace airtruth::calibration {
+namespace airtruth::measured {
 
 // A value and its standard error, both in the unit of the quantity that they belong to.
 struct Estimate {
@@ -52,4 +52,4 @@ class Measured {
   std::variant<Value, NotMeasured> held_;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::measured

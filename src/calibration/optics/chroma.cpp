@@ -12,7 +12,7 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -193,4 +193,4 @@ Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
   return Estimate{root_at(50), kMedianErrorRatio * scatter / std::sqrt(many)};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calibration/measured/measured.h"
-#include "calibration/optics/edge_line.h"
 #include "calibration/optics/step_response.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
@@ -13,7 +12,7 @@
 // Measures how much softer chroma is than luma across the same edges. Cameras and codecs keep less
 // colour detail than the grid of chroma samples could hold: on the clips of data/camera-profiles,
 // edges that luma crosses within 2 px are 6 to 9 px wide in Cb and Cr.
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 // The fitted step of Cb or of Cr across an edge.
 struct ChromaStep {
@@ -45,4 +44,4 @@ Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
                                  const StepResponse& response,
                                  const image::ToneCurve& tone);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

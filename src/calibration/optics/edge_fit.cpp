@@ -10,7 +10,7 @@
 
 #include "calibration/optics/step_model.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Bounds of the spread, px, and of the amount of the mask.
@@ -137,4 +137,4 @@ std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
   return fits;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

@@ -9,7 +9,7 @@
 #include "calibration/optics/step_response.h"
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 // The samples across one edge, averaged in bins of a quarter of a pixel.
 struct GatheredEdge {
@@ -47,4 +47,4 @@ std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
                                const image::ToneCurve& tone,
                                const std::vector<EdgeFit>& start = {});
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

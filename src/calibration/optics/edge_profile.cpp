@@ -7,7 +7,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Half the width of the profile and the width of its bins, px.
@@ -61,4 +61,4 @@ EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
   return profile;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

@@ -6,7 +6,7 @@
 #include "calibration/optics/step_response.h"
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 // The mean profile across the sharpest edges of a clip, with the fitted step response.
 struct EdgeProfile {
@@ -28,4 +28,4 @@ EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
                          const StepResponse& response,
                          const image::ToneCurve& tone);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

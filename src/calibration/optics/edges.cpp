@@ -13,7 +13,7 @@
 #include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -176,4 +176,4 @@ Measured<Estimate> EdgeMeter::chroma(const StepResponse& response, double codec_
   return chroma_spread(both, most_chroma_at_once_, response, tone_);
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

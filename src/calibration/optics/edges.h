@@ -6,7 +6,6 @@
 
 #include "calibration/measured/measured.h"
 #include "calibration/optics/chroma.h"
-#include "calibration/optics/edge_line.h"
 #include "calibration/optics/edge_profile.h"
 #include "calibration/optics/step_response.h"
 #include "foundation/geometry/transform.h"
@@ -14,7 +13,7 @@
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 struct StraightStep;
 
@@ -74,4 +73,4 @@ class EdgeMeter {
   EdgeProfile profile_;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

@@ -12,7 +12,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/patch_codec.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 constexpr double kSpreadPx = 1.0;
@@ -250,4 +250,4 @@ TEST(StepResponse, SpreadOfAnEdgeIsTheGaussians) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

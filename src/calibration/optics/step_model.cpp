@@ -8,7 +8,7 @@
 
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // The second integral of a Gaussian step (an error function).
@@ -88,4 +88,4 @@ std::pair<double, double> StepModel::at(double place_px) const {
   return {(1 - t) * heights_[i] + t * heights_[i + 1], (1 - t) * slope(i) + t * slope(i + 1)};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

@@ -8,7 +8,7 @@
 
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 // An unsharp mask on coded luma: the picture plus `amount` times the difference between the picture
 // and its Gaussian blur. `radius_px` is the standard deviation of the blur. Picture and blur are
@@ -55,4 +55,4 @@ class StepModel {
   double middle_ = 0;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

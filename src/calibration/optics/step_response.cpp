@@ -12,7 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -253,4 +253,4 @@ double edge_spread_px(const StepResponse& response,
   return first_above - last_below;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

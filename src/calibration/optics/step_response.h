@@ -10,7 +10,18 @@
 // The step response of a camera: a Gaussian point spread in linear light, the tone curve and an
 // unsharp mask on coded luma, each integrated over whole pixels (step_model.h). It is fitted to the
 // edges of a clip.
-namespace airtruth::calibration {
+namespace airtruth::optics {
+
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
+
+// A straight edge in luma, in pixels with integer centres.
+struct EdgeLine {
+  double x = 0, y = 0;    // a point on the edge
+  double nx = 0, ny = 0;  // unit vector across the edge
+  double half_length_px = 0;
+};
 
 // Samples across one straight edge.
 struct StepEdge {
@@ -57,4 +68,4 @@ double edge_spread_px(const StepResponse& response,
                       double high,
                       const image::ToneCurve& tone);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

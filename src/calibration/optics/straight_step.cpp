@@ -9,7 +9,7 @@
 
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::calibration {
+namespace airtruth::optics {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -262,4 +262,4 @@ std::optional<StraightStep> straight_step_at(const cv::Mat& grey, const SteepPla
   return std::nullopt;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

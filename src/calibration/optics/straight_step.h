@@ -7,11 +7,11 @@
 
 #include <opencv2/core.hpp>
 
-#include "calibration/optics/edge_line.h"
+#include "calibration/optics/step_response.h"
 
 // Finds straight steps of luma in one picture and samples the profile across them to a fraction of
 // a pixel (the slanted-edge method of ISO 12233). Pixels have integer centres.
-namespace airtruth::calibration {
+namespace airtruth::optics {
 
 // Half the lengths of edges that are sought, px. The profile of a long edge is less affected by
 // what happens to lie beside the edge, but not every clip has enough long edges.
@@ -40,4 +40,4 @@ struct StraightStep {
 // empty if it is over neither.
 std::optional<StraightStep> straight_step_at(const cv::Mat& grey, const SteepPlace& place);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::optics

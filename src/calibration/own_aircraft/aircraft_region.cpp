@@ -8,7 +8,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 namespace {
 
 // The constants of this file were chosen on the virtual flights of surroundings_slow_test.cpp.
@@ -137,4 +137,4 @@ cv::Mat refined(const cv::Mat& region,
   return found;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

@@ -5,7 +5,7 @@
 
 // The region of the own aircraft, from a first decision for each pixel. Matrices are at the working
 // size unless their comment says otherwise; a region is 1 at the aircraft and 0 elsewhere.
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 
 // The largest standard deviation over time, code values, that a pixel of the aircraft may have: a
 // multiple of the one that most of the candidate pixels have.
@@ -31,4 +31,4 @@ cv::Mat refined(const cv::Mat& region,
                 const cv::Mat& spread,
                 float steady);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 namespace {
 
 // Standard deviation of the blur of kept frames, working pixels: it suppresses noise and the
@@ -87,4 +87,4 @@ KeptFrames keep_frames(video::Reader& reader, const MaskOptions& options, double
   return kept;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

@@ -10,7 +10,7 @@
 #include "picture/video/reader.h"
 
 // The frames of a clip from which the mask of the own aircraft is found.
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 
 // Number of frames that are kept of a clip, spread over it: at least half as many, at most twice as
 // many, since the length of a clip is an estimate. It bounds memory: a kept frame takes 1 MB at the
@@ -46,4 +46,4 @@ struct KeptFrames {
 // world. Throws Interrupted if options.stop asks for it.
 KeptFrames keep_frames(video::Reader& reader, const MaskOptions& options, double scale);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"
 
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 namespace {
 
 // Long side of the reduced picture on which the method works, px: it bounds the time of GrabCut.
@@ -79,4 +79,4 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
   return mask_of(refined(region, features, sums.spread(), steady));
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

@@ -10,7 +10,7 @@
 #include "foundation/base/log.h"
 #include "foundation/image/layer.h"
 
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 
 namespace fs = std::filesystem;
 
@@ -31,4 +31,4 @@ struct MaskOptions {
 // certainly aircraft. Throws Error if the video is too short or too still to separate the two.
 image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

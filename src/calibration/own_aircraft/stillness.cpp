@@ -7,7 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 namespace {
 
 // Distances between the frames of a pair, in kept frames: slow and fast motion are both covered.
@@ -128,4 +128,4 @@ cv::Mat labels_by_stillness(const Stillness& pairs) {
   return labels;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

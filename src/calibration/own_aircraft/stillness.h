@@ -8,7 +8,7 @@
 #include "calibration/own_aircraft/kept_frames.h"
 
 // What pairs of frames say about each pixel: whether it stays still, or moves with the world.
-namespace airtruth::calibration {
+namespace airtruth::own_aircraft {
 
 // Least motion between the frames of a pair, px at the working size. With less, both hypotheses fit
 // the edges of either.
@@ -32,4 +32,4 @@ Stillness stillness_of(const std::vector<KeptFrame>& frames, double scale);
 // the world) or probable (GC_PR_FGD, GC_PR_BGD).
 cv::Mat labels_by_stillness(const Stillness& pairs);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::own_aircraft

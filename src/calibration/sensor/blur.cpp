@@ -10,7 +10,7 @@
 #include "camera/motion/corners.h"
 #include "camera/motion/shake.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -218,4 +218,4 @@ Measured<Estimate> BlurMeter::share() const {
   return result;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

@@ -11,7 +11,11 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
+
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
 
 // The derivative of evenly spaced samples at index k, in pixels per sample. The filter is the ideal
 // differentiator (-1)^(j + 1) / j under a Hann window, which is accurate to near the Nyquist
@@ -52,4 +56,4 @@ class BlurMeter {
   std::size_t frames_ = 0;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

@@ -10,7 +10,7 @@
 #include "picture/composite/sensor.h"
 #include "picture/composite/spread.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
 namespace {
 
 // Where a constant of this file states no origin, it was chosen on the virtual flights of
@@ -266,4 +266,4 @@ Estimate NoiseMeter::correlation_px() const {
   return {width, off > 0 ? off : std::max(1.0, width)};
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

@@ -4,12 +4,25 @@
 #include <vector>
 
 #include "calibration/measured/measured.h"
-#include "calibration/sensor/noise_point.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
+
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
+
+// Luma noise at one brightness: one of the points to which the noise curve is fitted.
+struct NoisePoint {
+  // Coded luma, 0 to 1.
+  double luma = 0;
+  // Standard deviation of the luma, code values.
+  double sigma_codes = 0;
+  // The number of flat blocks that the point stands for.
+  int blocks = 0;
+};
 
 // Measures luma noise in flat blocks of pairs of frames. One frame of a pair decides which blocks
 // are flat and the other frame gives their variance, so that the selection does not bias the value.
@@ -52,4 +65,4 @@ class NoiseMeter {
   std::vector<Block> blocks_;
 };
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

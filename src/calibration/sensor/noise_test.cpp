@@ -10,7 +10,7 @@
 #include "picture/composite/sensor.h"
 
 // Noise that is added to still stripes is measured from them.
-namespace airtruth::calibration {
+namespace airtruth::sensor {
 namespace {
 
 constexpr float kCodesPerUnit = 219;
@@ -83,4 +83,4 @@ TEST(NoiseMeter, OneBrightnessIsNoCurve) {
 }
 
 }  // namespace
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

@@ -9,7 +9,7 @@
 #include "calibration/sensor/blur.h"
 #include "foundation/base/median.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
 namespace {
 
 // The shear that errors of the corners cause (0.2 px, 100 corners, at a mean distance of 200 px
@@ -126,4 +126,4 @@ Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int
   return share;
 }
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

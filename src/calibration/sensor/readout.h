@@ -7,7 +7,11 @@
 #include "calibration/measured/measured.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::calibration {
+namespace airtruth::sensor {
+
+using measured::Estimate;
+using measured::Measured;
+using measured::NotMeasured;
 
 // The motion of each frame of one shot from the frame before it (frame k from frame k - 1), in
 // pixels. An entry is empty if the motion is not known, as for the first frame of a shot.
@@ -21,4 +25,4 @@ using Steps = std::vector<std::optional<Homography>>;
 // changes too little, and where the shear is larger than a readout over a whole frame would cause.
 Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height);
 
-}  // namespace airtruth::calibration
+}  // namespace airtruth::sensor

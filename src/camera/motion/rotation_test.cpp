@@ -147,7 +147,7 @@ double off_level_deg(const Quaternion& measured, const Quaternion& truth, const 
 
 // A key frame per second for two hours, each linked with an error of a fiftieth of a degree, drifts
 // by more than a degree in all. The horizons are accurate to a third of a degree.
-TEST(horizon::HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
+TEST(HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
   Random random(5);
   const auto noise = [&](double sigma_deg) {
     return turn(0, sigma_deg * random.normal(), sigma_deg * random.normal());
@@ -175,7 +175,7 @@ TEST(horizon::HorizonHold, HoldsARandomWalkAndLeavesWhatDoesNotStrayAlone) {
   }
 }
 
-TEST(horizon::HorizonHold, PutsRightWhatWasLostAndForgetsWhatCannotBe) {
+TEST(HorizonHold, PutsRightWhatWasLostAndForgetsWhatCannotBe) {
   const Vector3 up = Vector3(0, -1, 0.1).normalized();
   horizon::HorizonHold hold;
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(hold.see(Quaternion::Identity(), up));

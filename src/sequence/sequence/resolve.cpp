@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "calibration/camera_file/cache.h"
-#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/calibrate.h"
 #include "calibration/camera_file/profile.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -32,7 +32,7 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
                             size.width,
                             size.height),
                 {path.string()});
-  const std::string lens = calibration::lens_words(lens_of(scene.lens, size));
+  const std::string lens = camera_file::lens_words(lens_of(scene.lens, size));
   if (!file.lens.empty() && file.lens != lens)
     throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
                 {path.string()});
@@ -45,11 +45,11 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
 }
 
 // Measures the whole clip, so that all scenes over one clip have the same camera.
-calibration::Calibration measured_on(const scene::Scene& scene,
+camera_file::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
                                      const image::Mask* mask,
                                      const Options& options) {
-  calibration::Options how;
+  camera_file::Options how;
   how.lens = lens_of(scene.lens, size);
   how.own_aircraft = mask;
   if (!scene.camera.path_file && !scene.camera.log && scene.camera.position_ned_m.z() < 0)
@@ -60,19 +60,19 @@ calibration::Calibration measured_on(const scene::Scene& scene,
   how.progress = [&](std::int64_t done, std::int64_t total) {
     if (options.progress) options.progress({done, total, "measuring the camera"});
   };
-  calibration::CacheKey key;
+  camera_file::CacheKey key;
   key.video_sha256 = sha256_of_video(scene.background.video, options.shared.get());
   if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
   key.lens = words_of(*how.lens);
   key.altitude_m = how.altitude_m;
   key.tone = how.tone;
-  return calibration::calibrate_once(
+  return camera_file::calibrate_once(
       scene.background.video, how, cache_of(options, "calibration"), key);
 }
 
 // From north, where the calibration has it from the heading of the camera in the clip's first
 // frame.
-double sun_azimuth_deg(const scene::Scene& scene, const calibration::Calibration& found) {
+double sun_azimuth_deg(const scene::Scene& scene, const camera_file::Calibration& found) {
   const auto first = static_cast<std::size_t>(scene.background.first_frame);
   const double turned_deg =
       first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
@@ -145,7 +145,7 @@ void check_profile(const scene::Realism& realism,
                    const video::StreamInfo& info,
                    bool is_any_to_measure) {
   if (!realism.profile) return;
-  calibration::check_size(calibration::camera_profile(*realism.profile, realism.where),
+  camera_file::check_size(camera_file::camera_profile(*realism.profile, realism.where),
                           info.width,
                           info.height,
                           realism.where);
@@ -158,23 +158,23 @@ void check_profile(const scene::Realism& realism,
 
 // The measured values, combined with the camera's profile; where no profile is named, by the median
 // of cameras.
-calibration::Calibration with_camera(calibration::Calibration measured,
+camera_file::Calibration with_camera(camera_file::Calibration measured,
                                      const scene::Realism& realism) {
-  return calibration::with_profile(
+  return camera_file::with_profile(
       std::move(measured),
-      realism.profile ? calibration::camera_profile(*realism.profile, realism.where)
-                      : calibration::usual_camera());
+      realism.profile ? camera_file::camera_profile(*realism.profile, realism.where)
+                      : camera_file::usual_camera());
 }
 
 // Takes the requested values from the clip, as far as it can be measured, and from the camera's
 // profile.
 void take_measured(scene::Scene& scene,
                    const StatedScene& stated,
-                   calibration::Calibration measured,
+                   camera_file::Calibration measured,
                    const Warn& to_warn) {
-  const calibration::Quantities of_clip = measured.quantities;
-  const calibration::Calibration found = with_camera(std::move(measured), stated.realism);
-  const scene::CameraModel from_clip = calibration::model_of(found);
+  const camera_file::Quantities of_clip = measured.quantities;
+  const camera_file::Calibration found = with_camera(std::move(measured), stated.realism);
+  const scene::CameraModel from_clip = camera_file::model_of(found);
   scene::for_each_camera_key(
       [&](const char* key, auto& value, const auto& seen) {
         const auto& wanted = stated.to_measure;

@@ -37,13 +37,13 @@ class Resolve : public testing::Test {
   }
   ~Resolve() override { fs::remove_all(root_); }
 
-  void keep(const calibration::Calibration& calibration) const {
-    calibration::CacheKey key;
+  void keep(const camera_file::Calibration& calibration) const {
+    camera_file::CacheKey key;
     key.video_sha256 = sha256_of_file(scene_.background.video);
     key.lens = words_of(lens_of(scene_.lens, {640, 480}));
     key.altitude_m = 150;
     key.tone = tone_of(scene_.camera_model);
-    calibration::store(disk_cache::Cache(root_ / "calibration"), key, calibration);
+    camera_file::store(disk_cache::Cache(root_ / "calibration"), key, calibration);
   }
 
   scene::Scene resolve() const {
@@ -60,7 +60,7 @@ class Resolve : public testing::Test {
 // The camera has turned by 30 degrees to the right when the scene begins, where it heads 10 degrees
 // from north: the sun, 100 degrees to the right of the clip's first frame, stands at 80 degrees.
 TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
-  calibration::Calibration found;
+  camera_file::Calibration found;
   found.quantities.at("sensor.codec_step").values = {{7, 1}};
   found.quantities.at("light.sun_azimuth_deg").values = {{100, 1}};
   found.quantities.at("light.sun_elevation_deg").values = {{40, 1}};
@@ -81,7 +81,7 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
 
 // All scenes over a clip use the same calibration, whatever part of the clip they use.
 TEST_F(Resolve, EveryPartOfAClipHasOneCamera) {
-  calibration::Calibration found;
+  camera_file::Calibration found;
   found.quantities.at("sensor.codec_step").values = {{1.0 / 3, 1}};
   keep(found);
   EXPECT_TRUE(needs_calibration());
@@ -107,7 +107,7 @@ std::string said_by(const std::function<void()>& what) {
 // A clip without edges: an error where the scene allows no fallback, the median over cameras with
 // fallback, the profile's value where one is named, and no value where none is requested.
 TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
-  calibration::Calibration found;
+  camera_file::Calibration found;
   found.width = info_.width, found.height = info_.height;
   found.quantities.at("optics.point_spread_px").missing = "no edges";
   keep(found);
@@ -118,7 +118,7 @@ TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
   options_.warn = [&](const std::string& text) { warnings.push_back(text); };
   scene_.realism.fallback = true;
   EXPECT_EQ(resolve().camera_model.point_spread_px,
-            calibration::usual_camera().values.at("optics.point_spread_px").value);
+            camera_file::usual_camera().values.at("optics.point_spread_px").value);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("it is of the median over"), std::string::npos) << warnings[0];
   scene_.realism.profile = "none";
@@ -127,12 +127,12 @@ TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
   scene_.realism.profile = "fixed-wing-nose";
   EXPECT_EQ(
       resolve().camera_model.point_spread_px,
-      calibration::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
+      camera_file::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
 }
 
 TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   constexpr const char* kKey = "sensor.chroma_spread_px";
-  calibration::Calibration found;
+  camera_file::Calibration found;
   found.width = info_.width, found.height = info_.height;
   found.quantities.at(kKey).missing = "no colour";
   keep(found);
@@ -140,7 +140,7 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
   std::vector<std::string> warnings;
   options_.warn = [&](const std::string& text) { warnings.push_back(text); };
   EXPECT_EQ(resolve().camera_model.chroma_spread_px,
-            calibration::usual_camera().values.at(kKey).value);
+            camera_file::usual_camera().values.at(kKey).value);
   scene_.realism.profile = "none";
   EXPECT_FALSE(resolve().camera_model.chroma_spread_px);
   ASSERT_EQ(warnings.size(), 2u);
@@ -152,7 +152,7 @@ TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
 // uses the codec step where there is one.
 TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   constexpr const char* kKey = "sensor.codec_step";
-  calibration::Calibration found;
+  camera_file::Calibration found;
   found.width = info_.width, found.height = info_.height;
   scene::for_each_camera_key(
       [&](const std::string& key, const auto&) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera_file/calibration.h"
+
 #include <array>
 #include <string_view>
 #include <type_traits>
 
 #include <fmt/format.h>
 
-#include "calibration/camera_file/calibration.h"
 #include "scene/scene/camera_keys.h"
 
-namespace airtruth::calibration {
+namespace airtruth::camera_file {
 namespace {
 
 // A number as text, with four significant digits.
@@ -100,4 +101,8 @@ scene::CameraModel model_of(const Calibration& c) {
   return model;
 }
 
-}  // namespace airtruth::calibration
+std::string lens_words(const lens::Lens& lens) {
+  return fmt::format("{} {:.1f} px", lens.name(), lens.focal_px());
+}
+
+}  // namespace airtruth::camera_file
