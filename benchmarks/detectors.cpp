@@ -16,8 +16,8 @@
 #include <malloc.h>
 #include <opencv2/core.hpp>
 
-#include "detection/classical/classical.h"
-#include "detection/run/frames.h"
+#include "runners/classical/classical.h"
+#include "runners/runs/clip_frames.h"
 
 namespace {
 
@@ -49,16 +49,16 @@ void print(const std::string& video, const std::string& what, std::vector<double
 }
 
 void measure(const std::string& video) {
-  const detection::DetectionClip clip = detection::clip_of(std::filesystem::path(video));
-  detection::ClipFrames frames(clip, true, {});
-  std::map<std::string, std::unique_ptr<detection::Detector>> detectors;
-  for (const std::string& name : detection::classical_names()) {
-    detectors[name] = detection::make_classical(name);
+  const runs::DetectionClip clip = runs::clip_of(std::filesystem::path(video));
+  runs::ClipFrames frames(clip, true, {});
+  std::map<std::string, std::unique_ptr<detector::Detector>> detectors;
+  for (const std::string& name : classical::classical_names()) {
+    detectors[name] = classical::make_classical(name);
     detectors[name]->begin(frames.sequence());
   }
   std::vector<double> motion_ms;
   std::map<std::string, std::vector<double>> ms;
-  std::optional<detection::FrameInput> frame;
+  std::optional<detector::FrameInput> frame;
   while (true) {
     const double took_ms = timed_ms([&] { frame = frames.next(); });
     if (!frame) break;

@@ -15,9 +15,9 @@
 #include <opencv2/core.hpp>
 #include <sched.h>
 
-#include "benchmark/tracking/tracker.h"
 #include "foundation/base/seed.h"
 #include "foundation/image/picture.h"
+#include "runners/tracking/tracker.h"
 
 namespace {
 

@@ -10,17 +10,18 @@
 
 #include <unistd.h>
 
-#include "detection/detections/fault.h"
-#include "detection/detections/results_folder.h"
-#include "detection/external/protocol.h"
 #include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "runners/detector/protocol.h"
+#include "runners/results/fault.h"
+#include "runners/results/results_folder.h"
 
 namespace {
 
 using namespace airtruth;
-using namespace airtruth::detection;
+using namespace airtruth::detector;
+using namespace airtruth::results;
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
@@ -114,7 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     read(static_cast<Kind>(data[0] % static_cast<int>(Kind::kCount)), content);
   } catch (const Error&) {
-  } catch (const DetectorFailed&) {
+  } catch (const process::Failure&) {
   }
   return 0;
 }

@@ -7,15 +7,15 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "detection/network/model_description.h"
-#include "detection/network/network_output.h"
-#include "detection/network/tensor.h"
 #include "foundation/base/error.h"
+#include "runners/network/model_description.h"
+#include "runners/network/network_output.h"
+#include "runners/network/tensor.h"
 
 namespace {
 
 using namespace airtruth;
-using namespace airtruth::detection;
+using namespace airtruth::network;
 
 ModelDescription description(bool heat_map) {
   ModelDescription description;
@@ -28,9 +28,9 @@ ModelDescription description(bool heat_map) {
   return description;
 }
 
-void check(const std::vector<Detection>& found) {
+void check(const std::vector<results::Detection>& found) {
   if (found.size() > kMostDetections) std::abort();
-  for (const Detection& one : found) {
+  for (const results::Detection& one : found) {
     const double sum = one.score + one.box_px.x + one.box_px.y + one.box_px.area();
     if (!std::isfinite(sum) || one.box_px.width <= 0 || one.box_px.height <= 0) std::abort();
   }

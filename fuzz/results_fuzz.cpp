@@ -9,9 +9,9 @@
 
 #include <unistd.h>
 
-#include "benchmark/experiment/trajectories.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "runners/results/trajectories.h"
 
 namespace {
 
@@ -55,7 +55,7 @@ exchange::Clip clip() {
   return clip;
 }
 
-void check(const experiment::Results::Run& run) {
+void check(const results::TrackerResults::Run& run) {
   if (!run.seconds.empty() && run.seconds.size() != run.frames.size()) std::abort();
   for (const evaluation::VotFrame& frame : run.frames)
     if (frame.box && !(frame.box->width > 0 && frame.box->height > 0 &&
@@ -76,17 +76,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       folder() / one.file, has_times ? "1,2,3,4\n1,2,3,4\n1,2,3,4\n" : content, Flush::kLater);
   if (has_times) write_file(folder() / one.times, content, Flush::kLater);
   const exchange::Clip truth = clip();
-  experiment::Results results;
+  results::TrackerResults results;
   try {
-    results = experiment::read_results(folder(), truth, data[0] & 128 ? 1 : 0);
+    results = results::read_results(folder(), truth, data[0] & 128 ? 1 : 0);
   } catch (const Error&) {
     return 0;
   }
   if (results.anchors.size() != results.multistart.size()) std::abort();
   for (const auto* runs : {&results.one_pass, &results.restart, &results.multistart})
-    for (const experiment::Results::Run& run : *runs) check(run);
+    for (const results::TrackerResults::Run& run : *runs) check(run);
   for (const auto* runs : {&results.one_pass, &results.restart})
-    for (const experiment::Results::Run& run : *runs)
+    for (const results::TrackerResults::Run& run : *runs)
       if (run.frames.size() != truth.frames.size()) std::abort();
   return 0;
 }

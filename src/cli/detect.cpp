@@ -8,9 +8,9 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
-#include "detection/run/run.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
+#include "runners/runs/detector_run.h"
 
 namespace airtruth::cli {
 namespace {
@@ -23,10 +23,10 @@ struct Detect {
   bool associate = false;
   std::string declare;
   std::optional<double> confident;
-  detection::RunOptions options;
+  runs::DetectOptions options;
 };
 
-void tell(const detection::RunSummary& summary, Context& context) {
+void tell(const runs::DetectSummary& summary, Context& context) {
   const double rate =
       summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
   context.console().result(
@@ -42,7 +42,7 @@ void tell(const detection::RunSummary& summary, Context& context) {
 }
 
 // "3/5"
-void read_declare(const std::string& text, detection::AssociationOptions& association) {
+void read_declare(const std::string& text, association::AssociationOptions& association) {
   const std::size_t slash = text.find('/');
   const auto number = [&](std::string_view digits) {
     int value = 0;
@@ -56,13 +56,13 @@ void read_declare(const std::string& text, detection::AssociationOptions& associ
   association.declare_n = number(std::string_view(text).substr(slash + 1));
 }
 
-std::optional<detection::AssociationOptions> association_of(const Detect& arguments) {
+std::optional<association::AssociationOptions> association_of(const Detect& arguments) {
   if (!arguments.associate) {
     if (!arguments.declare.empty() || arguments.confident)
       throw Error("--declare and --confident are for --associate");
     return std::nullopt;
   }
-  detection::AssociationOptions association;
+  association::AssociationOptions association;
   if (!arguments.declare.empty()) read_declare(arguments.declare, association);
   association.confident_score = arguments.confident;
   return association;
@@ -70,7 +70,7 @@ std::optional<detection::AssociationOptions> association_of(const Detect& argume
 
 void run_detect(Detect arguments, Context& context) {
   Console& console = context.console();
-  detection::RunOptions& options = arguments.options;
+  runs::DetectOptions& options = arguments.options;
   options.warn = console.warn();
   options.stop = context.stop;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
@@ -80,13 +80,12 @@ void run_detect(Detect arguments, Context& context) {
     console.progress("detecting", done, total, "done");
   };
   check_output_folder(arguments.out);
-  for (const detection::RunSummary& summary :
-       detection::run(arguments.source, arguments.out, options))
+  for (const runs::DetectSummary& summary : runs::detect(arguments.source, arguments.out, options))
     tell(summary, context);
 }
 
 void add_options(CLI::App& command, Detect& arguments) {
-  detection::RunOptions& options = arguments.options;
+  runs::DetectOptions& options = arguments.options;
   command
       .add_option("DIR|VIDEO",
                   arguments.source,
@@ -96,8 +95,8 @@ void add_options(CLI::App& command, Detect& arguments) {
       .add_option("--detector,-d",
                   options.detectors,
                   fmt::format("One or more of {}, {}; NAME=DETECTOR names its results",
-                              fmt::join(detection::detector_names(), ", "),
-                              fmt::join(detection::detector_forms(), ", ")))
+                              fmt::join(runs::detector_names(), ", "),
+                              fmt::join(runs::detector_forms(), ", ")))
       ->required();
   command
       .add_option("--out,-o",

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "benchmark/experiment/run.h"
-#include "benchmark/tracking/tracker.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/output_check.h"
+#include "runners/runs/tracker_run.h"
+#include "runners/tracking/tracker.h"
 
 namespace airtruth::cli {
 namespace {
@@ -22,7 +22,7 @@ struct Track {
   std::string protocol = "ope";
   std::string init;
   std::int64_t first_frame = 0;
-  experiment::RunOptions options;
+  runs::TrackOptions options;
 };
 
 // "x,y,w,h".
@@ -45,7 +45,7 @@ Box box_of(const std::string& text) {
   return {n[0], n[1], n[2], n[3]};
 }
 
-void tell(const experiment::RunSummary& summary, const char* unit, Console& console) {
+void tell(const runs::TrackSummary& summary, const char* unit, Console& console) {
   const double rate =
       summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
   console.result(
@@ -62,7 +62,7 @@ void refuse_mixed(const Track& arguments, bool is_video) {
   const fs::path source = arguments.source;
   if (!fs::exists(source) && source.string().find('%') == std::string::npos)
     throw Error("does not exist", {source.string()});
-  if (is_video && arguments.options.protocol != experiment::Protocol::kOnePass)
+  if (is_video && arguments.options.protocol != results::Protocol::kOnePass)
     throw Error("--protocol " + arguments.protocol +
                 " begins a tracker on truth; a video with --init has none");
   if (!is_video && !fs::is_directory(source))
@@ -74,10 +74,10 @@ void refuse_mixed(const Track& arguments, bool is_video) {
 
 void run_track(Track arguments, Context& context) {
   Console& console = context.console();
-  experiment::RunOptions& options = arguments.options;
+  runs::TrackOptions& options = arguments.options;
   options.warn = console.warn();
   options.stop = context.stop;
-  options.protocol = experiment::protocol_from_name(arguments.protocol);
+  options.protocol = results::protocol_from_name(arguments.protocol);
   const bool is_video = !arguments.init.empty();
   refuse_mixed(arguments, is_video);
   const Box init = is_video ? box_of(arguments.init) : Box{};
@@ -86,7 +86,7 @@ void run_track(Track arguments, Context& context) {
   // TraX are started only in their turn.
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
-    if (!tracking::is_trax(tracker)) experiment::check_run(arguments.out, options);
+    if (!tracking::is_trax(tracker)) runs::check_track(arguments.out, options);
   }
   for (const std::string& tracker : arguments.trackers) {
     options.tracker = tracker;
@@ -94,12 +94,11 @@ void run_track(Track arguments, Context& context) {
       console.progress("tracking with " + tracker, done, total, is_video ? "frames" : "sequences");
     };
     if (is_video)
-      tell(experiment::run_on_video(
-               arguments.source, init, arguments.first_frame, arguments.out, options),
+      tell(runs::track_video(arguments.source, init, arguments.first_frame, arguments.out, options),
            "video",
            console);
     else
-      tell(experiment::run(arguments.source, arguments.out, options), "runs", console);
+      tell(runs::track(arguments.source, arguments.out, options), "runs", console);
   }
 }
 
@@ -134,7 +133,7 @@ void add_source_options(CLI::App& command, Track& arguments) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
 }
 
-void add_run_options(CLI::App& command, experiment::RunOptions& options) {
+void add_run_options(CLI::App& command, runs::TrackOptions& options) {
   command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
   command.add_option("--seed", options.seed, "Of the trackers' random numbers (default: 1)");
   command.add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")

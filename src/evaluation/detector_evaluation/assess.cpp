@@ -11,19 +11,19 @@
 
 #include <fmt/format.h>
 
-#include "detection/detections/results_folder.h"
 #include "evaluation/detector_evaluation/set_truth.h"
 #include "evaluation/report/tables.h"
 #include "evaluation/scores/detector_score.h"
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
+#include "runners/results/results_folder.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
-std::vector<detection::ExpectedSequence> expected_of(
+std::vector<results::ExpectedSequence> expected_of(
     const std::vector<scores::TruthSequence>& truths) {
-  std::vector<detection::ExpectedSequence> expected;
+  std::vector<results::ExpectedSequence> expected;
   for (const scores::TruthSequence& truth : truths)
     expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
   return expected;
@@ -35,8 +35,7 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
   std::map<std::string, std::size_t> numbers;
   for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
   std::vector<scores::ScoredDetections> results;
-  for (detection::SequenceDetections& read :
-       detection::read_detections(source, expected_of(truths))) {
+  for (results::SequenceDetections& read : results::read_detections(source, expected_of(truths))) {
     const std::size_t truth = numbers.at(read.name);
     if (read.frames.size() != truths[truth].frames.size())
       throw Error(fmt::format("holds {} frames of '{}'; the data set has {}",

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "benchmark/experiment/frames.h"
 #include "encounter/separation/violation.h"
 #include "evaluation/detector_evaluation/contrast_to_noise.h"
 #include "evaluation/detector_evaluation/rendered_truth.h"
@@ -17,6 +16,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/suggest.h"
+#include "picture/video/numbered_frames.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -253,7 +253,7 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
 
 void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop) {
   if (truth.media.empty()) return;
-  experiment::Frames frames(truth.media, {});
+  video::NumberedFrames frames(truth.media, {});
   for (scores::TruthFrame& frame : truth.frames) {
     if (stop.stop_requested()) throw Interrupted();
     if (frame.objects.empty()) continue;

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "detection/detections/results_folder.h"
 #include "evaluation/detector_evaluation/assess.h"
 #include "evaluation/detector_evaluation/json.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "runners/results/results_folder.h"
 #include "scene/scene/scene.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/replay/finished.h"
@@ -70,7 +70,7 @@ class OfRenderedSet : public testing::Test {
     const fs::path folder = root_ / name;
     fs::create_directories(folder);
     for (const scores::TruthSequence& one : truth().sequences) {
-      detection::SequenceDetections detections{one.name, one.width, one.height, {}, {}};
+      results::SequenceDetections detections{one.name, one.width, one.height, {}, {}};
       for (const scores::TruthFrame& frame : one.frames) {
         auto& list = detections.frames.emplace_back();
         for (const scores::TruthObject& object : frame.objects) {

@@ -40,7 +40,7 @@ void add_tracks(const ScoredDetections& scored,
                 std::map<std::int64_t, Appearance>& appearances) {
   for (std::size_t i = 0; i < scored.matches.size(); ++i)
     for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      const detection::Detection& detection = scored.detections.frames[i][k];
+      const results::Detection& detection = scored.detections.frames[i][k];
       const Match& match = scored.matches[i][k];
       if (!detection.track || !match.object || match.kind == MatchKind::kFalseAlarm) continue;
       if (score && detection.score < *score) continue;
@@ -213,7 +213,7 @@ std::int64_t false_tracks(const ScoredDetections& scored, std::optional<double> 
   std::map<std::int64_t, Count> tracks;
   for (std::size_t i = 0; i < scored.matches.size(); ++i)
     for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      const detection::Detection& detection = scored.detections.frames[i][k];
+      const results::Detection& detection = scored.detections.frames[i][k];
       if (!detection.track || (score && detection.score < *score)) continue;
       if (scored.matches[i][k].kind == MatchKind::kIgnored) continue;
       Count& count = tracks[*detection.track];
@@ -253,8 +253,8 @@ std::vector<OperatingPoint> operating_curve(std::span<const ScoredDetections> se
   double hours = 0;
   for (const ScoredDetections& sequence : sequences) {
     hours += truths[sequence.truth].duration_s / measures::kSecondsPerHour;
-    for (const std::vector<detection::Detection>& frame : sequence.detections.frames)
-      for (const detection::Detection& detection : frame)
+    for (const std::vector<results::Detection>& frame : sequence.detections.frames)
+      for (const results::Detection& detection : frame)
         if (detection.track) scores.push_back(detection.score);
   }
   std::vector<OperatingPoint> curve;

@@ -10,10 +10,10 @@
 
 #include <airtruth/statistics.h>
 
-#include "detection/detections/detections.h"
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/truth.h"
 #include "evaluation/statistics/proportion.h"
+#include "runners/results/detections.h"
 
 // When a detector's tracks declare an aircraft, and whether that leaves time for a manoeuvre.
 //

@@ -33,13 +33,13 @@ TruthSequence encounter() {
   return truth;
 }
 
-detection::SequenceDetections nothing() {
-  detection::SequenceDetections detections;
+results::SequenceDetections nothing() {
+  results::SequenceDetections detections;
   detections.frames.resize(kFrames);
   return detections;
 }
 
-void add(detection::SequenceDetections& detections,
+void add(results::SequenceDetections& detections,
          int from,
          int to,
          std::int64_t track,
@@ -48,7 +48,7 @@ void add(detection::SequenceDetections& detections,
     detections.frames[static_cast<std::size_t>(i)].push_back({kThere, score, "aircraft", track});
 }
 
-EncounterScore scored(const detection::SequenceDetections& detections,
+EncounterScore scored(const results::SequenceDetections& detections,
                       std::optional<double> manoeuvre_s = {},
                       std::optional<double> score = {},
                       const TruthSequence& truth = encounter()) {
@@ -59,7 +59,7 @@ EncounterScore scored(const detection::SequenceDetections& detections,
 }
 
 TEST(Declaration, TheExampleOfTheHeader) {
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, 60, 61, 3);
   add(detections, 90, kFrames, 3);
   const EncounterScore score = scored(detections, 20);
@@ -77,27 +77,27 @@ TEST(Declaration, TheExampleOfTheHeader) {
 }
 
 TEST(Declaration, HalfOfTheNextThreeSecondsKeepsATrack) {
-  detection::SequenceDetections half = nothing();
+  results::SequenceDetections half = nothing();
   for (int i = 50; i < 80; i += 2) add(half, i, i + 1, 3);
   EXPECT_EQ(scored(half).declaration->frame, 50u);
   // 14 of 30 frames do not; from a later frame on no window has half, until the last.
-  detection::SequenceDetections less = nothing();
+  results::SequenceDetections less = nothing();
   for (int i = 50; i < 78; i += 2) add(less, i, i + 1, 3);
   EXPECT_FALSE(scored(less).declaration);
   // Two tracks that share the frames are no track.
-  detection::SequenceDetections shared = nothing();
+  results::SequenceDetections shared = nothing();
   for (int i = 50; i < 80; ++i) add(shared, i, i + 1, i % 3 == 0 ? 3 : i % 3 == 1 ? 4 : 5);
   EXPECT_FALSE(scored(shared).declaration);
 }
 
 TEST(Declaration, TheEndOfTheSequenceShortensTheWindow) {
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, kFrames - 3, kFrames, 1);
   EXPECT_EQ(scored(detections).declaration->frame, kFrames - 3u);
 }
 
 TEST(Declaration, ScoresBelowTheThresholdDoNotCount) {
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, 10, 100, 1, 0.5);
   add(detections, 100, kFrames, 1, 0.9);
   EXPECT_EQ(scored(detections).declaration->frame, 10u);
@@ -114,12 +114,12 @@ TEST(Declaration, AnEncounterWithoutAViolationNeedsNoManoeuvre) {
 }
 
 TEST(Declaration, SharesAndMeansWithWeights) {
-  detection::SequenceDetections early = nothing();
+  results::SequenceDetections early = nothing();
   add(early, 0, kFrames, 1);
-  detection::SequenceDetections late = nothing();
+  results::SequenceDetections late = nothing();
   add(late, 150, kFrames, 1);
   std::vector<EncounterScore> scores;
-  const std::vector<detection::SequenceDetections> all = {early, late, nothing()};
+  const std::vector<results::SequenceDetections> all = {early, late, nothing()};
   for (std::size_t i = 0; i < all.size(); ++i) {
     scores.push_back(scored(all[i], 20));
     scores.back().sequence = i;
@@ -136,7 +136,7 @@ TEST(Declaration, SharesAndMeansWithWeights) {
 
 TEST(Declaration, ATrackIsFalseWhereMostOfItIs) {
   const TruthSequence truth = encounter();
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, 0, 5, 1);
   for (std::size_t i = 5; i < 10; ++i)
     detections.frames[i].push_back({kElsewhere, 1, "aircraft", 1});
@@ -150,7 +150,7 @@ TEST(Declaration, ATrackIsFalseWhereMostOfItIs) {
 
 TEST(Declaration, TheOperatingCurve) {
   const TruthSequence truth = encounter();
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, 100, kFrames, 1, 0.9);
   for (std::size_t i = 0; i < 30; ++i)
     detections.frames[i].push_back({kElsewhere, 0.5, "aircraft", 2});
@@ -170,7 +170,7 @@ TEST(Declaration, TheOperatingCurve) {
 
 TEST(Declaration, ALongOperatingCurveIsThinned) {
   const TruthSequence truth = encounter();
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   for (int i = 0; i < kFrames; ++i) add(detections, i, i + 1, 1, 1.0 / (i + 1));
   const ScoredDetections all{0, detections, matches_of(detections, truth, 10)};
   const std::vector<ScoredDetections> sequences = {all};
@@ -184,7 +184,7 @@ TEST(Declaration, ALongOperatingCurveIsThinned) {
 
 TEST(Galleries, RunsAreListedOnce) {
   const TruthSequence truth = encounter();
-  detection::SequenceDetections detections = nothing();
+  results::SequenceDetections detections = nothing();
   add(detections, 20, kFrames, 1);
   for (std::size_t i = 0; i < 12; ++i) {
     const double score = i == 4 ? 9 : 2;

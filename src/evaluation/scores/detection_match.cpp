@@ -48,14 +48,14 @@ bool claims_aircraft(const std::string& category) {
          (!annotation::is_object_class(category) && category != "ignore");
 }
 
-std::vector<std::vector<Match>> matches_of(const detection::SequenceDetections& detections,
+std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& detections,
                                            const TruthSequence& truth,
                                            double centre_px) {
   std::vector<std::vector<Match>> matches;
   const std::size_t frames = std::min(detections.frames.size(), truth.frames.size());
   for (std::size_t i = 0; i < frames; ++i) {
     std::vector<Match>& of_frame = matches.emplace_back();
-    for (const detection::Detection& detection : detections.frames[i])
+    for (const results::Detection& detection : detections.frames[i])
       of_frame.push_back(claims_aircraft(detection.category)
                              ? match_of(detection.box_px, truth.frames[i], centre_px)
                              : Match{MatchKind::kIgnored, {}, detection.category});

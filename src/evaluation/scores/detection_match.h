@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "detection/detections/detections.h"
 #include "evaluation/scores/truth.h"
+#include "runners/results/detections.h"
 
 // The match of each detection with the truth of its frame: a detection is a true positive on the
 // nearest aircraft whose centre is near enough (matching/boxes.h has the rule). Several detections
@@ -45,14 +45,14 @@ bool claims_aircraft(const std::string& category);
 
 // The matches of a sequence, in the order of its detections. A detection that claims something
 // else than an aircraft is kIgnored. Frames that only one of the two has get none.
-std::vector<std::vector<Match>> matches_of(const detection::SequenceDetections& detections,
+std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& detections,
                                            const TruthSequence& truth,
                                            double centre_px);
 
 // The detections of one sequence, and what became of each.
 struct ScoredDetections {
   std::size_t truth = 0;  // index in Assessment::truths
-  detection::SequenceDetections detections;
+  results::SequenceDetections detections;
   // matches[frame][i] belongs to detections.frames[frame][i].
   std::vector<std::vector<Match>> matches;
 };

@@ -66,7 +66,7 @@ TEST(Found, WhatDoesNotClaimAnAircraftIsIgnored) {
   EXPECT_TRUE(claims_aircraft("aircraft"));
   EXPECT_TRUE(claims_aircraft("738"));
   EXPECT_FALSE(claims_aircraft("bird"));
-  detection::SequenceDetections detections;
+  results::SequenceDetections detections;
   detections.frames = {{{at(100, 100), 1, "bird", {}}, {at(100, 100), 1, "738", {}}}, {}};
   TruthSequence truth;
   truth.frames.resize(2);

@@ -20,7 +20,7 @@ class Scoring {
       scored.matches = matches_of(scored.detections, truth(scored), options.centre_px);
       hours_ += truth(scored).duration_s / measures::kSecondsPerHour;
       for (const auto& frame : scored.detections.frames)
-        for (const detection::Detection& detection : frame) {
+        for (const results::Detection& detection : frame) {
           ++result_.detections;
           has_tracks_ = has_tracks_ || detection.track;
         }

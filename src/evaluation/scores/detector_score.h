@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "detection/detections/detections.h"
 #include "evaluation/measures/aot.h"
 #include "evaluation/measures/average_precision.h"
 #include "evaluation/measures/bearing_error.h"
@@ -18,6 +17,7 @@
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/galleries.h"
 #include "evaluation/scores/truth.h"
+#include "runners/results/detections.h"
 
 // The whole assessment of detectors on a data set: what tables and pages show. It is a value; no
 // file is needed to make or read it.

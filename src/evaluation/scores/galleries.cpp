@@ -116,7 +116,7 @@ std::vector<FalseAlarm> false_alarms_of(std::size_t sequence,
       return true;
     });
     for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      const detection::Detection& detection = scored.detections.frames[i][k];
+      const results::Detection& detection = scored.detections.frames[i][k];
       const Match& match = scored.matches[i][k];
       if (match.kind != MatchKind::kFalseAlarm || detection.score < score) continue;
       Group* group = group_of(open, i, detection.box_px);

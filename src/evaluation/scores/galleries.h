@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "detection/detections/detections.h"
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/truth.h"
+#include "runners/results/detections.h"
 
 // The false alarms and misses that are worth a look. What goes on over frames is listed once.
 namespace airtruth::scores {

@@ -20,14 +20,14 @@ void for_each_detection(const ScoredDetections& scored, Each each) {
 }
 
 // The detection of the highest score that finds each aircraft of a frame.
-std::map<std::int64_t, const detection::Detection*> best_of(const ScoredDetections& scored,
-                                                            std::size_t frame) {
-  std::map<std::int64_t, const detection::Detection*> best;
+std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
+                                                          std::size_t frame) {
+  std::map<std::int64_t, const results::Detection*> best;
   for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
     const Match& match = scored.matches[frame][k];
     if (match.kind != MatchKind::kTruePositive) continue;
-    const detection::Detection*& found = best[*match.object];
-    const detection::Detection& detection = scored.detections.frames[frame][k];
+    const results::Detection*& found = best[*match.object];
+    const results::Detection& detection = scored.detections.frames[frame][k];
     if (found == nullptr || detection.score > found->score) found = &detection;
   }
   return best;
@@ -76,7 +76,7 @@ std::vector<measures::ScoredImage> images_of(const TruthSequence& truth,
       if (object.is_aircraft()) images[i].truths.push_back({object.box_px, !object.counts, false});
     for (const Box& region : truth.frames[i].ignored_px)
       images[i].truths.push_back({region, true, false});
-    for (const detection::Detection& detection : scored.detections.frames[i])
+    for (const results::Detection& detection : scored.detections.frames[i])
       if (claims_aircraft(detection.category))
         images[i].detections.push_back({detection.box_px, detection.score});
   }
@@ -98,7 +98,7 @@ measures::FrocSequence froc_sequence_of(const TruthSequence& truth,
     }
   }
   for_each_detection(scored,
-                     [&](std::size_t, const detection::Detection& detection, const Match& match) {
+                     [&](std::size_t, const results::Detection& detection, const Match& match) {
                        if (match.kind == MatchKind::kFalseAlarm)
                          sequence.false_alarm_scores.push_back(detection.score);
                      });
@@ -156,7 +156,7 @@ measures::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetect
     }
   }
   for_each_detection(scored,
-                     [&](std::size_t i, const detection::Detection& detection, const Match& match) {
+                     [&](std::size_t i, const results::Detection& detection, const Match& match) {
                        if (match.kind != MatchKind::kIgnored)
                          flight.frames[i].detections.push_back(
                              {detection.box_px, detection.score, detection.track});
@@ -173,7 +173,7 @@ measures::TrackFrames track_frames_of(const TruthSequence& truth,
       if (object.is_aircraft() && object.counts)
         frames[i].truths.push_back({object.id, object.box_px});
   for_each_detection(scored,
-                     [&](std::size_t i, const detection::Detection& detection, const Match& match) {
+                     [&](std::size_t i, const results::Detection& detection, const Match& match) {
                        if (detection.track && match.kind != MatchKind::kIgnored &&
                            (!score || detection.score >= *score))
                          frames[i].answers.push_back({*detection.track, detection.box_px});

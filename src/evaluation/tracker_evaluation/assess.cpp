@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "benchmark/experiment/trajectories.h"
 #include "evaluation/report/tables.h"
 #include "evaluation/statistics/bins.h"
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
+#include "runners/results/trajectories.h"
 
 namespace airtruth::tracker_evaluation {
 namespace {
@@ -27,7 +27,7 @@ constexpr std::size_t kMinStillsOfOne = 4;
 const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
 const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
 
-std::vector<FramePair> pairs_of(const TruthClip& truth, const experiment::Results::Run& run) {
+std::vector<FramePair> pairs_of(const TruthClip& truth, const results::TrackerResults::Run& run) {
   std::vector<FramePair> pairs;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
     pairs.push_back({truth.box(i), run.frames[i].box, run.seconds.empty() ? 0 : run.seconds[i]});
@@ -35,7 +35,7 @@ std::vector<FramePair> pairs_of(const TruthClip& truth, const experiment::Result
 }
 
 void add_one_pass(const TruthClip& truth,
-                  const experiment::Results::Run& run,
+                  const results::TrackerResults::Run& run,
                   bool until_loss,
                   ScoredSequence& scored) {
   std::vector<FramePair> pairs = pairs_of(truth, run);
@@ -53,14 +53,15 @@ void add_one_pass(const TruthClip& truth,
   }
 }
 
-evaluation::RestartRuns restart_runs(const TruthClip& truth, const experiment::Results& results) {
+evaluation::RestartRuns restart_runs(const TruthClip& truth,
+                                     const results::TrackerResults& results) {
   evaluation::RestartRuns runs{truth.vot(), {}};
-  for (const experiment::Results::Run& run : results.restart) runs.runs.push_back(run.frames);
+  for (const results::TrackerResults::Run& run : results.restart) runs.runs.push_back(run.frames);
   return runs;
 }
 
 evaluation::MultiStartRuns multistart_runs(const TruthClip& truth,
-                                           const experiment::Results& results) {
+                                           const results::TrackerResults& results) {
   evaluation::MultiStartRuns runs{truth.vot(), {}};
   const std::int64_t length = std::ssize(truth.clip.frames);
   for (std::size_t i = 0; i < results.multistart.size(); ++i) {
@@ -78,19 +79,19 @@ evaluation::MultiStartRuns multistart_runs(const TruthClip& truth,
 
 // Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
 // for sequences that the set lacks, and of sequences without results.
-std::vector<experiment::Results> results_in(const fs::path& folder,
-                                            const std::vector<TruthClip>& truths,
-                                            const AssessOptions& options) {
+std::vector<results::TrackerResults> results_in(const fs::path& folder,
+                                                const std::vector<TruthClip>& truths,
+                                                const AssessOptions& options) {
   if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
-  std::vector<experiment::Results> results;
+  std::vector<results::TrackerResults> results;
   std::size_t missing = 0;
   std::set<std::string> known;
   for (const TruthClip& truth : truths) {
-    results.push_back(experiment::read_results(folder, truth.clip, options.origin_px));
+    results.push_back(results::read_results(folder, truth.clip, options.origin_px));
     missing += results.back().empty() ? 1 : 0;
     known.insert(truth.clip.name);
   }
-  std::vector<std::string> unknown = experiment::sequences_in(folder);
+  std::vector<std::string> unknown = results::tracked_sequences_in(folder);
   std::erase_if(unknown, [&](const std::string& name) { return known.contains(name); });
   if (missing == truths.size())
     throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
@@ -118,13 +119,13 @@ class Scoring {
 
   // found[i] belongs to the i-th truth.
   ScoredTracker operator()(const std::string& name,
-                           const std::vector<experiment::Results>& found) const {
+                           const std::vector<results::TrackerResults>& found) const {
     ScoredTracker tracker;
     tracker.name = name;
     std::vector<evaluation::RestartRuns> restarts;
     std::vector<evaluation::MultiStartRuns> multistarts;
     for (std::size_t i = 0; i < truths_.size(); ++i) {
-      const experiment::Results& results = found[i];
+      const results::TrackerResults& results = found[i];
       if (results.empty()) continue;
       ScoredSequence scored;
       scored.truth = i;
@@ -261,7 +262,7 @@ void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
 }
 
 // By name, each tracker's results for each truth.
-using AllResults = std::map<std::string, std::vector<experiment::Results>>;
+using AllResults = std::map<std::string, std::vector<results::TrackerResults>>;
 
 // Videos of sequences without results are not read.
 void add_films(std::vector<TruthClip>& truths,

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
-#include "benchmark/experiment/frames.h"
 #include "foundation/base/error.h"
 #include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
+#include "picture/video/numbered_frames.h"
 #include "sequence/replay/finished.h"
 #include "show/drawing/thumbnails.h"
 
@@ -80,7 +80,7 @@ void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop)
   if (truth.clip.media.empty()) return;
   const std::size_t count = truth.clip.frames.size();
   const std::set<std::size_t> wanted = report::spread_over(count, stills);
-  experiment::Frames frames(truth.clip.media, {});
+  video::NumberedFrames frames(truth.clip.media, {});
   for (std::size_t i = 0; i < count; ++i) {
     if (stop.stop_requested()) throw Interrupted();
     const image::Picture* picture = frames.at(truth.clip.frames[i].frame);

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/association/associator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "runners/association/gated_pairs.h"
+
+namespace airtruth::association {
+namespace {
+
+constexpr double kLeastSizePx = 1;  // a box counts as this wide and high at least
+
+// The value that a chi-square variable with 3 degrees of freedom stays below with this probability.
+// Its distribution is erf(sqrt(x / 2)) - sqrt(2 x / pi) exp(-x / 2).
+double chi_square_of_3(double probability) {
+  const auto distribution = [](double x) {
+    return std::erf(std::sqrt(x / 2)) - std::sqrt(2 * x / kPi) * std::exp(-x / 2);
+  };
+  double low = 0;
+  double high = 100;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = (low + high) / 2;
+    (distribution(middle) < probability ? low : high) = middle;
+  }
+  return high;
+}
+
+[[noreturn]] void out_of_range(const std::string& what, double value, const std::string& expected) {
+  throw Error(fmt::format("association: {} is {}; expected {}", what, value, expected));
+}
+
+}  // namespace
+
+void validate(const AssociationOptions& options) {
+  if (options.declare_n < 1 || options.declare_n > 1000) {
+    out_of_range("N of M of N", options.declare_n, "1 to 1000");
+  }
+  if (options.declare_m < 1 || options.declare_m > options.declare_n) {
+    out_of_range("M of M of N", options.declare_m, fmt::format("1 to {}", options.declare_n));
+  }
+  if (options.confident_score && !std::isfinite(*options.confident_score)) {
+    out_of_range("the confident score", *options.confident_score, "a finite number");
+  }
+  if (!(options.gate_probability > 0 && options.gate_probability < 1)) {
+    out_of_range("the gate's probability", options.gate_probability, "between 0 and 1");
+  }
+  for (const auto& [what, value] : {std::pair{"the longest miss", options.most_missed_s},
+                                    {"the centre's error", options.centre_error_px},
+                                    {"the centre's error", options.centre_error_of_size},
+                                    {"the size's error", options.size_error},
+                                    {"the acceleration", options.motion.acceleration_density},
+                                    {"the size's change", options.motion.size_density},
+                                    {"the unknown turn", options.unknown_turn_rps},
+                                    {"the first rate", options.motion.initial_rate}}) {
+    if (!(value > 0 && value < 1e6)) out_of_range(what, value, "a number above 0");
+  }
+}
+
+Associator::Associator(const AssociationOptions& options) : options_(options) {
+  validate(options);
+  gate_ = chi_square_of_3(options.gate_probability);
+}
+
+void Associator::begin(const detector::SequenceInput& sequence) {
+  lens_ = sequence.lens;
+  tracks_.clear();
+  declared_ = 0;
+  const Pixel middle(sequence.width / 2.0, sequence.height / 2.0);
+  const auto left = lens_->ray_from_pixel(middle - Pixel(0.5, 0));
+  const auto right = lens_->ray_from_pixel(middle + Pixel(0.5, 0));
+  rad_per_px_ = left && right ? (*right - *left).norm() : 0;
+}
+
+std::vector<results::Detection> Associator::step(const detector::FrameInput& frame,
+                                                 std::vector<results::Detection> detections) {
+  check(lens_.has_value(), "Associator::begin comes before step");
+  for (results::Detection& detection : detections) detection.track.reset();
+  predict(frame);
+  const std::vector<Seen> seen = seen_in(detections);
+  detection_of_track_.assign(tracks_.size(), std::nullopt);
+  taken_.assign(detections.size(), false);
+  match(detections, seen, true, true);
+  match(detections, seen, true, false);
+  match(detections, seen, false, true);
+  declare(detections);
+  end_tracks();
+  begin_tracks(detections, seen);
+  return detections;
+}
+
+void Associator::predict(const detector::FrameInput& frame) {
+  if (frame.begins_shot) tracks_.clear();
+  const double seconds = std::max(0.0, frame.time_s - time_s_);
+  time_s_ = frame.time_s;
+  const Quaternion turn = frame.turn ? frame.turn->this_from_previous : Quaternion::Identity();
+  const double error_rad =
+      frame.turn ? frame.turn->error_px * rad_per_px_ : options_.unknown_turn_rps * seconds;
+  for (Track& track : tracks_) {
+    track.filter.predict(seconds, turn, error_rad);
+    ++track.frames;
+  }
+}
+
+std::optional<Sighting> Associator::sighting_of(const Box& box) const {
+  const Pixel centre(box.x + box.width / 2, box.y + box.height / 2);
+  const auto ray = lens_->ray_from_pixel(centre);
+  const auto left = lens_->ray_from_pixel(centre - Pixel(0.5, 0));
+  const auto right = lens_->ray_from_pixel(centre + Pixel(0.5, 0));
+  const auto above = lens_->ray_from_pixel(centre - Pixel(0, 0.5));
+  const auto below = lens_->ray_from_pixel(centre + Pixel(0, 0.5));
+  if (!ray || !left || !right || !above || !below) return std::nullopt;
+  Eigen::Matrix<double, 3, 2> ray_from_px;
+  ray_from_px.col(0) = *right - *left;
+  ray_from_px.col(1) = *below - *above;
+  const double width = std::max(box.width, kLeastSizePx);
+  const double height = std::max(box.height, kLeastSizePx);
+  const auto variance = [&](double length) {
+    return std::pow(options_.centre_error_px, 2) +
+           std::pow(options_.centre_error_of_size * length, 2);
+  };
+  Sighting sighting;
+  sighting.ray_in_cam = *ray;
+  sighting.ray_covariance = ray_from_px *
+                            Eigen::Vector2d(variance(width), variance(height)).asDiagonal() *
+                            ray_from_px.transpose();
+  const double steradian_per_px2 = ray_from_px.col(0).cross(ray_from_px.col(1)).norm();
+  sighting.log_size = std::log(width * height * steradian_per_px2) / 2;
+  sighting.log_size_variance =
+      options_.size_error * options_.size_error +
+      options_.centre_error_px * options_.centre_error_px / (width * height);
+  return sighting;
+}
+
+std::vector<Associator::Seen> Associator::seen_in(
+    const std::vector<results::Detection>& detections) const {
+  std::vector<Seen> seen;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const auto sighting = sighting_of(detections[i].box_px);
+    if (!sighting) continue;
+    const bool confident =
+        !options_.confident_score || detections[i].score >= *options_.confident_score;
+    seen.push_back({i, *sighting, confident});
+  }
+  return seen;
+}
+
+void Associator::match(const std::vector<results::Detection>& detections,
+                       const std::vector<Seen>& seen,
+                       bool declared,
+                       bool confident) {
+  std::vector<GatedPair> pairs;
+  // The negative log likelihood of a miss: a detection within the gate is better than none, so
+  // that as many tracks as possible have one.
+  double alone = 0;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Track& track = tracks_[t];
+    if (track.number.has_value() != declared || detection_of_track_[t]) continue;
+    for (std::size_t s = 0; s < seen.size(); ++s) {
+      const results::Detection& detection = detections[seen[s].index];
+      if (seen[s].confident != confident || taken_[seen[s].index] ||
+          detection.category != track.category || !track.filter.is_near(seen[s].sighting, gate_)) {
+        continue;
+      }
+      const auto comparison = track.filter.compare(seen[s].sighting);
+      if (comparison.distance > gate_) continue;
+      pairs.push_back({t, s, comparison.distance + comparison.log_determinant});
+      const double least = gate_ + comparison.log_determinant;
+      alone = pairs.size() == 1 ? least : std::max(alone, least);
+    }
+  }
+  const auto chosen = least_cost_pairs(pairs, tracks_.size(), seen.size(), alone);
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    if (!chosen[t]) continue;
+    const Seen& one = seen[*chosen[t]];
+    detection_of_track_[t] = one.index;
+    taken_[one.index] = true;
+    tracks_[t].filter.update(one.sighting);
+    tracks_[t].seen_s = time_s_;
+    if (confident) ++tracks_[t].hits;
+  }
+}
+
+void Associator::declare(std::vector<results::Detection>& detections) {
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    Track& track = tracks_[t];
+    if (!track.number && track.hits >= options_.declare_m) track.number = ++declared_;
+    if (detection_of_track_[t]) detections[*detection_of_track_[t]].track = track.number;
+  }
+}
+
+void Associator::end_tracks() {
+  const int most_misses = options_.declare_n - options_.declare_m;
+  std::erase_if(tracks_, [&](const Track& track) {
+    return track.number ? time_s_ - track.seen_s > options_.most_missed_s
+                        : track.frames - track.hits > most_misses;
+  });
+}
+
+void Associator::begin_tracks(std::vector<results::Detection>& detections,
+                              const std::vector<Seen>& seen) {
+  for (const Seen& one : seen) {
+    if (!one.confident || taken_[one.index]) continue;
+    Track track{DirectionFilter(one.sighting, options_.motion),
+                detections[one.index].category,
+                1,
+                1,
+                time_s_,
+                std::nullopt};
+    if (options_.declare_m == 1) {
+      track.number = ++declared_;
+      detections[one.index].track = track.number;
+    }
+    tracks_.push_back(std::move(track));
+  }
+}
+
+}  // namespace airtruth::association

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/association/direction_filter.h"
+#include "runners/detector/detector.h"
+#include "runners/results/detections.h"
+
+// Makes tracks of the detections of any detector, frame by frame.
+//
+// Each track predicts where its target is on the sphere, with the camera's measured turn taken into
+// account. A detection belongs to a track at most, within a chi-square gate on bearing and size,
+// such that all tracks together fit best (the least sum of negative log likelihoods). As in
+// ByteTrack (Zhang et al. 2022, section 3) confident detections are given to the declared tracks
+// first, then weak ones to the declared tracks that are left, then the remaining confident ones to
+// tracks that are not yet declared; what is left of these begins new ones. A weak detection so
+// keeps a track alive, and can never begin one.
+//
+// A track is declared in the frame in which it has its M-th confident detection, where that is one
+// of the N frames from its first detection on; otherwise it ends as soon as that is impossible. Its
+// detections carry its number from the declaration on. Earlier frames are not changed, since a
+// sense-and-avoid system cannot change what it has reported.
+//
+// Example, with 3 of 5: a target is detected in frames 0, 1, 3 and 4. Its track is declared in
+// frame 3, and the detections of frames 3 and 4 have track 1.
+namespace airtruth::association {
+
+struct AssociationOptions {
+  int declare_m = 3;  // 1 to declare_n
+  int declare_n = 5;  // 1 to 1000
+  // The least score of a confident detection. Empty: every detection is confident.
+  std::optional<double> confident_score;
+  // A declared track ends when it has had no detection for longer than this, s. Chosen: ByteTrack's
+  // 30 frames at 30 frames/s.
+  double most_missed_s = 1;
+  // The share of a target's own detections that the gate lets through.
+  double gate_probability = 0.99;
+  // Standard error of a box's centre: px, and as a share of the box's width or height; both add in
+  // squares. Chosen: a quarter of a pixel's rounding on each side of a box, and detectors' boxes
+  // that move by a tenth of their size from frame to frame.
+  double centre_error_px = 0.5;
+  double centre_error_of_size = 0.1;
+  // Standard error of a box's size as a share of it; the centre's error in px adds to it.
+  double size_error = 0.2;
+  // Standard deviation of the camera's turn about each axis where it is not known, rad/s. Chosen: a
+  // small aircraft rolls and yaws by some ten to twenty degrees in a second.
+  double unknown_turn_rps = 0.3;
+  MotionModel motion;
+};
+
+// Throws Error where a value is out of its range.
+void validate(const AssociationOptions& options);
+
+class Associator {
+ public:
+  explicit Associator(const AssociationOptions& options = {});
+
+  // Forgets the tracks of the sequence before. Numbers of tracks begin with 1 again.
+  void begin(const detector::SequenceInput& sequence);
+
+  // The same detections in the same order, each with its track where that is declared. Where
+  // a shot begins, all tracks end. Where a frame has no turn, the camera may have turned by
+  // unknown_turn_rps, and gates are as wide as that asks for. A detection where the lens has no ray
+  // belongs to no track. FrameInput's picture is not used.
+  std::vector<results::Detection> step(const detector::FrameInput& frame,
+                                       std::vector<results::Detection> detections);
+
+ private:
+  struct Track {
+    DirectionFilter filter;
+    std::string category;
+    int frames = 1;  // since its first detection, that frame included
+    int hits = 1;    // of them, those with a confident detection
+    double seen_s = 0;
+    std::optional<std::int64_t> number;  // declared
+  };
+  struct Seen {
+    std::size_t index;  // among the frame's detections
+    Sighting sighting;
+    bool confident;
+  };
+  std::optional<Sighting> sighting_of(const Box& box) const;
+  std::vector<Seen> seen_in(const std::vector<results::Detection>& detections) const;
+  void predict(const detector::FrameInput& frame);
+  // Gives detections of one confidence to tracks of one state that have none yet.
+  void match(const std::vector<results::Detection>& detections,
+             const std::vector<Seen>& seen,
+             bool declared,
+             bool confident);
+  void declare(std::vector<results::Detection>& detections);
+  void end_tracks();
+  void begin_tracks(std::vector<results::Detection>& detections, const std::vector<Seen>& seen);
+
+  AssociationOptions options_;
+  double gate_ = 0;
+  std::optional<lens::Lens> lens_;
+  double rad_per_px_ = 0;  // in the middle of the picture
+  std::vector<Track> tracks_;
+  // Of this frame: the detection of each track, and whether a detection has a track.
+  std::vector<std::optional<std::size_t>> detection_of_track_;
+  std::vector<bool> taken_;
+  std::int64_t declared_ = 0;
+  double time_s_ = 0;  // of the latest frame
+};
+
+}  // namespace airtruth::association

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "runners/classical/blobs.h"
+#include "runners/detector/detector.h"
+
+// What the classical detectors share; only this module includes it.
+namespace airtruth::classical {
+
+// Weaker blobs are noise more often than not at any size: in a frame of 1280x960 white noise a
+// sample of some thousand independent ones exceeds this many standard deviations.
+inline constexpr double kLeastContrastToNoise = 4;
+
+// A rate where the video states none.
+inline constexpr double kUsualRateHz = 30;
+
+// The blobs as detections, the strongest first, without those below `least` and without a weaker
+// one of the same object. Scores are the contrast-to-noise ratios, to four digits.
+std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double least);
+
+// Noise alone reaches a detector's confident score this often.
+inline constexpr double kNoiseAlarmsPerHour = 1;
+
+// The number of standard deviations that independent normal samples exceed, to either side,
+// kNoiseAlarmsPerHour times in an hour: 2 n Q(z) of a frame, with n samples. Neighbouring samples
+// of a smoothed picture are not independent, and exceed it less often.
+double confident_deviations(double samples_per_frame, double frame_rate_hz);
+// The log likelihood ratio that is exceeded as often at most. Where there is no target, the mean of
+// a likelihood ratio is 1, so that it exceeds x with a probability of at most 1 / x (Markov).
+double confident_log_ratio(double cells_per_frame, double frame_rate_hz);
+
+std::unique_ptr<detector::Detector> make_close_minus_open();
+std::unique_ptr<detector::Detector> make_hidden_markov();
+std::unique_ptr<detector::Detector> make_frame_difference();
+
+}  // namespace airtruth::classical

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/classical/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace airtruth::classical {
+namespace {
+
+// An object has at least a pixel.
+constexpr double kLeastBoxSidePx = 1;
+// Each halves the interval, which begins at an object's blurred side: to less than a hundredth.
+constexpr int kHalvings = 8;
+
+class Grower {
+ public:
+  Grower(const Level& level, const cv::Point& seed, int reach, const Excess& excess, double least)
+      : level_(level),
+        seed_(seed),
+        reach_(reach),
+        side_(2 * reach + 1),
+        excess_(excess),
+        least_(least),
+        hides_(!level.hidden.empty()) {}
+
+  std::optional<Region> grown() {
+    static thread_local std::vector<cv::Point> open;
+    seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
+    open.assign(1, seed_);
+    mark(seed_);
+    region_ = {{}, double(seed_.x), double(seed_.y), double(seed_.x), double(seed_.y)};
+    cv::Point low = seed_, high = seed_;
+    while (!open.empty()) {
+      const cv::Point at = open.back();
+      open.pop_back();
+      low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+      high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+      bound(at);
+      if (is_all_within(at))
+        take_all_around(at, open);
+      else if (!take_around(at, open))
+        return std::nullopt;
+    }
+    region_.samples = cv::Rect(low, high + cv::Point(1, 1));
+    region_.share = most_ > least_ ? least_ / most_ : 1;
+    return region_;
+  }
+
+ private:
+  // Takes what belongs to the region of the samples around one. False where that is out of reach.
+  bool take_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+    for (int dy = -kGap; dy <= kGap; ++dy)
+      for (int dx = -kGap; dx <= kGap; ++dx) {
+        const cv::Point next{at.x + dx, at.y + dy};
+        if (!is_inside(next)) continue;
+        // Each sample is looked at once.
+        if (is_within_reach(next) && !mark(next)) continue;
+        if (excess_(next) < least_) continue;
+        if (!is_within_reach(next)) return false;
+        open.push_back(next);
+      }
+    return true;
+  }
+  // The same where all samples around are in reach and in the picture, which is most of the work.
+  void take_all_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+    for (int dy = -kGap; dy <= kGap; ++dy) {
+      char* seen = &cell({at.x - kGap, at.y + dy});
+      for (int dx = -kGap; dx <= kGap; ++dx, ++seen) {
+        if (*seen != 0) continue;
+        *seen = 1;
+        const cv::Point next{at.x + dx, at.y + dy};
+        if (excess_(next) >= least_ && !(hides_ && level_.hides(next))) open.push_back(next);
+      }
+    }
+  }
+  bool is_all_within(const cv::Point& p) const {
+    return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) + kGap <= reach_ &&
+           p.x >= kGap && p.y >= kGap && p.x + kGap < level_.picture.cols &&
+           p.y + kGap < level_.picture.rows;
+  }
+  bool is_inside(const cv::Point& p) const {
+    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
+           !(hides_ && level_.hides(p));
+  }
+  bool is_within_reach(const cv::Point& p) const {
+    return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) <= reach_;
+  }
+  // False where it was marked.
+  bool mark(const cv::Point& p) const {
+    char& seen = cell(p);
+    const bool is_new = seen == 0;
+    seen = 1;
+    return is_new;
+  }
+  char& cell(const cv::Point& p) const {
+    return seen_[static_cast<std::size_t>(p.y - seed_.y + reach_) *
+                     static_cast<std::size_t>(side_) +
+                 static_cast<std::size_t>(p.x - seed_.x + reach_)];
+  }
+
+  // The bounds reach as far as the excess does between this sample and its neighbours.
+  void bound(const cv::Point& p) {
+    const double here = excess_(p);
+    most_ = std::max(most_, here);
+    const auto reached = [&](int dx, int dy) {
+      const cv::Point next{p.x + dx, p.y + dy};
+      if (!is_inside(next)) return 0.5;
+      const double there = excess_(next);
+      return here > least_ && there < least_ ? (here - least_) / (here - there) : 0.0;
+    };
+    if (p.x - 1 < region_.left) region_.left = std::min(region_.left, p.x - reached(-1, 0));
+    if (p.y - 1 < region_.top) region_.top = std::min(region_.top, p.y - reached(0, -1));
+    if (p.x + 1 > region_.right) region_.right = std::max(region_.right, p.x + reached(1, 0));
+    if (p.y + 1 > region_.bottom) region_.bottom = std::max(region_.bottom, p.y + reached(0, 1));
+  }
+
+  static thread_local std::vector<char> seen_;
+  const Level& level_;
+  cv::Point seed_;
+  int reach_;
+  int side_;
+  const Excess& excess_;
+  double least_;
+  bool hides_;
+  double most_ = 0;
+  Region region_;
+};
+
+thread_local std::vector<char> Grower::seen_;
+
+double normal_below(double deviations) { return 0.5 * std::erfc(-deviations / std::sqrt(2.0)); }
+
+// The variance of [1 2 1] / 4 is half a squared sample; octave by octave it adds up to
+// (1 + 4 + ... + step^2) / 2.
+double blur_sigma_px(int step) { return std::sqrt((4.0 * step * step - 1) / 6); }
+
+}  // namespace
+
+std::optional<Region> region_around(
+    const Level& level, const cv::Point& seed, int reach, const Excess& excess, double least) {
+  return Grower(level, seed, reach, excess, least).grown();
+}
+
+double side_before_blur(double half_px, double share, double sigma_px) {
+  const double half = half_px / sigma_px;
+  if (std::exp(-0.5 * half * half) >= share) return 0;
+  // Of a share of more than a half, the side is the longer one, by less than this.
+  double low = 0, high = 2 * half + 4;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double side = (low + high) / 2;
+    const double left = normal_below(half + side / 2) - normal_below(half - side / 2);
+    (left < share * (2 * normal_below(side / 2) - 1) ? low : high) = side;
+  }
+  return (low + high) / 2 * sigma_px;
+}
+
+Box box_of(const Region& region, const Level& level) {
+  const double sigma_px = blur_sigma_px(level.step);
+  const auto side = [&](double from, double to) {
+    const double half_px = 0.5 * level.step * (to - from);
+    return std::max(kLeastBoxSidePx, side_before_blur(half_px, region.share, sigma_px));
+  };
+  const Pixel middle =
+      level.pixel_of((region.left + region.right) / 2, (region.top + region.bottom) / 2);
+  const double width = side(region.left, region.right);
+  const double height = side(region.top, region.bottom);
+  return {middle.x() - width / 2, middle.y() - height / 2, width, height};
+}
+
+}  // namespace airtruth::classical

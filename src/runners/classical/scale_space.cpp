@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/classical/scale_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/core/hal/intrin.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace airtruth::classical {
+namespace {
+
+// Least side of a level, in samples: some elements long.
+constexpr int kLeastSide = 3 * kElement;
+// The rounding to whole grey levels has a standard deviation of 1/sqrt(12) levels. In a smooth sky
+// it makes patches of one level that no smoothing removes.
+const double kLeastTypical = Level::kMeanResponse * kGreyScale / std::sqrt(12.0);
+
+cv::Mat smoothed(const cv::Mat& picture) {
+  cv::Mat result;
+  cv::GaussianBlur(picture, result, {3, 3}, 0);
+  return result;
+}
+
+enum class Along { kRows, kColumns };
+enum class Extreme { kLeast, kMost };
+
+// The extreme of every `length` neighbours, by doubling: of 1, 2, 4, ... and, of two that overlap,
+// of all. The result is shorter by length - 1.
+cv::Mat extreme_of(cv::Mat samples, Along along, int length, Extreme extreme) {
+  for (int reached = 1; reached < length;) {
+    const int shift = std::min(reached, length - reached);
+    const int size = (along == Along::kRows ? samples.cols : samples.rows) - shift;
+    const auto part = [&](int from) {
+      return along == Along::kRows ? samples.colRange(from, from + size)
+                                   : samples.rowRange(from, from + size);
+    };
+    cv::Mat next;
+    if (extreme == Extreme::kMost)
+      cv::max(part(0), part(shift), next);
+    else
+      cv::min(part(0), part(shift), next);
+    samples = next;
+    reached += shift;
+  }
+  return samples;
+}
+
+// Closing (first the most, then the least) or opening by a line along rows or columns. `padded` has
+// kLongElement - 1 more samples on every side than the result.
+cv::Mat filtered(const cv::Mat& padded, Along along, int length, Extreme first) {
+  constexpr int kMargin = kLongElement - 1;
+  const int unused = kMargin - (length - 1);
+  const cv::Size size(padded.cols - 2 * kMargin, padded.rows - 2 * kMargin);
+  const cv::Mat used = along == Along::kRows
+                           ? padded({unused, kMargin, size.width + 2 * (length - 1), size.height})
+                           : padded({kMargin, unused, size.width, size.height + 2 * (length - 1)});
+  const Extreme second = first == Extreme::kMost ? Extreme::kLeast : Extreme::kMost;
+  return extreme_of(extreme_of(used, along, length, first), along, length, second);
+}
+
+// The picture without its dark (closing) or bright (opening) objects. An object is one along both
+// directions: of two short elements, or of a short one across it and a long one along it.
+cv::Mat without_objects(const cv::Mat& padded, Extreme first, bool with_long) {
+  const auto nearer = [&](const cv::Mat& a, const cv::Mat& b) {
+    cv::Mat result;
+    if (first == Extreme::kMost)
+      cv::min(a, b, result);
+    else
+      cv::max(a, b, result);
+    return result;
+  };
+  const cv::Mat row = filtered(padded, Along::kRows, kElement, first);
+  const cv::Mat column = filtered(padded, Along::kColumns, kElement, first);
+  if (!with_long) return nearer(row, column);
+  const cv::Mat wide = nearer(filtered(padded, Along::kRows, kLongElement, first), column);
+  const cv::Mat high = nearer(filtered(padded, Along::kColumns, kLongElement, first), row);
+  cv::Mat either;
+  if (first == Extreme::kMost)
+    cv::max(wide, high, either);
+  else
+    cv::min(wide, high, either);
+  return either;
+}
+
+cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dark) {
+  constexpr int kMargin = kLongElement - 1;
+  cv::Mat padded, dark, bright;
+  cv::copyMakeBorder(picture, padded, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);
+  cv::subtract(without_objects(padded, Extreme::kMost, with_long), picture, dark);
+  cv::subtract(picture, without_objects(padded, Extreme::kLeast, with_long), bright);
+  cv::compare(dark, bright, is_dark, cv::CMP_GE);
+  cv::max(dark, bright, dark);
+  return dark;
+}
+
+// Mean and largest response of each whole block. A sum of eight responses fits 16 bits: none
+// exceeds 255 * kGreyScale.
+void block_statistics(const cv::Mat& response, cv::Mat& mean, cv::Mat& largest) {
+  static_assert(kBlock == 8 && kBlock * 255 * kGreyScale < 32768);
+  const int columns = response.cols / kBlock, rows = response.rows / kBlock;
+  mean.create(rows, columns, CV_32F);
+  largest.create(rows, columns, CV_16S);
+  for (int by = 0; by < rows; ++by)
+    for (int bx = 0; bx < columns; ++bx) {
+      cv::v_int16x8 sum = cv::v_setzero_s16(), most = cv::v_setzero_s16();
+      for (int y = 0; y < kBlock; ++y) {
+        const cv::v_int16x8 samples =
+            cv::v_load(response.ptr<short>(by * kBlock + y) + bx * kBlock);
+        sum = cv::v_add_wrap(sum, samples);
+        most = cv::v_max(most, samples);
+      }
+      cv::v_int32x4 low, high;
+      cv::v_expand(sum, low, high);
+      mean.at<float>(by, bx) = static_cast<float>(cv::v_reduce_sum(low + high)) / (kBlock * kBlock);
+      largest.at<short>(by, bx) = cv::v_reduce_max(most);
+    }
+}
+
+// The median over 5 x 5 blocks: an object in the middle does not count, an edge of the sky does
+// not spread.
+cv::Mat typical_of(const cv::Mat& mean) {
+  cv::Mat typical;
+  cv::medianBlur(mean, typical, 5);
+  cv::max(typical, kLeastTypical, typical);
+  return typical;
+}
+
+// The mean of what is free of each block; where little is, that of the blocks around.
+void without_hidden(const cv::Mat& hidden, cv::Mat& mean) {
+  cv::Mat free_share(mean.size(), CV_32F);
+  for (int by = 0; by < mean.rows; ++by)
+    for (int bx = 0; bx < mean.cols; ++bx) {
+      const cv::Mat block = hidden({bx * kBlock, by * kBlock, kBlock, kBlock});
+      const double share = 1 - cv::countNonZero(block) / double(kBlock * kBlock);
+      free_share.at<float>(by, bx) = share < 0.5 ? 0.0F : static_cast<float>(share);
+    }
+  cv::divide(mean, cv::max(free_share, 0.5F), mean);
+  fill(mean, free_share);
+}
+
+// Blocks on either side whose objects are a block's clutter, and those that its own object may
+// reach into.
+constexpr int kClutterReach = 10;
+constexpr int kOwnReach = 2;
+
+cv::Mat clutter_of(const Level& level) {
+  cv::Mat squares(level.largest.size(), CV_64F, cv::Scalar(0)), sums;
+  for (int by = 0; by < squares.rows; ++by)
+    for (int bx = 0; bx < squares.cols; ++bx) {
+      const double largest = level.largest.at<short>(by, bx);
+      const bool is_object =
+          largest >= kIsolated * static_cast<double>(level.typical.at<float>(by, bx)) &&
+          level.is_peak(bx, by);
+      if (is_object) squares.at<double>(by, bx) = largest * largest;
+    }
+  cv::integral(squares, sums, CV_64F);
+  // The sum of the blocks within a reach, and how many they are.
+  const auto within = [&](int bx, int by, int reach) {
+    const int left = std::max(0, bx - reach), right = std::min(squares.cols, bx + reach + 1);
+    const int top = std::max(0, by - reach), bottom = std::min(squares.rows, by + reach + 1);
+    const double sum = sums.at<double>(bottom, right) - sums.at<double>(top, right) -
+                       sums.at<double>(bottom, left) + sums.at<double>(top, left);
+    return std::pair(sum, (right - left) * (bottom - top));
+  };
+  cv::Mat clutter(squares.size(), CV_32F, cv::Scalar(0));
+  for (int by = 0; by < squares.rows; ++by)
+    for (int bx = 0; bx < squares.cols; ++bx) {
+      const auto [all, all_blocks] = within(bx, by, kClutterReach);
+      const auto [own, own_blocks] = within(bx, by, kOwnReach);
+      const double mean = (all - own) / std::max(1, all_blocks - own_blocks);
+      clutter.at<float>(by, bx) = static_cast<float>(std::sqrt(std::max(0.0, mean)));
+    }
+  return clutter;
+}
+
+Level level_of(cv::Mat picture, int step, const cv::Mat& hidden) {
+  Level level;
+  level.step = step;
+  level.hidden = hidden;
+  level.picture = std::move(picture);
+  if (step == 1) {
+    // Eight bits take half the time, and the picture has no more.
+    cv::Mat samples;
+    level.picture.convertTo(samples, CV_8U, 1.0 / kGreyScale);
+    close_minus_open(samples, false, level.is_dark).convertTo(level.response, CV_16S, kGreyScale);
+  } else {
+    level.response = close_minus_open(level.picture, true, level.is_dark);
+  }
+  if (!hidden.empty()) level.response.setTo(0, hidden);
+  cv::Mat mean;
+  block_statistics(level.response, mean, level.largest);
+  if (!hidden.empty()) without_hidden(hidden, mean);
+  level.typical = typical_of(mean);
+  level.clutter = clutter_of(level);
+  cv::Mat squares;
+  cv::multiply(level.largest, level.largest, squares, 1, CV_64F);
+  cv::integral(squares, level.largest_squares, CV_64F);
+  return level;
+}
+
+}  // namespace
+
+double Level::quietest() { return kLeastTypical; }
+
+cv::Point Level::sample_at(const Pixel& pixel) const {
+  return {static_cast<int>(std::lround((pixel.x() - 0.5) / step)),
+          static_cast<int>(std::lround((pixel.y() - 0.5) / step))};
+}
+
+bool Level::is_peak(int bx, int by) const {
+  const short here = largest.at<short>(by, bx);
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = bx + dx, y = by + dy;
+      if (x < 0 || y < 0 || x >= largest.cols || y >= largest.rows) continue;
+      const short there = largest.at<short>(y, x);
+      const bool is_before = dy < 0 || (dy == 0 && dx < 0);
+      if (there > here || (is_before && there == here)) return false;
+    }
+  return true;
+}
+
+double Level::noise_at(const cv::Point& sample) const {
+  const int bx = std::min(sample.x / kBlock, typical.cols - 1);
+  const int by = std::min(sample.y / kBlock, typical.rows - 1);
+  return static_cast<double>(typical.at<float>(by, bx)) / kMeanResponse;
+}
+
+double Level::clutter_at(const cv::Point& sample) const {
+  const int bx = std::min(sample.x / kBlock, clutter.cols - 1);
+  const int by = std::min(sample.y / kBlock, clutter.rows - 1);
+  return static_cast<double>(clutter.at<float>(by, bx));
+}
+
+double Level::relative_response(const cv::Point& sample) const {
+  if (sample.x < 0 || sample.y < 0 || sample.x >= picture.cols || sample.y >= picture.rows)
+    return 0;
+  const int bx = std::min(sample.x / kBlock, typical.cols - 1);
+  const int by = std::min(sample.y / kBlock, typical.rows - 1);
+  return response.at<short>(sample) / static_cast<double>(typical.at<float>(by, bx));
+}
+
+double Level::relative_response_near(const cv::Point& sample, int radius) const {
+  double largest_there = 0;
+  for (int y = -radius; y <= radius; ++y)
+    for (int x = -radius; x <= radius; ++x)
+      largest_there = std::max(largest_there, relative_response({sample.x + x, sample.y + y}));
+  return largest_there;
+}
+
+cv::Mat luma_of(const image::Picture& picture) {
+  const image::Plane& luma = picture.luma();
+  // OpenCV has no matrix of constant samples; nothing writes to it.
+  return cv::Mat(luma.height,
+                 luma.width,
+                 CV_8U,
+                 const_cast<std::uint8_t*>(luma.row(0)),
+                 static_cast<std::size_t>(luma.stride));
+}
+
+std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view) {
+  std::vector<Level> levels;
+  cv::Mat samples;
+  view.luma(picture).convertTo(samples, CV_16S, kGreyScale);
+  for (int step = 1; 4 * step <= kLargestPx; step *= 2) {
+    if (std::min(samples.cols, samples.rows) < kLeastSide) break;
+    samples = smoothed(samples);
+    levels.push_back(level_of(samples, step, view.hidden(levels.size())));
+    samples = halved(samples);
+  }
+  return levels;
+}
+
+}  // namespace airtruth::classical

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/detector/external.h"
+
+#include <cstring>
+#include <optional>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "runners/detector/protocol.h"
+#include "runners/detector/shared_samples.h"
+#include "runners/process/child.h"
+
+namespace airtruth::detector {
+namespace {
+
+using process::Clock;
+
+// Its answers are the lines that begin as a JSON object does; all else that it prints is kept in a
+// log.
+constexpr std::string_view kAnswerBegins = "{";
+constexpr double kQuitS = 0.5;  // to take the request to quit
+constexpr double kEndS = 1;     // to end after it
+
+Clock::time_point in(double seconds) {
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+// Rows of samples without padding: red, green and blue, or luma alone as the video has it.
+std::string samples_of(const image::Picture& picture, SampleOrder samples) {
+  std::string bytes;
+  if (samples == SampleOrder::kRgb) {
+    const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+    const auto count =
+        3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height);
+    bytes.assign(reinterpret_cast<const char*>(rgb.samples.get()), count);
+    return bytes;
+  }
+  const auto width = static_cast<std::size_t>(picture.width);
+  for (int y = 0; y < picture.height; ++y)
+    bytes.append(reinterpret_cast<const char*>(picture.luma().row(y)), width);
+  return bytes;
+}
+
+class External : public Detector {
+ public:
+  explicit External(ExternalOptions options) : options_(std::move(options)) {}
+  External(const External&) = delete;
+  External& operator=(const External&) = delete;
+  ~External() override { end(); }
+
+  void begin(const SequenceInput& sequence) override {
+    end();
+    log_.clear();
+    guarded([&] {
+      child_.emplace(
+          options_.command, process::Child::Transport::kStandard, options_.stop, kAnswerBegins);
+      const auto deadline = in(options_.start_s);
+      hello_ = hello_of(child_->read(deadline));
+      if (hello_.frames == FramesBy::kSharedMemory)
+        shared_.emplace(static_cast<std::size_t>(sequence.width) *
+                        static_cast<std::size_t>(sequence.height) *
+                        static_cast<std::size_t>(hello_.bytes_per_pixel()));
+      child_->write(begin_line(sequence, shared_ ? shared_->path() : ""), deadline);
+    });
+  }
+
+  std::vector<results::Detection> detect(const FrameInput& frame) override {
+    std::vector<results::Detection> detections;
+    guarded([&] {
+      check(child_.has_value(), "a sequence is begun before its frames");
+      if (child_->read_if_there()) throw process::Failure("answered before it was asked");
+      const std::string samples = samples_of(*frame.picture, hello_.samples);
+      const auto deadline = in(options_.answer_s);
+      if (shared_) std::memcpy(shared_->data(), samples.data(), samples.size());
+      child_->write(frame_line(frame, samples.size()), deadline);
+      if (!shared_) child_->write(samples, deadline);
+      detections = detections_of(child_->read(deadline), frame.index);
+    });
+    return detections;
+  }
+
+  bool needs_motion() const override { return true; }
+  std::string log() const override { return log_ + (child_ ? child_->log() : ""); }
+
+ private:
+  void guarded(const auto& work) {
+    try {
+      work();
+    } catch (const process::Failure&) {
+      end();
+      throw;
+    }
+  }
+
+  void end() {
+    if (!child_) return;
+    try {
+      child_->write(kQuitLine, in(kQuitS));
+      child_->wait(in(kEndS));
+    } catch (const std::exception&) {  // it is ended with its process
+    }
+    log_ += child_->log();
+    child_.reset();
+    shared_.reset();
+  }
+
+  ExternalOptions options_;
+  std::optional<SharedSamples> shared_;
+  std::optional<process::Child> child_;
+  Hello hello_;
+  std::string log_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_external(ExternalOptions options) {
+  return std::make_unique<External>(std::move(options));
+}
+
+}  // namespace airtruth::detector

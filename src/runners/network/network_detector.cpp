@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/network/network_detector.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "runners/network/model_description.h"
+#include "runners/network/network_child.h"
+#include "runners/network/network_input.h"
+#include "runners/network/network_output.h"
+
+namespace airtruth::network {
+namespace {
+
+constexpr std::size_t kMostModelBytes = std::size_t{512} << 20;
+constexpr int kTrialPx = 256;  // side of the first input where the network takes frames of any size
+
+NetworkJob job_of(const ModelDescription& description, std::string onnx) {
+  return {description.input.channels(),
+          description.input.mean,
+          description.input.scale,
+          output_names(description),
+          std::move(onnx)};
+}
+
+// A grey input of the size that the network will see.
+Samples trial_of(const NetworkInput& input) {
+  const int multiple = input.multiple_px;
+  const int side = (kTrialPx + multiple - 1) / multiple * multiple;
+  Samples samples = input.fit == NetworkInput::Fit::kFrame
+                        ? make_samples(side, side, input.channels())
+                        : make_samples(input.width, input.height, input.channels());
+  std::ranges::fill(samples.values, std::uint8_t{128});
+  return samples;
+}
+
+bool is_cut(const Box& box, const Samples& piece, const Placement& placement) {
+  return (placement.cut_left && box.x <= 0) || (placement.cut_top && box.y <= 0) ||
+         (placement.cut_right && box.right() >= piece.width) ||
+         (placement.cut_bottom && box.bottom() >= piece.height);
+}
+
+bool is_centred_in(const image::Picture& picture, const Box& box) {
+  const double x = box.x + box.width / 2;
+  const double y = box.y + box.height / 2;
+  return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
+}
+
+// Boxes end at the picture's edges; those that have nothing in it are left out.
+void cut_to(const image::Picture& picture, std::vector<results::Detection>& detections) {
+  for (results::Detection& one : detections) {
+    Box& box = one.box_px;
+    const double right = std::min<double>(picture.width, box.right());
+    const double bottom = std::min<double>(picture.height, box.bottom());
+    box.x = std::max(0.0, box.x);
+    box.y = std::max(0.0, box.y);
+    box.width = right - box.x;
+    box.height = bottom - box.y;
+  }
+  std::erase_if(detections, [](const results::Detection& d) {
+    return d.box_px.width <= 0 || d.box_px.height <= 0;
+  });
+}
+
+class OnnxDetector : public detector::Detector {
+ public:
+  OnnxDetector(std::filesystem::path model,
+               ModelDescription description,
+               NetworkJob job,
+               const NetworkOptions& options)
+      : model_(std::move(model)),
+        description_(std::move(description)),
+        job_(std::move(job)),
+        options_(options) {
+    try {
+      start();
+      const Samples trial = trial_of(description_.input);
+      decoded(child_->run(trial), description_, trial.width, trial.height);
+    } catch (const Error& error) {
+      throw Error(error.message(), {model_.string()});
+    }
+  }
+
+  void begin(const detector::SequenceInput&) override {
+    if (child_) return;
+    try {
+      start();
+    } catch (const Error& error) {
+      throw process::Failure("cannot begin: " + model_.filename().string() + " " + error.message());
+    }
+  }
+
+  std::vector<results::Detection> detect(const detector::FrameInput& frame) override {
+    if (!child_) throw process::Failure("has failed before");
+    try {
+      return found_in(*frame.picture);
+    } catch (const Error& error) {
+      child_.reset();
+      throw process::Failure(fmt::format(
+          "failed in frame {}: {} {}", frame.index, model_.filename().string(), error.message()));
+    }
+  }
+
+  bool needs_motion() const override { return false; }
+
+  std::optional<double> confident_score() const override { return description_.confident_score; }
+
+ private:
+  void start() { child_ = std::make_unique<NetworkChild>(job_, options_.threads, options_.stop); }
+
+  bool is_letterbox() const { return description_.input.fit == NetworkInput::Fit::kLetterbox; }
+
+  std::vector<results::Detection> found_in(const image::Picture& picture) {
+    std::vector<PieceDetection> all;
+    const std::vector<Piece> pieces = pieces_of(picture, description_.input);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const auto& [samples, placement] = pieces[i];
+      for (results::Detection& one :
+           decoded(child_->run(samples), description_, samples.width, samples.height)) {
+        const bool cut = is_cut(one.box_px, samples, placement);
+        one.box_px = in_frame(one.box_px, placement);
+        // The padding of a whole frame and of tiles repeats the frame's last samples: what has its
+        // centre there is no part of the frame.
+        if (!is_letterbox() && !is_centred_in(picture, one.box_px)) continue;
+        all.push_back({std::move(one), static_cast<int>(i), cut});
+      }
+    }
+    std::vector<results::Detection> found =
+        without_duplicates(std::move(all), description_.nms_iou);
+    if (is_letterbox()) cut_to(picture, found);
+    return found;
+  }
+
+  std::filesystem::path model_;
+  ModelDescription description_;
+  NetworkJob job_;
+  NetworkOptions options_;
+  std::unique_ptr<NetworkChild> child_;
+};
+
+}  // namespace
+
+std::unique_ptr<detector::Detector> make_network_detector(const std::filesystem::path& model,
+                                                          const NetworkOptions& options) {
+  std::string onnx = read_file(model, kMostModelBytes);
+  if (onnx.empty()) throw Error("is empty; expected an ONNX network", {model.string()});
+  const std::filesystem::path json = description_path(model);
+  if (!std::filesystem::exists(json)) {
+    throw Error(fmt::format("has no description beside it; expected {}, as docs/formats/"
+                            "detector-model.md has it",
+                            json.filename().string()),
+                {model.string()});
+  }
+  ModelDescription description = read_description(json);
+  NetworkJob job = job_of(description, std::move(onnx));
+  return std::make_unique<OnnxDetector>(model, std::move(description), std::move(job), options);
+}
+
+}  // namespace airtruth::network

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/network/network_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/image/colour.h"
+
+namespace airtruth::network {
+namespace {
+
+constexpr std::uint8_t kLetterboxGrey = 114;
+
+std::array<std::uint8_t, 256> full_from_coded(image::Range range) {
+  std::array<std::uint8_t, 256> table{};
+  for (int coded = 0; coded < 256; ++coded) {
+    const double full = range == image::Range::kFull ? coded : (coded - 16) * 255.0 / 219.0;
+    table[static_cast<std::size_t>(coded)] =
+        static_cast<std::uint8_t>(std::lround(std::clamp(full, 0.0, 255.0)));
+  }
+  return table;
+}
+
+Samples grey_of_luma(const image::Picture& picture) {
+  Samples grey = make_samples(picture.width, picture.height, 1);
+  const auto table = full_from_coded(picture.colour.range);
+  for (int y = 0; y < grey.height; ++y) {
+    const std::uint8_t* row = picture.luma().row(y);
+    std::transform(row,
+                   row + grey.width,
+                   grey.values.begin() + static_cast<std::ptrdiff_t>(y) * grey.width,
+                   [&](std::uint8_t coded) { return table[coded]; });
+  }
+  return grey;
+}
+
+Samples rgb_of(const image::Picture& picture) {
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  Samples samples = make_samples(rgb.width, rgb.height, 3);
+  std::memcpy(samples.values.data(), rgb.samples.get(), samples.values.size());
+  return samples;
+}
+
+cv::Mat mat_of(Samples& samples) {
+  return {samples.height, samples.width, CV_8UC(samples.channels), samples.values.data()};
+}
+
+// The part of the frame from (x, y), with the last column and row repeated beyond the frame.
+Samples part_of(const Samples& frame, int x, int y, int width, int height) {
+  Samples part = make_samples(width, height, frame.channels);
+  const int inside = std::min(width, frame.width - x);
+  const auto channels = static_cast<std::size_t>(frame.channels);
+  std::uint8_t* to = part.values.data();
+  for (int row = 0; row < height; ++row) {
+    const std::uint8_t* from = frame.at(x, std::min(y + row, frame.height - 1));
+    std::memcpy(to, from, static_cast<std::size_t>(inside) * channels);
+    to += static_cast<std::size_t>(inside) * channels;
+    const std::uint8_t* last = frame.at(frame.width - 1, std::min(y + row, frame.height - 1));
+    for (int column = inside; column < width; ++column, to += channels) {
+      std::memcpy(to, last, channels);
+    }
+  }
+  return part;
+}
+
+int rounded_up(int length, int multiple) { return (length + multiple - 1) / multiple * multiple; }
+
+std::vector<Piece> whole(Samples frame, const NetworkInput& input) {
+  const int width = rounded_up(frame.width, input.multiple_px);
+  const int height = rounded_up(frame.height, input.multiple_px);
+  std::vector<Piece> pieces(1);
+  pieces[0].samples = width == frame.width && height == frame.height
+                          ? std::move(frame)
+                          : part_of(frame, 0, 0, width, height);
+  return pieces;
+}
+
+std::vector<Piece> tiles(const Samples& frame, const NetworkInput& input) {
+  std::vector<Piece> pieces;
+  for (const int y : tile_starts(frame.height, input.height, input.overlap_px)) {
+    for (const int x : tile_starts(frame.width, input.width, input.overlap_px)) {
+      Placement placement;
+      placement.x_px = x;
+      placement.y_px = y;
+      placement.cut_left = x > 0;
+      placement.cut_top = y > 0;
+      placement.cut_right = x + input.width < frame.width;
+      placement.cut_bottom = y + input.height < frame.height;
+      pieces.push_back({part_of(frame, x, y, input.width, input.height), placement});
+    }
+  }
+  return pieces;
+}
+
+std::vector<Piece> letterbox(Samples frame, const NetworkInput& input) {
+  const double scale = std::min(static_cast<double>(input.width) / frame.width,
+                                static_cast<double>(input.height) / frame.height);
+  const int width = std::clamp(static_cast<int>(std::lround(frame.width * scale)), 1, input.width);
+  const int height =
+      std::clamp(static_cast<int>(std::lround(frame.height * scale)), 1, input.height);
+  const int left = (input.width - width) / 2;
+  const int top = (input.height - height) / 2;
+  Samples samples = make_samples(input.width, input.height, frame.channels);
+  std::ranges::fill(samples.values, kLetterboxGrey);
+  cv::Mat inside = mat_of(samples)(cv::Rect(left, top, width, height));
+  const bool is_area = scale < 1 && input.resize == NetworkInput::Resize::kArea;
+  cv::resize(
+      mat_of(frame), inside, inside.size(), 0, 0, is_area ? cv::INTER_AREA : cv::INTER_LINEAR);
+  Placement placement;
+  placement.scale = scale;
+  placement.x_px = -left / scale;
+  placement.y_px = -top / scale;
+  std::vector<Piece> pieces;
+  pieces.push_back({std::move(samples), placement});
+  return pieces;
+}
+
+}  // namespace
+
+Samples samples_of(const image::Picture& picture, NetworkInput::Layout layout) {
+  if (layout == NetworkInput::Layout::kGrey && picture.colour.matrix != image::Matrix::kRgb) {
+    return grey_of_luma(picture);
+  }
+  Samples rgb = rgb_of(picture);
+  if (layout == NetworkInput::Layout::kRgb) return rgb;
+  if (layout == NetworkInput::Layout::kBgr) {
+    for (std::size_t i = 0; i + 2 < rgb.values.size(); i += 3) {
+      std::swap(rgb.values[i], rgb.values[i + 2]);
+    }
+    return rgb;
+  }
+  Samples grey = make_samples(picture.width, picture.height, 1);
+  cv::Mat to = mat_of(grey);
+  cv::cvtColor(mat_of(rgb), to, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+std::vector<Piece> pieces_of(const image::Picture& picture, const NetworkInput& input) {
+  Samples frame = samples_of(picture, input.layout);
+  switch (input.fit) {
+    case NetworkInput::Fit::kTiles:
+      return tiles(frame, input);
+    case NetworkInput::Fit::kLetterbox:
+      return letterbox(std::move(frame), input);
+    case NetworkInput::Fit::kFrame:
+      break;
+  }
+  return whole(std::move(frame), input);
+}
+
+std::vector<int> tile_starts(int length, int tile, int overlap) {
+  if (length <= tile) return {0};
+  const int step = tile - overlap;
+  const int gaps = (length - tile + step - 1) / step;
+  std::vector<int> starts;
+  for (int i = 0; i <= gaps; ++i) {
+    starts.push_back(static_cast<int>(static_cast<std::int64_t>(length - tile) * i / gaps));
+  }
+  return starts;
+}
+
+Box in_frame(const Box& box, const Placement& placement) {
+  return {box.x / placement.scale + placement.x_px,
+          box.y / placement.scale + placement.y_px,
+          box.width / placement.scale,
+          box.height / placement.scale};
+}
+
+}  // namespace airtruth::network

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/network/network_output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::network {
+namespace {
+
+constexpr double kMostSizePx = 1e5;  // a box beyond it is no answer
+
+[[noreturn]] void wrong_shape(const std::string& name,
+                              const Tensor& tensor,
+                              const std::string& expected) {
+  throw Error(fmt::format(
+      "its output '{}' has the shape {}; expected {}", name, in_words(tensor.shape), expected));
+}
+
+double sigmoid(double value) { return 1 / (1 + std::exp(-value)); }
+
+void keep_strongest(std::vector<results::Detection>& detections) {
+  std::ranges::stable_sort(
+      detections,
+      [](const results::Detection& a, const results::Detection& b) { return a.score > b.score; });
+  if (detections.size() > kMostDetections) detections.resize(kMostDetections);
+}
+
+results::Detection detection_about(
+    double x, double y, double width, double height, double score, const std::string& category) {
+  for (const double value : {x, y, width, height}) {
+    if (!(std::abs(value) <= kMostSizePx)) {
+      throw Error(
+          fmt::format("gives a box of {:g} x {:g} px at ({:g}, {:g})", width, height, x, y));
+    }
+  }
+  return {{x - width / 2, y - height / 2, width, height}, score, category, {}};
+}
+
+// The cells of the heat map and what is read there.
+class HeatMap {
+ public:
+  HeatMap(const std::vector<Tensor>& outputs,
+          const ModelDescription& description,
+          int width,
+          int height)
+      : names_(std::get<HeatMapOutput>(description.output)),
+        description_(description),
+        heat_(outputs[0]),
+        offset_(outputs[1]),
+        size_(outputs[2]) {
+    const auto classes = static_cast<int>(description.classes.size());
+    if (heat_.shape.size() != 4 || heat_.shape[0] != 1 || heat_.shape[1] != classes) {
+      wrong_shape(
+          names_.heat, heat_, fmt::format("1 x {} x rows x columns, for the classes", classes));
+    }
+    rows_ = heat_.shape[2];
+    columns_ = heat_.shape[3];
+    if (rows_ < 1 || columns_ < 1 || width % columns_ != 0 || height % rows_ != 0 ||
+        width / columns_ != height / rows_) {
+      wrong_shape(
+          names_.heat,
+          heat_,
+          fmt::format("cells that divide the input of {} x {} px into squares", width, height));
+    }
+    cell_px_ = width / columns_;
+    const std::vector<int> pair = {1, 2, rows_, columns_};
+    if (offset_.shape != pair) wrong_shape(names_.offset, offset_, in_words(pair));
+    if (size_.shape != pair) wrong_shape(names_.size, size_, in_words(pair));
+  }
+
+  std::vector<results::Detection> detections() const {
+    std::vector<results::Detection> found;
+    for (int of_class = 0; of_class < heat_.shape[1]; ++of_class) {
+      for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+          const double score = score_at(of_class, row, column);
+          if (score < description_.score_threshold || !is_peak(of_class, row, column)) continue;
+          found.push_back(at(of_class, row, column, score));
+        }
+      }
+    }
+    keep_strongest(found);
+    return found;
+  }
+
+ private:
+  double value(const Tensor& tensor, int channel, int row, int column) const {
+    const auto index = (static_cast<std::ptrdiff_t>(channel) * rows_ + row) * columns_ + column;
+    return tensor.values[static_cast<std::size_t>(index)];
+  }
+
+  double score_at(int of_class, int row, int column) const {
+    const double heat = value(heat_, of_class, row, column);
+    if (!std::isfinite(heat)) {
+      throw Error(
+          fmt::format("gives a score that is not finite ({}), in row {} and column {} of '{}'",
+                      heat,
+                      row,
+                      column,
+                      names_.heat));
+    }
+    return names_.activation == HeatMapOutput::Activation::kSigmoid ? sigmoid(heat) : heat;
+  }
+
+  // Of cells that are equally hot the first one is the peak.
+  bool is_peak(int of_class, int row, int column) const {
+    const double here = value(heat_, of_class, row, column);
+    for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
+      for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x) {
+        const double beside = value(heat_, of_class, y, x);
+        const bool earlier = std::tie(y, x) < std::tie(row, column);
+        if (beside > here || (earlier && beside == here)) return false;
+      }
+    }
+    return true;
+  }
+
+  results::Detection at(int of_class, int row, int column, double score) const {
+    const double unit = names_.size_unit == HeatMapOutput::SizeUnit::kCell ? cell_px_ : 1;
+    const auto length = [&](int side) {
+      const double told = value(size_, side, row, column);
+      return unit * (names_.size_scale == HeatMapOutput::SizeScale::kLog ? std::exp(told) : told);
+    };
+    return detection_about((column + value(offset_, 0, row, column)) * cell_px_,
+                           (row + value(offset_, 1, row, column)) * cell_px_,
+                           length(0),
+                           length(1),
+                           score,
+                           description_.classes[static_cast<std::size_t>(of_class)]);
+  }
+
+  const HeatMapOutput& names_;
+  const ModelDescription& description_;
+  const Tensor& heat_;
+  const Tensor& offset_;
+  const Tensor& size_;
+  int rows_ = 0;
+  int columns_ = 0;
+  int cell_px_ = 0;
+};
+
+std::vector<results::Detection> of_yolov5(const Tensor& boxes,
+                                          const ModelDescription& description) {
+  const std::string& name = std::get<Yolov5Output>(description.output).boxes;
+  const auto columns = static_cast<int>(5 + description.classes.size());
+  if (boxes.shape.size() != 3 || boxes.shape[0] != 1 || boxes.shape[2] != columns) {
+    wrong_shape(name, boxes, fmt::format("1 x boxes x {}, for the classes", columns));
+  }
+  std::vector<results::Detection> found;
+  for (auto row = boxes.values.begin(); row != boxes.values.end(); row += columns) {
+    const auto best = std::max_element(row + 5, row + columns);
+    const double score = static_cast<double>(row[4]) * *best;
+    if (!std::isfinite(score)) {
+      throw Error(fmt::format("gives a score that is not finite ({}), in row {} of '{}'",
+                              score,
+                              (row - boxes.values.begin()) / columns,
+                              name));
+    }
+    if (score < description.score_threshold) continue;
+    found.push_back(detection_about(row[0],
+                                    row[1],
+                                    row[2],
+                                    row[3],
+                                    score,
+                                    description.classes[static_cast<std::size_t>(best - row - 5)]));
+  }
+  keep_strongest(found);
+  return found;
+}
+
+bool is_centred_in(const Box& box, const Box& other) {
+  const double x = box.x + box.width / 2;
+  const double y = box.y + box.height / 2;
+  return x >= other.x && x <= other.right() && y >= other.y && y <= other.bottom();
+}
+
+bool duplicates(const PieceDetection& a, const PieceDetection& b, double nms_iou) {
+  if (a.detection.category != b.detection.category) return false;
+  const Box& first = a.detection.box_px;
+  const Box& second = b.detection.box_px;
+  const double width = std::min(first.right(), second.right()) - std::max(first.x, second.x);
+  const double height = std::min(first.bottom(), second.bottom()) - std::max(first.y, second.y);
+  if (width <= 0 || height <= 0) return false;
+  const double shared = width * height;
+  if (shared > nms_iou * (first.area() + second.area() - shared)) return true;
+  return a.piece != b.piece && (first.area() < second.area() ? is_centred_in(first, second)
+                                                             : is_centred_in(second, first));
+}
+
+}  // namespace
+
+std::vector<results::Detection> decoded(const std::vector<Tensor>& outputs,
+                                        const ModelDescription& description,
+                                        int width,
+                                        int height) {
+  const std::size_t wanted = output_names(description).size();
+  if (outputs.size() != wanted) {
+    throw Error(fmt::format("gives {} outputs; expected {}", outputs.size(), wanted));
+  }
+  std::vector<results::Detection> found =
+      std::holds_alternative<HeatMapOutput>(description.output)
+          ? HeatMap(outputs, description, width, height).detections()
+          : of_yolov5(outputs[0], description);
+  std::erase_if(found, [](const results::Detection& d) {
+    return d.box_px.width <= 0 || d.box_px.height <= 0;
+  });
+  return found;
+}
+
+std::vector<results::Detection> without_duplicates(std::vector<PieceDetection> detections,
+                                                   double nms_iou) {
+  std::ranges::stable_sort(detections, [](const PieceDetection& a, const PieceDetection& b) {
+    return std::tuple(a.cut, -a.detection.score) < std::tuple(b.cut, -b.detection.score);
+  });
+  std::vector<PieceDetection> kept;
+  for (PieceDetection& candidate : detections) {
+    const bool known = std::ranges::any_of(
+        kept, [&](const PieceDetection& other) { return duplicates(candidate, other, nms_iou); });
+    if (!known) kept.push_back(std::move(candidate));
+  }
+  std::vector<results::Detection> found;
+  for (PieceDetection& one : kept) found.push_back(std::move(one.detection));
+  keep_strongest(found);
+  return found;
+}
+
+}  // namespace airtruth::network

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/process/child.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+
+extern char** environ;
+
+namespace airtruth::process {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks{100};  // at the stop token
+constexpr std::chrono::seconds kGrace{2};                // between SIGTERM and SIGKILL
+
+[[noreturn]] void fail_system(const char* what) {
+  throw Error(std::string("cannot ") + what + ": " + std::strerror(errno));
+}
+
+void close_file(int& file) {
+  if (file >= 0) ::close(file);
+  file = -1;
+}
+
+struct Pipe {
+  int read = -1;
+  int write = -1;
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_system("make a pipe");
+    read = ends[0];
+    write = ends[1];
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    close_file(read);
+    close_file(write);
+  }
+};
+
+int take(int& end) {
+  const int file = end;
+  end = -1;
+  ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) | O_NONBLOCK);
+  return file;
+}
+
+// A write to a process that is gone must be an error, not the end of ours.
+class NoPipeSignal {
+ public:
+  NoPipeSignal() {
+    ::sigemptyset(&pipe_);
+    ::sigaddset(&pipe_, SIGPIPE);
+    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  NoPipeSignal(const NoPipeSignal&) = delete;
+  NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+  ~NoPipeSignal() {
+    if (::sigismember(&before_, SIGPIPE) == 0) {
+      const timespec now{};
+      while (::sigtimedwait(&pipe_, nullptr, &now) == SIGPIPE) {
+      }
+      ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+  }
+
+ private:
+  sigset_t pipe_{};
+  sigset_t before_{};
+};
+
+std::vector<std::string> environment(const std::string& added) {
+  std::vector<std::string> all;
+  for (char** one = ::environ; *one != nullptr; ++one)
+    if (!std::string_view(*one).starts_with("TRAX_")) all.emplace_back(*one);
+  if (!added.empty()) all.push_back(added);
+  return all;
+}
+
+pid_t spawn(
+    const std::string& command, int input, int output, int error, const std::string& added) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, input, 0);
+  posix_spawn_file_actions_adddup2(&files, output, 1);
+  posix_spawn_file_actions_adddup2(&files, error, 2);
+  posix_spawn_file_actions_addclosefrom_np(&files, 3);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigset_t all;
+  ::sigemptyset(&none);
+  ::sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::vector<std::string> words = {"/bin/sh", "-c", command};
+  std::vector<std::string> variables = environment(added);
+  std::vector<char*> arguments;
+  std::vector<char*> settings;
+  for (std::string& word : words) arguments.push_back(word.data());
+  for (std::string& variable : variables) settings.push_back(variable.data());
+  arguments.push_back(nullptr);
+  settings.push_back(nullptr);
+  pid_t process = -1;
+  const int failed =
+      ::posix_spawn(&process, "/bin/sh", &files, &attributes, arguments.data(), settings.data());
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (failed != 0) {
+    errno = failed;
+    fail_system("start a process");
+  }
+  return process;
+}
+
+}  // namespace
+
+Child::Child(const std::string& command,
+             Transport transport,
+             std::stop_token stop,
+             std::string_view prefix)
+    : stop_(std::move(stop)), prefix_(prefix) {
+  Pipe to;
+  Pipe from;
+  Pipe chatter;
+  if (transport == Transport::kStandard) {
+    process_ = spawn(command, to.read, from.write, chatter.write, "");
+    to_ = take(to.write);
+    from_ = take(from.read);
+  } else {
+    listening_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof place;
+    auto* address = reinterpret_cast<sockaddr*>(&place);
+    if (listening_ < 0 || ::bind(listening_, address, size) != 0 ||
+        ::getsockname(listening_, address, &size) != 0 || ::listen(listening_, 1) != 0) {
+      close_file(listening_);
+      fail_system("listen on the loopback device");
+    }
+    // Its input is at its end from the start.
+    close_file(to.write);
+    process_ = spawn(command,
+                     to.read,
+                     chatter.write,
+                     chatter.write,
+                     fmt::format("TRAX_SOCKET={}", ntohs(place.sin_port)));
+  }
+  chatter_ = take(chatter.read);
+  unfinished_.emplace([group = process_] { ::kill(-group, SIGKILL); });
+}
+
+Child::~Child() {
+  ::kill(-process_, SIGTERM);
+  try {
+    stop_ = {};
+    wait(Clock::now() + kGrace);
+  } catch (const std::exception&) {  // it shall end, whatever it says meanwhile
+  }
+  // What it started may outlive it. The group's number is not given to another before the wait.
+  ::kill(-process_, SIGKILL);
+  unfinished_.reset();  // before the group's number is free for another
+  int status = 0;
+  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  close_all();
+}
+
+void Child::close_all() {
+  close_file(listening_);
+  if (to_ == from_) to_ = -1;
+  close_file(to_);
+  close_file(from_);
+  close_file(chatter_);
+}
+
+bool Child::ended() {
+  if (status_) return true;
+  siginfo_t info{};
+  if (::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      info.si_pid == 0)
+    return false;
+  status_ = info.si_code == CLD_EXITED ? info.si_status : 128 + info.si_status;
+  return true;
+}
+
+std::string Child::ending() {
+  const auto until = Clock::now() + std::chrono::milliseconds(500);
+  while (!ended() && Clock::now() < until) ::usleep(5000);
+  if (chatter_ >= 0) drain(chatter_, false);
+  std::string how = "closed its output";
+  if (status_)
+    how = *status_ > 128 ? fmt::format("was ended by signal {}", *status_ - 128)
+                         : fmt::format("ended with status {}", *status_);
+  std::string last = log_;
+  while (!last.empty() && (last.back() == '\n' || last.back() == ' ')) last.pop_back();
+  last = last.substr(last.rfind('\n') + 1).substr(0, 200);
+  return last.empty() ? how : how + "; its last words: " + last;
+}
+
+void Child::fail(const std::string& what) { throw Failure(what); }
+
+void Child::keep(std::string_view text) {
+  log_ += text.substr(0, kMaxLog - std::min(kMaxLog, log_.size()));
+}
+
+// Reads all that is there. False at the end.
+bool Child::drain(int& file, bool is_protocol) {
+  std::array<char, 65536> bytes{};
+  // Of one that never stops no more than this at a time, so that deadlines are looked at.
+  for (int i = 0; i < 64; ++i) {
+    const ssize_t count = ::read(file, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+    if (count == 0) return false;
+    const std::string_view text(bytes.data(), static_cast<std::size_t>(count));
+    if (is_protocol)
+      input_ += text;
+    else
+      keep(text);
+    if (is_protocol) take_lines();
+  }
+  return true;
+}
+
+// Chatter goes to the log as it comes, however long its line.
+void Child::take_lines() {
+  const auto begins_message = [&] {
+    const std::string_view rest = std::string_view(input_).substr(parsed_);
+    return std::string_view(prefix_).starts_with(rest.substr(0, prefix_.size()));
+  };
+  while (parsed_ < input_.size()) {
+    const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
+    searched_ = end == std::string::npos ? input_.size() : end;
+    if (!skips_line_ && begins_message()) {
+      if (end == std::string::npos && input_.size() - parsed_ > kMaxBytes)
+        fail("sent a message of more than 64 MB");
+      break;
+    }
+    const std::size_t stop = end == std::string::npos ? input_.size() : end + 1;
+    keep(std::string_view(input_).substr(parsed_, stop - parsed_));
+    skips_line_ = end == std::string::npos;
+    parsed_ = stop;
+  }
+  if (parsed_ == input_.size() || parsed_ > (std::size_t{1} << 20)) {
+    input_.erase(0, parsed_);
+    searched_ -= std::min(searched_, parsed_);
+    parsed_ = 0;
+  }
+}
+
+std::optional<std::string> Child::line_from_input() {
+  take_lines();
+  const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = input_.substr(parsed_, end - parsed_);
+  parsed_ = end + 1;
+  searched_ = parsed_;
+  return line;
+}
+
+// Waits for something to read, or to write where there is something unsent, and does it.
+void Child::pump(Clock::time_point deadline, std::string_view* unsent) {
+  if (stop_.stop_requested()) throw Interrupted();
+  const auto left =
+      std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+  if (left <= 0) fail("did not answer in time");
+  const bool writes = unsent != nullptr && !unsent->empty();
+  std::array<pollfd, 3> files = {
+      {{from_, POLLIN, 0}, {chatter_, POLLIN, 0}, {writes ? to_ : -1, POLLOUT, 0}}};
+  if (listening_ >= 0) files[0].fd = listening_;
+  const auto most = std::min<std::int64_t>(left, kBetweenLooks.count());
+  if (::poll(files.data(), files.size(), static_cast<int>(most)) <= 0) return;
+  if (files[1].revents != 0 && !drain(chatter_, false)) close_file(chatter_);
+  if (listening_ >= 0) return;
+  if (files[0].revents != 0 && !drain(from_, true)) {
+    if (to_ == from_) to_ = -1;
+    close_file(from_);
+  }
+  if (writes && files[2].revents != 0 && to_ >= 0) {
+    const NoPipeSignal guard;
+    asked_at_ = Clock::now();
+    const ssize_t count = ::write(to_, unsent->data(), unsent->size());
+    if (count > 0)
+      unsent->remove_prefix(static_cast<std::size_t>(count));
+    else if (errno != EAGAIN && errno != EINTR)
+      fail(ending());
+  }
+}
+
+void Child::accept(Clock::time_point deadline) {
+  while (listening_ >= 0) {
+    const int connected = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (connected >= 0) {
+      close_file(listening_);
+      to_ = from_ = connected;
+      return;
+    }
+    if (ended()) fail(ending());
+    pump(deadline, nullptr);
+  }
+}
+
+void Child::write(std::string_view bytes, Clock::time_point deadline) {
+  accept(deadline);
+  while (!bytes.empty()) {
+    if (to_ < 0) fail(ending());
+    pump(deadline, &bytes);
+  }
+}
+
+std::string Child::read(Clock::time_point deadline) {
+  accept(deadline);
+  while (true) {
+    if (auto line = line_from_input()) return *line;
+    if (from_ < 0) fail(ending());
+    pump(deadline, nullptr);
+  }
+}
+
+std::optional<std::string> Child::read_if_there() {
+  if (from_ >= 0 && !drain(from_, true)) {
+    if (to_ == from_) to_ = -1;
+    close_file(from_);
+  }
+  return line_from_input();
+}
+
+void Child::wait(Clock::time_point deadline) {
+  while (!ended() && Clock::now() < deadline) {
+    // Nobody reads it any more.
+    input_.clear();
+    parsed_ = searched_ = 0;
+    if (from_ >= 0 || chatter_ >= 0)
+      pump(std::min(deadline, Clock::now() + std::chrono::milliseconds(20)), nullptr);
+    else
+      ::usleep(2000);
+  }
+}
+
+}  // namespace airtruth::process

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <airtruth/box.h>
+
+// What a detector reports: boxes with scores.
+//
+// Example: a detector sees one aircraft at (100, 50) with 20 x 8 px in the first of two frames and
+// nothing in the second. Its sequence has frames = {{{{100, 50, 20, 8}, 7.5, "aircraft", {}}}, {}}.
+namespace airtruth::results {
+
+struct Detection {
+  // The first pixel covers [0, 1); docs/conventions.md.
+  Box box_px;
+  // Finite. A higher score means more confidence; detectors have no common scale.
+  double score = 0;
+  std::string category = "aircraft";
+  // The same number for the same object throughout a sequence; empty where the detector, or the
+  // association after it, has declared no track here.
+  std::optional<std::int64_t> track;
+
+  bool operator==(const Detection&) const = default;
+};
+
+// The detections of a sequence.
+struct SequenceDetections {
+  std::string name;  // of the sequence, or of the video
+  int width = 0;     // of its pictures, px
+  int height = 0;
+  // One list for each frame of the sequence, in order; an empty list where nothing was detected.
+  std::vector<std::vector<Detection>> frames;
+  // The detector's own time for each frame, in seconds; empty where it is unknown.
+  std::vector<double> seconds;
+};
+
+}  // namespace airtruth::results

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/results/results_folder.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "foundation/json/json_object.h"
+#include "runners/results/results_files.h"
+
+namespace airtruth::results {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "airtruth detections 1";
+constexpr const char* kAircraft = "aircraft";
+constexpr int kMaxSide = 65'536;
+// 46 hours at 30 frames/s.
+constexpr std::int64_t kMaxFramesOfRun = 5'000'000;
+
+fs::path text_file(const fs::path& folder, const std::string& name) {
+  return folder / (name + ".txt");
+}
+fs::path facts_file(const fs::path& folder, const std::string& name) {
+  return folder / (name + ".json");
+}
+
+Json facts_of(const SequenceDetections& detections) {
+  Json facts = {{"format", kFormat},
+                {"sequence", detections.name},
+                {"width", detections.width},
+                {"height", detections.height},
+                {"frames", detections.frames.size()}};
+  Json categories = Json::array();
+  bool are_all_aircraft = true;
+  for (const auto& frame : detections.frames)
+    for (const Detection& detection : frame) {
+      categories.push_back(detection.category);
+      are_all_aircraft = are_all_aircraft && detection.category == kAircraft;
+    }
+  if (!are_all_aircraft) facts["categories"] = std::move(categories);
+  if (!detections.seconds.empty()) {
+    Json seconds = Json::array();
+    for (const double s : detections.seconds) seconds.push_back(std::round(s * 1e6) / 1e6);
+    facts["seconds"] = std::move(seconds);
+  }
+  return facts;
+}
+
+// The categories, in the order of the text's lines.
+void name_categories(SequenceDetections& read, const JsonObject& facts) {
+  if (!facts.has("categories")) return;
+  const std::vector<std::string> categories = facts.texts("categories");
+  std::size_t next = 0;
+  for (auto& frame : read.frames)
+    for (Detection& detection : frame) {
+      if (next < categories.size()) detection.category = categories[next];
+      ++next;
+    }
+  if (next != categories.size())
+    facts.fail(fmt::format("names {} categories; the text has {} lines", categories.size(), next));
+}
+
+// The file of a sequence in a folder of MOTChallenge results; empty: none. Error where there are
+// two.
+fs::path mot_file(const fs::path& folder, const std::string& name) {
+  fs::path found;
+  for (const fs::path& file : {folder / (name + ".txt"),
+                               folder / "data" / (name + ".txt"),
+                               folder / name / "det" / "det.txt"}) {
+    if (!fs::is_regular_file(file)) continue;
+    if (!found.empty())
+      throw Error("holds '" + name + "' twice: " + found.string() + " and " + file.string(),
+                  {folder.string()});
+    found = file;
+  }
+  return found;
+}
+
+std::vector<std::string> mot_names(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::path& place : {folder, folder / "data"}) {
+    if (!fs::is_directory(place)) continue;
+    for (const auto& entry : fs::directory_iterator(place)) {
+      const fs::path& path = entry.path();
+      if (path.filename().string().starts_with(".")) continue;
+      if (entry.is_regular_file() && path.extension() == ".txt")
+        names.push_back(path.stem().string());
+      else if (fs::is_regular_file(path / "det" / "det.txt"))
+        names.push_back(path.filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// The one JSON file of a folder without text; empty: none, or several.
+fs::path only_json(const fs::path& folder) {
+  fs::path found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_regular_file() || entry.path().extension() != ".json") continue;
+    if (!found.empty()) return {};
+    found = entry.path();
+  }
+  return found;
+}
+
+void expect_known(const std::vector<std::string>& names,
+                  std::span<const ExpectedSequence> set,
+                  const fs::path& folder) {
+  std::vector<std::string> known;
+  for (const ExpectedSequence& sequence : set) known.push_back(sequence.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const auto near = nearest_spelling(name, known);
+    throw Error("holds results of '" + name + "', and the set has no sequence of that name" +
+                    (near ? "; did you mean '" + *near + "'?" : ""),
+                {folder.string()});
+  }
+}
+
+void expect_same(const SequenceDetections& read,
+                 const ExpectedSequence& expected,
+                 const fs::path& file) {
+  const auto differs = [](std::int64_t known, std::int64_t found) {
+    return known > 0 && found > 0 && known != found;
+  };
+  if (differs(expected.frames, std::ssize(read.frames)))
+    throw Error(
+        fmt::format(
+            "is of {} frames; '{}' has {}", read.frames.size(), expected.name, expected.frames),
+        {file.string()});
+  if (differs(expected.width, read.width) || differs(expected.height, read.height))
+    throw Error(fmt::format("is of pictures of {}x{}; those of '{}' are {}x{}",
+                            read.width,
+                            read.height,
+                            expected.name,
+                            expected.width,
+                            expected.height),
+                {file.string()});
+}
+
+std::vector<SequenceDetections> read_own(const fs::path& folder,
+                                         const std::vector<std::string>& names,
+                                         std::span<const ExpectedSequence> set) {
+  expect_known(names, set, folder);
+  std::vector<SequenceDetections> all;
+  for (const ExpectedSequence& expected : set) {
+    if (!has_sequence(folder, expected.name)) continue;
+    all.push_back(read_sequence(folder, expected.name));
+    expect_same(all.back(), expected, facts_file(folder, expected.name));
+  }
+  return all;
+}
+
+std::vector<SequenceDetections> read_mot(const fs::path& folder,
+                                         const std::vector<std::string>& names,
+                                         std::span<const ExpectedSequence> set) {
+  expect_known(names, set, folder);
+  std::vector<SequenceDetections> all;
+  for (const ExpectedSequence& expected : set) {
+    const fs::path file = mot_file(folder, expected.name);
+    if (file.empty()) continue;
+    FrameList frames(expected.name, expected.width, expected.height, expected.frames);
+    read_mot_text(file, frames);
+    all.push_back(frames.take());
+  }
+  return all;
+}
+
+void expect_distinct(std::span<const ExpectedSequence> set) {
+  std::map<std::string, int> counts;
+  for (const ExpectedSequence& sequence : set)
+    if (++counts[sequence.name] > 1)
+      throw Error("the set has two sequences of the name '" + sequence.name + "'");
+}
+
+}  // namespace
+
+void write_sequence(const fs::path& folder, const SequenceDetections& detections) {
+  write_file(text_file(folder, detections.name), mot_text_of(detections));
+  write_file(facts_file(folder, detections.name), facts_of(detections).dump() + "\n");
+}
+
+bool has_sequence(const fs::path& folder, const std::string& name) {
+  return fs::exists(facts_file(folder, name)) && fs::exists(text_file(folder, name));
+}
+
+std::vector<std::string> detected_sequences_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!fs::is_directory(folder)) return names;
+  for (const std::string& name : mot_names(folder))
+    if (has_sequence(folder, name)) names.push_back(name);
+  return names;
+}
+
+SequenceDetections read_sequence(const fs::path& folder, const std::string& name) {
+  const JsonDocument facts(facts_file(folder, name));
+  const std::string format = std::string("\"") + kFormat + "\"";
+  if (!facts.has("format")) facts.fail("has no format; expected " + format);
+  if (facts.text("format") != kFormat) facts.fail("format", format);
+  FrameList frames(name,
+                   static_cast<int>(facts.whole("width", 1, kMaxSide)),
+                   static_cast<int>(facts.whole("height", 1, kMaxSide)),
+                   facts.whole("frames", 1, kMaxFramesOfRun));
+  read_mot_text(text_file(folder, name), frames);
+  SequenceDetections read = frames.take();
+  name_categories(read, facts);
+  if (facts.has("seconds")) read.seconds = facts.numbers("seconds", read.frames.size());
+  return read;
+}
+
+std::vector<SequenceDetections> read_detections(const fs::path& source,
+                                                std::span<const ExpectedSequence> set) {
+  expect_distinct(set);
+  if (!fs::exists(source)) throw Error("does not exist", {source.string()});
+  if (!fs::is_directory(source)) return read_coco_results(source, set);
+  const std::vector<std::string> names = mot_names(source);
+  if (fs::exists(source / "detector.json")) return read_own(source, names, set);
+  if (!names.empty()) return read_mot(source, names, set);
+  if (const fs::path file = only_json(source); !file.empty()) return read_coco_results(file, set);
+  throw Error(
+      "holds no results; expected what `airtruth detect` made, MOTChallenge text (SEQUENCE.txt) or "
+      "one COCO results file",
+      {source.string()});
+}
+
+}  // namespace airtruth::results

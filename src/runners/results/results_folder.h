@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runners/results/detections.h"
+
+// Detections as files (docs/detection.md). A folder holds one detector's:
+//   detector.json     its name and settings (runners/runs writes it)
+//   SEQUENCE.txt      MOTChallenge text, a line for each detection:
+//                     frame,id,left,top,width,height,score,-1,-1,-1
+//                     frames count from 1, the first pixel is at 1, the id of no track is -1
+//   SEQUENCE.json     size and number of frames, categories, seconds of each frame; it is written
+//                     after the text, so a sequence that has it is whole
+//   detections.json   COCO results of all sequences
+//   backgrounds/      .txt and .json of the videos that the set was made over
+// Coordinates are written to 1/1000 px and scores with 9 digits.
+namespace airtruth::results {
+
+namespace fs = std::filesystem;
+
+// What a data set states about a sequence. Image ids of COCO results follow from a list of these:
+// the frames of all sequences are counted through in the order of the list, from 1, as `airtruth
+// dataset export --format coco` counts them; a frame's file name is NAME/000000.jpg and so on.
+struct ExpectedSequence {
+  std::string name;
+  int width = 0;  // px; 0: unknown
+  int height = 0;
+  std::int64_t frames = 0;
+};
+
+// Writes SEQUENCE.txt and SEQUENCE.json. Throws Error where a file cannot be written.
+void write_sequence(const fs::path& folder, const SequenceDetections& detections);
+// True where both files of a sequence are there.
+bool has_sequence(const fs::path& folder, const std::string& name);
+// The sorted names of all sequences that are there.
+std::vector<std::string> detected_sequences_in(const fs::path& folder);
+// Reads both files. Throws Error as read_detections does.
+SequenceDetections read_sequence(const fs::path& folder, const std::string& name);
+
+// Writes COCO results of `sequences` to a file. Categories are numbered from 1 in alphabetical
+// order; `set` gives the image ids. The sequences are read from `folder` one at a time; a sequence
+// of the set that is not in the folder has no results.
+void write_coco_results(const fs::path& file,
+                        const fs::path& folder,
+                        std::span<const ExpectedSequence> set);
+
+// Reads the detections of a set, in the order of `set`. A sequence without results is left out:
+// in COCO results, which have no place for it, every sequence is present. `source` is one of
+//   a folder as above;
+//   a folder of MOTChallenge results: SEQUENCE.txt, data/SEQUENCE.txt or SEQUENCE/det/det.txt;
+//   a COCO results file, or a folder with one JSON file alone: a list of {image_id, category_id,
+//     bbox, score, track_id}. image_id is a number, or a file's name (NAME/000000.jpg, with any
+//     ending or none); `image_name` or `file_name` may stand for it. A category is named
+//     `category_name`, else category_id 1 is "aircraft" and others are "2", "3", ...
+// Throws Error with file and line for text that is no result, a sequence, image or frame that the
+// set does not have, a box outside its image or without area, a score or coordinate that is not
+// finite, a track that is twice in one frame, and a sequence that is there twice.
+std::vector<SequenceDetections> read_detections(const fs::path& source,
+                                                std::span<const ExpectedSequence> set);
+
+}  // namespace airtruth::results

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/results/trajectories.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "evaluation/matching/boxes.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
+#include "labels/exchange/text.h"
+#include "runners/results/vot_regions.h"
+
+namespace airtruth::results {
+namespace {
+
+using evaluation::Mark;
+using evaluation::Trajectory;
+using evaluation::VotFrame;
+
+constexpr std::array<std::pair<const char*, Protocol>, 3> kProtocols = {
+    {{"ope", Protocol::kOnePass},
+     {"restart", Protocol::kRestart},
+     {"multistart", Protocol::kMultiStart}}};
+constexpr const char* kVotFolder = "baseline";
+constexpr const char* kBinary = ".bin";
+constexpr std::size_t kAnchorDigits = 8;
+constexpr std::size_t kMotColumns = 6;  // at least: frame, id, x, y, w, h
+
+std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int origin_px) {
+  const Box box{n[first] - origin_px, n[first + 1] - origin_px, n[first + 2], n[first + 3]};
+  const bool sound =
+      std::isfinite(box.x + box.y + box.width + box.height) && box.width > 0 && box.height > 0;
+  return sound ? std::optional(box) : std::nullopt;
+}
+
+Trajectory read_trajectory(const fs::path& file, int origin_px) {
+  if (file.extension() == kBinary) return read_binary_trajectory(file, origin_px);
+  Trajectory trajectory;
+  for (const exchange::Line& line : exchange::lines_of(file))
+    trajectory.push_back(region_of(line, file, origin_px));
+  return trajectory;
+}
+
+// Empty where there is no time; 0 for a blank line, which VOT's toolkit writes for a frame without
+// a time. Of several columns (GOT-10k's repetitions) the first is read.
+std::vector<double> read_times(const fs::path& file, std::size_t frames) {
+  if (!fs::exists(file)) return {};
+  const std::vector<exchange::Line> filled = exchange::lines_of(file);
+  const std::string text = read_file(file);
+  const auto ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  const std::size_t lines = ends + (text.empty() || text.back() == '\n' ? 0 : 1);
+  const bool has_blanks = filled.size() != frames;
+  if (has_blanks && lines != frames)
+    throw Error(fmt::format("has {} lines; its results have {}", lines, frames), {file.string()});
+  std::vector<double> seconds(frames, 0);
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const std::vector<double> numbers = exchange::numbers_of(filled[i], file);
+    const std::size_t at = has_blanks ? static_cast<std::size_t>(filled[i].number - 1) : i;
+    if (!numbers.empty()) seconds[at] = numbers.front();
+  }
+  return seconds;
+}
+
+const exchange::Label* label_of(const exchange::LabelledFrame& frame) {
+  return frame.labels.empty() ? nullptr : &frame.labels.front();
+}
+
+using Tracks = std::map<std::int64_t, std::map<std::int64_t, Box>>;  // [frame][id]
+
+// The track with the greatest overlap with the truth in the first frame where any track overlaps
+// it.
+std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchange::Clip& clip) {
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    const exchange::Label* label = label_of(frame);
+    const auto here = tracks.find(frame.frame);
+    if (label == nullptr || here == tracks.end()) continue;
+    double best = 0;
+    std::optional<std::int64_t> found;
+    for (const auto& [id, box] : here->second)
+      if (const double shared = evaluation::overlap(box, label->box_px); shared > best) {
+        best = shared;
+        found = id;
+      }
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
+// "frame,id,x,y,w,h,confidence,..." with frames of the video from 1.
+Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
+  Tracks tracks;
+  for (const exchange::Line& line : exchange::lines_of(file)) {
+    const std::vector<double> n = exchange::numbers_of(line, file);
+    const auto frame =
+        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[0], 1, exchange::kMaxFrames);
+    const auto id =
+        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[1], -1, std::int64_t{1} << 52);
+    if (!frame || !id)
+      throw Error("is no line of MOTChallenge; expected frame,id,x,y,width,height,...",
+                  {file.string(), line.number});
+    if (const auto box = box_from(n, 2, 1)) tracks[*frame - 1][*id] = *box;
+  }
+  const auto mine = overlapping_track(tracks, clip);
+  Trajectory trajectory;
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    VotFrame result{Mark::kAnswer, {}};
+    if (mine)
+      if (const auto found = tracks[frame.frame].find(*mine); found != tracks[frame.frame].end())
+        result.box = found->second;
+    trajectory.push_back(result);
+  }
+  return trajectory;
+}
+
+bool is_mot(const fs::path& file) {
+  const auto lines = exchange::lines_of(file);
+  if (lines.empty() || lines.front().text.starts_with('m')) return false;
+  const std::size_t count = exchange::numbers_of(lines.front(), file).size();
+  // MOTChallenge's lines have seven or more columns here. Eight columns are a polygon, unless the
+  // line begins like a frame and an id.
+  return count == 7 || count >= 9;
+}
+
+void expect_length(const Trajectory& trajectory, const exchange::Clip& clip, const fs::path& file) {
+  if (trajectory.size() != clip.frames.size())
+    throw Error(fmt::format("has {} lines; {} has {} frames from the first that shows its object "
+                            "to the last",
+                            trajectory.size(),
+                            clip.name,
+                            clip.frames.size()),
+                {file.string()});
+}
+
+void expect_begun(const Trajectory& trajectory, const fs::path& file) {
+  if (trajectory.empty() || trajectory.front().mark != Mark::kBegun)
+    throw Error("does not begin with 1; expected a run of VOT", {file.string(), 1});
+}
+
+TrackerResults::Run one_pass_run(const fs::path& file, const exchange::Clip& clip, int origin_px) {
+  TrackerResults::Run run;
+  run.file = file;
+  run.frames = is_mot(file) ? read_mot(file, clip) : read_trajectory(file, origin_px);
+  // VOT's unsupervised runs mark their start.
+  for (VotFrame& frame : run.frames)
+    if (frame.mark != Mark::kAnswer) frame = {Mark::kAnswer, {}};
+  expect_length(run.frames, clip, file);
+  return run;
+}
+
+std::optional<std::int64_t> number_of(const fs::path& file, const std::string& sequence) {
+  const std::string stem = file.stem().string();
+  if (!stem.starts_with(sequence + "_")) return std::nullopt;
+  const std::string digits = stem.substr(sequence.size() + 1);
+  if (digits.empty() || digits.size() > kAnchorDigits ||
+      digits.find_first_not_of("0123456789") != std::string::npos)
+    return std::nullopt;
+  return std::stoll(digits);
+}
+
+bool is_anchor_name(const fs::path& file, const std::string& sequence) {
+  return file.stem().string().size() == sequence.size() + 1 + kAnchorDigits;
+}
+
+// Where a run has both files, the text file is read, as in the toolkit.
+std::vector<fs::path> vot_files(const fs::path& folder) {
+  std::vector<fs::path> files = exchange::files_with(folder, ".txt");
+  for (const fs::path& file : exchange::files_with(folder, kBinary))
+    if (!fs::exists(fs::path(file).replace_extension(".txt"))) files.push_back(file);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void add_vot_runs(const fs::path& folder,
+                  const exchange::Clip& clip,
+                  int origin_px,
+                  TrackerResults& results) {
+  if (!fs::is_directory(folder)) return;
+  const std::int64_t length = std::ssize(clip.frames);
+  for (const fs::path& file : vot_files(folder)) {
+    const auto number = number_of(file, clip.name);
+    if (!number) continue;
+    TrackerResults::Run run{read_trajectory(file, origin_px), {}, file};
+    run.seconds =
+        read_times(file.parent_path() / (file.stem().string() + "_time.value"), run.frames.size());
+    expect_begun(run.frames, file);
+    if (is_anchor_name(file, clip.name)) {
+      const std::int64_t lines = std::ssize(run.frames);
+      if (lines != length - *number && lines != *number + 1)
+        throw Error(fmt::format("has {} lines; from frame {} {} has {} to its end and {} to its "
+                                "beginning",
+                                lines,
+                                *number,
+                                clip.name,
+                                length - *number,
+                                *number + 1),
+                    {file.string()});
+      results.multistart.push_back(std::move(run));
+      results.anchors.push_back(*number);
+    } else {
+      expect_length(run.frames, clip, file);
+      results.restart.push_back(std::move(run));
+    }
+  }
+}
+
+}  // namespace
+
+Protocol protocol_from_name(std::string_view name) {
+  std::vector<std::string> names;
+  for (const auto& [known, protocol] : kProtocols) {
+    if (name == known) return protocol;
+    names.emplace_back(known);
+  }
+  const auto nearest = nearest_spelling(name, names);
+  throw Error(
+      "unknown protocol '" + std::string(name) + "'" +
+      (nearest ? "; did you mean '" + *nearest + "'?" : "; expected ope, restart or multistart"));
+}
+
+const char* name(Protocol protocol) { return kProtocols[static_cast<std::size_t>(protocol)].first; }
+
+fs::path trajectory_file(const fs::path& folder,
+                         Protocol protocol,
+                         const std::string& sequence,
+                         std::int64_t number) {
+  if (protocol == Protocol::kOnePass) return folder / (sequence + ".txt");
+  const std::string file = protocol == Protocol::kRestart
+                               ? fmt::format("{}_{:03d}.txt", sequence, number)
+                               : fmt::format("{}_{:08d}.txt", sequence, number);
+  return folder / name(protocol) / sequence / file;
+}
+
+fs::path times_file(const fs::path& trajectory, Protocol protocol) {
+  return trajectory.parent_path() /
+         (trajectory.stem().string() +
+          (protocol == Protocol::kOnePass ? "_time.txt" : "_time.value"));
+}
+
+std::string text_of(const Trajectory& trajectory) {
+  std::string text;
+  for (const VotFrame& frame : trajectory) {
+    if (frame.mark != Mark::kAnswer)
+      text += fmt::format("{}\n", static_cast<int>(frame.mark));
+    else if (frame.box)
+      text += fmt::format(
+          "{},{},{},{}\n", frame.box->x, frame.box->y, frame.box->width, frame.box->height);
+    else
+      text += "nan,nan,nan,nan\n";
+  }
+  return text;
+}
+
+std::string text_of(const std::vector<double>& seconds) {
+  std::string text;
+  for (const double s : seconds) text += fmt::format("{:.9f}\n", s);
+  return text;
+}
+
+TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px) {
+  TrackerResults results;
+  const fs::path own = folder / (clip.name + ".txt");
+  const fs::path got10k = folder / clip.name / (clip.name + "_001.txt");
+  if (fs::exists(own)) {
+    results.one_pass.push_back(one_pass_run(own, clip, origin_px));
+    results.one_pass.back().seconds =
+        read_times(times_file(own, Protocol::kOnePass), clip.frames.size());
+  } else if (fs::exists(got10k)) {
+    results.one_pass.push_back(one_pass_run(got10k, clip, origin_px));
+    results.one_pass.back().seconds =
+        read_times(got10k.parent_path() / (clip.name + "_time.txt"), clip.frames.size());
+  }
+  for (const char* place : {name(Protocol::kRestart), name(Protocol::kMultiStart), kVotFolder})
+    add_vot_runs(folder / place / clip.name, clip, origin_px, results);
+  return results;
+}
+
+std::vector<std::string> tracked_sequences_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const fs::path& file : exchange::files_with(folder, ".txt"))
+    if (const std::string name = file.stem().string(); !name.ends_with("_time")) names.insert(name);
+  const auto add_folders = [&](const fs::path& place) {
+    if (!fs::is_directory(place)) return;
+    for (const auto& entry : fs::directory_iterator(place)) {
+      const std::string name = entry.path().filename().string();
+      if (!entry.is_directory()) continue;
+      for (const fs::path& file : vot_files(entry.path()))
+        if (number_of(file, name)) names.insert(name);
+    }
+  };
+  add_folders(folder);
+  for (const char* place : {name(Protocol::kRestart), name(Protocol::kMultiStart), kVotFolder})
+    add_folders(folder / place);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace airtruth::results

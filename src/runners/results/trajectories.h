@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <airtruth/labels.h>
+#include <airtruth/vot.h>
+
+// Trackers' results as files (docs/evaluation.md). A folder holds one tracker's:
+//   SEQUENCE.txt                              one pass, a line "x,y,w,h" a frame
+//   SEQUENCE_time.txt                         its seconds
+//   restart/SEQUENCE/SEQUENCE_001.txt         VOT's runs with restarts: a box, or 1 where it was
+//                                             begun, 2 where it failed, 0 for frames passed over
+//   multistart/SEQUENCE/SEQUENCE_00000050.txt VOT's runs from an anchor
+//   .../SEQUENCE_001_time.value               their seconds
+// What others write is read as well: VOT's folder "baseline" in place of the last two, its binary
+// runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's
+// SEQUENCE/SEQUENCE_001.txt, and MOTChallenge's SEQUENCE.txt.
+namespace airtruth::results {
+
+namespace fs = std::filesystem;
+
+enum class Protocol { kOnePass, kRestart, kMultiStart };
+// "ope", "restart", "multistart"; Error with the nearest for anything else.
+Protocol protocol_from_name(std::string_view name);
+const char* name(Protocol protocol);
+
+// `number` is the number of the repetition from 1, or the anchor's frame; it is ignored for one
+// pass.
+fs::path trajectory_file(const fs::path& folder,
+                         Protocol protocol,
+                         const std::string& sequence,
+                         std::int64_t number);
+fs::path times_file(const fs::path& trajectory, Protocol protocol);
+
+// An answer without a box is "nan,nan,nan,nan".
+std::string text_of(const evaluation::Trajectory& trajectory);
+std::string text_of(const std::vector<double>& seconds);  // to the nanosecond
+
+// The results of one sequence in a folder.
+struct TrackerResults {
+  struct Run {
+    evaluation::Trajectory frames;
+    std::vector<double> seconds;  // empty where no times exist
+    fs::path file;
+  };
+  std::vector<Run> one_pass;  // at most one
+  std::vector<Run> restart;
+  std::vector<Run> multistart;
+  std::vector<std::int64_t> anchors;  // anchor of each multistart run
+  bool empty() const { return one_pass.empty() && restart.empty() && multistart.empty(); }
+};
+
+// `origin_px` is the coordinate that the results give to the first pixel, 0 or 1 (always 1 for
+// MOTChallenge). In one pass, a box without area or with a NaN is an answer without a box. In VOT's
+// runs a box without area is an answer without a box, and a box with a NaN is kUnknown, as in VOT's
+// toolkit. Polygons and masks become their bounding box. Of MOTChallenge's tracks the function
+// takes the track that has the greatest overlap with the truth at the first frame on which any
+// track overlaps it. Throws Error with file and line for text that is not a result, for a run whose
+// length differs from the clip's, and for times whose number differs from their run's.
+TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
+
+// Returns the sorted names of the sequences for which a folder has results.
+std::vector<std::string> tracked_sequences_in(const fs::path& folder);
+
+}  // namespace airtruth::results

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <airtruth/vot.h>
+
+#include "labels/exchange/text.h"
+
+// Regions in the formats of VOT's toolkit: text with one region per line and, since version 0.5,
+// binary files (.bin). A region is a rectangle; a polygon or a mask, which becomes its bounding
+// box; or one of the marks 0, 1 and 2. As in the toolkit, a text region with a NaN is the mark 0.
+namespace airtruth::results {
+
+// Reads one text region: "x,y,w,h"; "x0,y0,x1,y1,x2,y2,..."; "mx,y,w,h,n0,n1,...", a mask as run
+// lengths along its rows of which the first counts zeros; or a mark. `origin_px` is the coordinate
+// that the file gives to the first pixel, 0 or 1. A box without area is an answer without a box.
+// Throws Error at the line for any other text.
+evaluation::VotFrame region_of(const exchange::Line& line,
+                               const std::filesystem::path& file,
+                               int origin_px);
+
+// Little-endian: int16 version (1), uint32 count, then for each frame a byte of type and
+//   0 mark: uint32;  1 rectangle: 4 float32;  2 polygon: uint16 n, 2 n float32;
+//   3 mask: int16 x, y, uint16 w, h, n, n uint16 run lengths.
+// Error with the byte's place for what does not follow it, and for what follows the last frame.
+evaluation::Trajectory read_binary_trajectory(const std::filesystem::path& file, int origin_px);
+
+}  // namespace airtruth::results

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/lens/lens.h"
+#include "dataset/labelled/labelled_set.h"
+#include "foundation/base/log.h"
+#include "runners/results/results_folder.h"
+
+// What detectors run over.
+namespace airtruth::runs {
+
+namespace fs = std::filesystem;
+
+struct DetectionClip {
+  std::string name;
+  // A video, a folder or a pattern of numbered images.
+  fs::path media;
+  std::int64_t first_frame = 0;
+  std::optional<std::int64_t> frame_count;
+  // Numbers of the frames in the video, ascending, counted from first_frame; empty: all frames.
+  std::vector<std::int64_t> frames;
+  // Empty where nothing states one.
+  std::optional<lens::Lens> lens;
+  // A picture that is black where the own aircraft is; empty where nothing states one.
+  std::optional<fs::path> own_aircraft;
+};
+
+// A sequence of a set with all its frames. Throws Error where it has no video.
+DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name);
+// The parts of background videos that the given sequences were made over, each once, in the order
+// of the sequences: pictures without any intruder of the scene. A part is named as its video, with
+// "-2" and so on where several have that name. Leaves out, with a warning, what is not there any
+// more; an imported sequence has none.
+std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
+                                          const std::vector<std::string>& names,
+                                          const Warn& warn);
+// A video as a clip of the name of its file.
+DetectionClip clip_of(const fs::path& video);
+
+// What detections of the set have to fit: every sequence, in the order of the set. The size of the
+// pictures is not looked up.
+std::vector<results::ExpectedSequence> sequences_of(const dataset::LabelledSet& set);
+
+// A pinhole of 60 degrees across, for clips whose lens nothing states. Between 40 and 90 degrees,
+// the rotation that is measured through it moves a pixel by the same amount within some per cent,
+// for turns of a few degrees.
+lens::Lens guessed_lens(int width, int height);
+
+}  // namespace airtruth::runs

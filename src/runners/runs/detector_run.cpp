@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/runs/detector_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "camera/lens/calibration_file.h"
+#include "dataset/labelled/labelled_set.h"
+#include "dataset/sequences/sequence_folders.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/stopwatch.h"
+#include "runners/results/fault.h"
+#include "runners/runs/clip_frames.h"
+#include "runners/runs/clips.h"
+#include "runners/runs/detector_results.h"
+
+namespace airtruth::runs {
+namespace {
+
+// The share of a box's pixels, those with their centre in it, that the own aircraft hides.
+double hidden_share(const Box& box, const image::Mask& own_aircraft) {
+  const auto from = [](double edge) {
+    return std::max(0, static_cast<int>(std::ceil(edge - 0.5)));
+  };
+  const int right = std::min(own_aircraft.width, from(box.right()));
+  const int bottom = std::min(own_aircraft.height, from(box.bottom()));
+  int hidden = 0, all = 0;
+  for (int y = from(box.y); y < bottom; ++y)
+    for (int x = from(box.x); x < right; ++x, ++all) hidden += own_aircraft.is_free(x, y) ? 0 : 1;
+  return all > 0 ? double(hidden) / all : 0;
+}
+
+// One detector within one sequence.
+class Following {
+ public:
+  Following(DetectorResults& results,
+            std::string part,
+            const DetectorOptions& options,
+            const DetectOptions& run)
+      : results_(&results),
+        part_(std::move(part)),
+        run_(&run),
+        detector_(make_detector(results.command(), options)) {}
+
+  bool needs_motion() const { return run_->association || detector_->needs_motion(); }
+  bool is_broken() const { return !detector_; }
+
+  void begin(const detector::SequenceInput& sequence) {
+    found_.name = sequence.name;
+    found_.width = sequence.width;
+    found_.height = sequence.height;
+    guarded([&] {
+      detector_->begin(sequence);
+      if (run_->mask_results && !detector_->leaves_out_own_aircraft())
+        own_aircraft_ = sequence.own_aircraft;
+      if (!run_->association) return;
+      association::AssociationOptions association = *run_->association;
+      if (!association.confident_score) association.confident_score = detector_->confident_score();
+      associator_.emplace(association);
+      associator_->begin(sequence);
+    });
+  }
+
+  void detect(const detector::FrameInput& frame) {
+    guarded([&] {
+      const Stopwatch watch;
+      std::vector<results::Detection> detections = detector_->detect(frame);
+      const double took_s = watch.seconds();
+      for (const results::Detection& detection : detections)
+        if (const auto fault = results::fault_of(detection, found_.width, found_.height))
+          throw process::Failure(
+              fmt::format("answered what is no detection for frame {}: {}", frame.index, *fault));
+      std::stable_sort(detections.begin(),
+                       detections.end(),
+                       [](const results::Detection& a, const results::Detection& b) {
+                         return a.score > b.score;
+                       });
+      if (own_aircraft_)
+        std::erase_if(detections, [&](const results::Detection& d) {
+          return hidden_share(d.box_px, *own_aircraft_) > 0.5;
+        });
+      if (run_->min_score)
+        std::erase_if(detections,
+                      [&](const results::Detection& d) { return d.score < *run_->min_score; });
+      if (std::ssize(detections) > run_->max_per_frame)
+        detections.resize(static_cast<std::size_t>(run_->max_per_frame));
+      if (associator_) detections = associator_->step(frame, std::move(detections));
+      found_.frames.push_back(std::move(detections));
+      found_.seconds.push_back(took_s);
+    });
+  }
+
+  void finish() {
+    if (!is_broken()) results_->add(part_, found_, detector_->log());
+  }
+
+ private:
+  void guarded(const auto& work) {
+    if (is_broken()) return;
+    try {
+      work();
+    } catch (const process::Failure& error) {
+      const std::string log = detector_->log();
+      detector_.reset();
+      results_->add_broken(found_.name, error.what(), log);
+    }
+  }
+
+  DetectorResults* results_;
+  std::string part_;
+  const DetectOptions* run_;
+  std::unique_ptr<detector::Detector> detector_;
+  std::shared_ptr<const image::Mask> own_aircraft_;
+  std::optional<association::Associator> associator_;
+  results::SequenceDetections found_;
+};
+
+// The threads of each of `jobs` sequences at a time.
+int threads_of(const DetectOptions& options) {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.jobs);
+}
+
+class DetectorRun {
+ public:
+  DetectorRun(const fs::path& out, const DetectOptions& options)
+      : options_(options),
+        detector_options_{options.start_s, options.answer_s, threads_of(options), options.stop} {
+    if (options.association) association::validate(*options.association);
+    if (options.min_score && !std::isfinite(*options.min_score))
+      throw Error(fmt::format("--min-score is {}; expected a finite number", *options.min_score));
+    std::set<std::string> names;
+    for (const std::string& text : options.detectors) {
+      require_utf8(text);
+      const DetectorName named = named_detector(text);
+      if (!names.insert(named.name).second)
+        throw Error("two detectors are named '" + named.name +
+                    "'; expected NAME=DETECTOR with a name for each");
+      // An Error for what is no detector, before anything is made.
+      make_detector(named.command, detector_options_);
+      results_.push_back(std::make_unique<DetectorResults>(named, out, options));
+    }
+  }
+
+  std::vector<DetectSummary> over(const dataset::LabelledSet& set) {
+    std::vector<std::string> names;
+    for (const std::string& name : set.names())
+      if (matches(options_.only, name)) names.push_back(name);
+    if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
+    open();
+    std::vector<DetectionClip> backgrounds;
+    if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
+    in_parallel(
+        names.size() + backgrounds.size(),
+        options_.jobs,
+        [&](std::size_t i) {
+          if (i < names.size()) return over("", names[i], [&] { return clip_of(set, names[i]); });
+          const DetectionClip& background = backgrounds[i - names.size()];
+          over(kBackgrounds, background.name, [&] { return background; });
+        },
+        options_.progress,
+        options_.stop);
+    return summaries(sequences_of(set), "detections.json");
+  }
+
+  std::vector<DetectSummary> over(const fs::path& video) {
+    const DetectionClip clip = clip_of(video);
+    ClipFrames(with_facts(clip), false, options_.warn);  // an Error before anything is made
+    open();
+    over(
+        "", clip.name, [&] { return clip; }, options_.progress);
+    return summaries(std::vector<results::ExpectedSequence>{{clip.name, 0, 0, 0}},
+                     clip.name + ".detections.json");
+  }
+
+ private:
+  using Progress = std::function<void(std::int64_t, std::int64_t)>;
+
+  void open() const {
+    for (const auto& results : results_) results->open();
+  }
+
+  // The lens and the mask that the user states, for a clip that states none.
+  DetectionClip with_facts(DetectionClip clip) const {
+    if (!options_.masks) clip.own_aircraft.reset();
+    if (clip.own_aircraft && !fs::exists(*clip.own_aircraft)) {
+      airtruth::warn(options_.warn,
+                     clip.own_aircraft->string() + ": the mask of '" + clip.name +
+                         "' is not there; the own aircraft is looked at as well");
+      clip.own_aircraft.reset();
+    }
+    if (!clip.own_aircraft && options_.masks) clip.own_aircraft = options_.mask;
+    if (clip.lens || !options_.lens) return clip;
+    const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}).info();
+    clip.lens = lens::read_calibration(*options_.lens, {info.width, info.height});
+    return clip;
+  }
+
+  // All detectors that have not done so yet, over one clip.
+  void over(const std::string& part,
+            const std::string& name,
+            const auto& make_clip,
+            const Progress& progress = {}) {
+    std::vector<Following> detectors;
+    for (const auto& results : results_)
+      if (!results->keeps(part, name))
+        detectors.emplace_back(*results, part, detector_options_, options_);
+    if (detectors.empty()) return;
+    const DetectionClip clip = with_facts(make_clip());
+    const bool with_motion =
+        std::any_of(detectors.begin(), detectors.end(), [](const Following& detector) {
+          return detector.needs_motion();
+        });
+    ClipFrames frames(clip, with_motion, options_.warn);
+    for (Following& detector : detectors) detector.begin(frames.sequence());
+    while (const auto frame = frames.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      for (Following& detector : detectors) detector.detect(*frame);
+      if (std::all_of(detectors.begin(), detectors.end(), [](const Following& detector) {
+            return detector.is_broken();
+          }))
+        break;
+      if (progress) progress(frame->index + 1, std::max(frame->index + 1, frames.count_estimate()));
+    }
+    for (Following& detector : detectors) detector.finish();
+  }
+
+  std::vector<DetectSummary> summaries(std::span<const results::ExpectedSequence> set,
+                                       const std::string& coco_name) const {
+    std::vector<DetectSummary> all;
+    for (const auto& results : results_) {
+      results->finish(set, coco_name);
+      all.push_back(results->summary());
+    }
+    return all;
+  }
+
+  const DetectOptions& options_;
+  DetectorOptions detector_options_;
+  std::vector<std::unique_ptr<DetectorResults>> results_;
+};
+
+}  // namespace
+
+std::vector<DetectSummary> detect(const fs::path& source,
+                                  const fs::path& out,
+                                  const DetectOptions& options) {
+  DetectorRun running(out, options);
+  if (!fs::exists(source) && source.string().find('%') == std::string::npos)
+    throw Error("does not exist", {source.string()});
+  // A folder without sequences is one of pictures, unless it is a set that is still empty.
+  const bool is_set = fs::is_directory(source) &&
+                      (fs::exists(source / "dataset.json") || fs::exists(source / "sequences") ||
+                       !dataset::sequence_folders(source).names.empty());
+  if (is_set) return running.over(dataset::LabelledSet(source));
+  return running.over(source);
+}
+
+}  // namespace airtruth::runs

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/runs/make_detector.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/suggest.h"
+#include "runners/classical/classical.h"
+#include "runners/detector/external.h"
+#include "runners/network/model_description.h"
+#include "runners/network/network_detector.h"
+
+namespace airtruth::runs {
+namespace {
+
+constexpr std::string_view kExec = "exec:";
+constexpr std::string_view kNetwork = "onnx:";
+
+bool is_file_name(const std::string& name) {
+  return !name.empty() && name.size() <= 80 && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ||
+                  c == '.';
+         });
+}
+
+// "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
+std::string usual_name(const std::string& command) {
+  const std::string scheme = command.substr(0, command.find(':'));
+  if (!command.starts_with(kNetwork)) return scheme;
+  const std::string stem = std::filesystem::path(command.substr(kNetwork.size())).stem().string();
+  return stem.empty() ? scheme : stem;
+}
+
+}  // namespace
+
+std::vector<std::string> detector_names() { return classical::classical_names(); }
+
+std::vector<std::filesystem::path> files_of(std::string_view command) {
+  if (!command.starts_with(kNetwork)) return {};
+  const std::filesystem::path model = command.substr(kNetwork.size());
+  return {model, network::description_path(model)};
+}
+
+std::vector<std::string> detector_forms() {
+  return {"onnx:MODEL.onnx for a network (docs/formats/detector-model.md)",
+          "exec:COMMAND for a program that speaks docs/detector-protocol.md"};
+}
+
+DetectorName named_detector(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t colon = text.find(':');
+  const bool is_named =
+      equals != std::string::npos && (colon == std::string::npos || equals < colon);
+  const std::string command = is_named ? text.substr(equals + 1) : text;
+  const std::string name = is_named ? text.substr(0, equals) : usual_name(command);
+  if (!is_file_name(name))
+    throw Error("'" + name.substr(0, 80) +
+                "' is no name for a detector's results; expected letters, digits, - _ .");
+  return {name, command};
+}
+
+std::unique_ptr<detector::Detector> make_detector(std::string_view command,
+                                                  const DetectorOptions& options) {
+  if (command.starts_with(kExec)) {
+    const std::string program(command.substr(kExec.size()));
+    if (program.find_first_not_of(' ') == std::string::npos)
+      throw Error("'" + std::string(command) + "' names no command");
+    return detector::make_external({program, options.start_s, options.answer_s, options.stop});
+  }
+  if (auto classical = classical::make_classical(command)) return classical;
+  if (command.starts_with(kNetwork)) {
+    const std::filesystem::path model = command.substr(kNetwork.size());
+    if (model.empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
+    return network::make_network_detector(model, {options.threads, options.stop});
+  }
+  std::vector<std::string> names = detector_names();
+  names.insert(names.end(), {"onnx:MODEL.onnx", "exec:COMMAND"});
+  const std::string scheme(command.substr(0, command.find(':')));
+  const bool has_scheme = scheme.size() < command.size();
+  const auto near = has_scheme
+                        ? nearest_spelling(scheme + ":", std::vector<std::string>{"onnx:", "exec:"})
+                        : nearest_spelling(scheme, detector_names());
+  throw Error(fmt::format(
+      "there is no detector '{}'; {}",
+      command.substr(0, 80),
+      near ? "did you mean '" + *near + "'?"
+           : fmt::format("expected {}, onnx:MODEL.onnx or exec:COMMAND", fmt::join(names, ", "))));
+}
+
+}  // namespace airtruth::runs

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/runs/tracker_run.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+
+#include <airtruth/version.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dataset/catalogue/expand.h"
+#include "dataset/labelled/labelled_set.h"
+#include "evaluation/matching/boxes.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/base/pattern.h"
+#include "foundation/json/settings_record.h"
+#include "labels/exchange/exchange.h"
+#include "picture/video/numbered_frames.h"
+#include "runners/runs/follower.h"
+
+namespace airtruth::runs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using evaluation::Mark;
+using evaluation::Trajectory;
+
+// Number of frames from a failure to the next start (VOT2013).
+constexpr std::int64_t kSkip = 5;
+// Crashes allowed in a run with restarts; after them each start counts as a failure.
+constexpr int kMaxCrashes = 3;
+
+// A run's frames and times as they come.
+struct Record {
+  Trajectory frames;
+  std::vector<double> seconds;
+
+  void add(Mark mark, const std::optional<Box>& box, double took) {
+    frames.push_back({mark, box});
+    seconds.push_back(took);
+  }
+};
+
+const Box* truth_of(const exchange::LabelledFrame& frame) {
+  return frame.labels.empty() ? nullptr : &frame.labels.front().box_px;
+}
+
+class TrackerRun {
+ public:
+  TrackerRun(const fs::path& out, const TrackOptions& options) : options_(options) {
+    require_utf8(options.tracker);
+    try {
+      const tracking::TrackerName name =
+          tracking::named(options.tracker, tracker_options(options, options.seed));
+      command_ = name.command;
+      summary_.folder = out / name.name;
+      // Error for what is no tracker, before anything is made.
+      if (!name.was_started)
+        tracking::make_tracker(command_, tracker_options(options, options.seed));
+    } catch (const process::Failure& error) {
+      throw Error("the tracker '" + options.tracker + "' " + error.what());
+    }
+  }
+
+  // Results of one folder are of one tracker and one seed: Error where it holds others. Is the
+  // folder there?
+  bool check_folder() const { return is_record_of(summary_.folder / "tracker.json", own_record()); }
+
+  TrackSummary over(const dataset::LabelledSet& set) {
+    std::vector<std::string> names;
+    for (const std::string& name : set.names())
+      if (matches(options_.only, name)) names.push_back(name);
+    if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
+    open_folder();
+    const dataset::Boxes boxes = set.usual_boxes(options_.warn);
+    in_parallel(
+        names.size(),
+        options_.jobs,
+        [&](std::size_t i) {
+          for (const exchange::Clip& clip :
+               exchange::arranged(exchange::Format::kOtb, set.clip(names[i], boxes)))
+            follow(clip);
+        },
+        options_.progress,
+        options_.stop);
+    return summary_;
+  }
+
+  TrackSummary over(const fs::path& video, const Box& init, std::int64_t first_frame) {
+    const std::string name = video.stem().string();
+    const fs::path file =
+        results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);
+    video::NumberedFrames frames(video, options_.warn);
+    Follower follower(command_, options_, options_.seed);
+    Record record;
+    const image::Picture* picture = frames.at(first_frame);
+    check(picture != nullptr, "the reader refuses a first frame past the end");
+    const std::int64_t total = frames.count_estimate();
+    expect_inside(init, *picture);
+    open_folder();
+    if (is_there(file)) {
+      expect_begun_at(init, file);
+      return summary_;
+    }
+    follower.begin(*picture, init);
+    record.add(Mark::kAnswer, init, follower.seconds());
+    for (std::int64_t i = first_frame + 1; (picture = frames.at(i)) != nullptr; ++i) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      const auto box = follower.next(*picture);
+      record.add(Mark::kAnswer, box, follower.seconds());
+      if (options_.progress) options_.progress(i - first_frame, std::max(i, total) - first_frame);
+    }
+    write(file, results::Protocol::kOnePass, name, record, follower);
+    return summary_;
+  }
+
+ private:
+  static void expect_inside(const Box& box, const image::Picture& picture) {
+    if (!intersection(pixels_of(box), {0, 0, picture.width, picture.height}))
+      throw Error(fmt::format("--init {},{},{},{} lies outside the picture of {}x{}",
+                              box.x,
+                              box.y,
+                              box.width,
+                              box.height,
+                              picture.width,
+                              picture.height));
+  }
+
+  static void expect_begun_at(const Box& init, const fs::path& file) {
+    const std::string first = results::text_of(Trajectory{{Mark::kAnswer, init}});
+    if (!read_file(file).starts_with(first))
+      throw Error("holds a run from another box; give another --out or remove it", {file.string()});
+  }
+
+  Json own_record() const { return {{"tracker", options_.tracker}, {"seed", options_.seed}}; }
+
+  void open_folder() const {
+    if (check_folder()) return;
+    const Json mine = own_record();
+    const fs::path file = summary_.folder / "tracker.json";
+    std::error_code failed;
+    fs::create_directories(summary_.folder, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+    Json record = mine;
+    record["format"] = "airtruth results 1";
+    record["version"] = kVersion;
+    record["seconds"] =
+        "of each answer: the tracker's own work, from the picture in the form that it takes; for "
+        "TraX from the request's last byte to the answer, with its reading of the picture";
+    write_file(file, record.dump(1) + "\n");
+  }
+
+  bool is_there(const fs::path& file) {
+    if (!fs::exists(file)) return false;
+    const std::lock_guard lock(mutex_);
+    ++summary_.kept;
+    return true;
+  }
+
+  void write(const fs::path& file,
+             results::Protocol protocol,
+             const std::string& name,
+             const Record& record,
+             const Follower& follower) {
+    fs::create_directories(file.parent_path());
+    if (const std::string log = follower.log(); !log.empty()) {
+      fs::create_directories(summary_.folder / "logs");
+      write_file(summary_.folder / "logs" / (file.stem().string() + ".log"), log);
+    }
+    // The boxes are written last: their file marks the run as done.
+    write_file(results::times_file(file, protocol), results::text_of(record.seconds));
+    write_file(file, results::text_of(record.frames));
+    const std::lock_guard lock(mutex_);
+    ++summary_.made;
+    summary_.frames += follower.answers();
+    summary_.seconds += follower.spent_s();
+    if (follower.fault().empty()) return;
+    ++summary_.broken;
+    airtruth::warn(
+        options_.warn,
+        fmt::format("{} on {}: the tracker {}", options_.tracker, name, follower.fault()));
+  }
+
+  void follow(const exchange::Clip& clip) {
+    if (clip.media.empty()) throw Error(clip.name + " has no video");
+    video::NumberedFrames frames(clip.media, options_.warn);
+    switch (options_.protocol) {
+      case results::Protocol::kOnePass:
+        return follow_from(clip, frames, {0, false}, results::Protocol::kOnePass);
+      case results::Protocol::kRestart:
+        for (int r = 1; r <= options_.repetitions; ++r) follow_with_restarts(clip, frames, r);
+        return;
+      case results::Protocol::kMultiStart:
+        for (const evaluation::Anchor& anchor :
+             evaluation::anchors_of(vot_truth(clip), options_.anchor_step))
+          follow_from(clip, frames, anchor, results::Protocol::kMultiStart);
+        return;
+    }
+  }
+
+  static evaluation::VotTruth vot_truth(const exchange::Clip& clip) {
+    evaluation::VotTruth truth{{}, clip.width, clip.height};
+    for (const exchange::LabelledFrame& frame : clip.frames) {
+      const Box* box = truth_of(frame);
+      truth.boxes.push_back(box != nullptr ? std::optional(*box) : std::nullopt);
+    }
+    return truth;
+  }
+
+  const image::Picture& picture_of(video::NumberedFrames& frames,
+                                   const exchange::Clip& clip,
+                                   std::size_t i) const {
+    if (options_.stop.stop_requested()) throw Interrupted();
+    const image::Picture* picture = frames.at(clip.frames[i].frame);
+    if (picture == nullptr)
+      throw Error("ends before the labels of " + clip.name + " do", {clip.media.string()});
+    return *picture;
+  }
+
+  // Runs from an anchor to the clip's end, or backward to its beginning.
+  void follow_from(const exchange::Clip& clip,
+                   video::NumberedFrames& frames,
+                   const evaluation::Anchor& anchor,
+                   results::Protocol protocol) {
+    const fs::path file =
+        results::trajectory_file(summary_.folder, protocol, clip.name, anchor.frame);
+    if (is_there(file)) return;
+    Follower follower(command_, options_, options_.seed);
+    Record record;
+    const std::int64_t way = anchor.is_backward ? -1 : 1;
+    for (std::int64_t i = anchor.frame; i >= 0 && i < std::ssize(clip.frames); i += way) {
+      const auto at = static_cast<std::size_t>(i);
+      if (i == anchor.frame) {
+        const Box& box = *truth_of(clip.frames[at]);
+        follower.begin(picture_of(frames, clip, at), box);
+        const bool marks = protocol == results::Protocol::kMultiStart;
+        record.add(marks ? Mark::kBegun : Mark::kAnswer, box, follower.seconds());
+      } else if (follower.is_broken()) {
+        record.add(Mark::kAnswer, {}, 0);
+      } else {
+        const auto box = follower.next(picture_of(frames, clip, at));
+        record.add(Mark::kAnswer, box, follower.seconds());
+      }
+    }
+    write(file, protocol, clip.name, record, follower);
+  }
+
+  void follow_with_restarts(const exchange::Clip& clip,
+                            video::NumberedFrames& frames,
+                            int repetition) {
+    const fs::path file = results::trajectory_file(
+        summary_.folder, results::Protocol::kRestart, clip.name, repetition);
+    if (is_there(file)) return;
+    Follower follower(
+        command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
+    Record record;
+    int crashes = 0;
+    bool is_begun = false;
+    std::int64_t skip = 0;
+    for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+      const Box* truth = truth_of(clip.frames[i]);
+      if (!is_begun && (skip > 0 || truth == nullptr)) {
+        skip -= skip > 0 ? 1 : 0;
+        record.add(Mark::kUnknown, {}, 0);
+        continue;
+      }
+      if (!is_begun) {
+        is_begun = crashes < kMaxCrashes && follower.begin(picture_of(frames, clip, i), *truth);
+        record.add(is_begun ? Mark::kBegun : Mark::kFailed, {}, follower.seconds());
+        crashes += is_begun ? 0 : 1;
+        if (!is_begun) skip = kSkip - 1;
+        continue;
+      }
+      const auto box = follower.next(picture_of(frames, clip, i));
+      crashes += follower.is_broken() ? 1 : 0;
+      const evaluation::VotFrame answer{Mark::kAnswer, box};
+      const bool failed = follower.is_broken() ||
+                          (truth != nullptr &&
+                           evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0);
+      record.add(
+          failed ? Mark::kFailed : Mark::kAnswer, failed ? std::nullopt : box, follower.seconds());
+      is_begun = !failed;
+      if (failed) skip = kSkip - 1;
+    }
+    write(file, results::Protocol::kRestart, clip.name, record, follower);
+  }
+
+  const TrackOptions& options_;
+  std::string command_;
+  std::mutex mutex_;
+  TrackSummary summary_;
+};
+
+}  // namespace
+
+void check_track(const fs::path& out, const TrackOptions& options) {
+  TrackerRun(out, options).check_folder();
+}
+
+TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions& options) {
+  const dataset::LabelledSet labelled(set);
+  return TrackerRun(out, options).over(labelled);
+}
+
+TrackSummary track_video(const fs::path& video,
+                         const Box& init,
+                         std::int64_t first_frame,
+                         const fs::path& out,
+                         const TrackOptions& options) {
+  return TrackerRun(out, options).over(video, init, first_frame);
+}
+
+}  // namespace airtruth::runs

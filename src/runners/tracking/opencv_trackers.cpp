@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/tracking/opencv_trackers.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/tracking.hpp>
+#include <opencv2/tracking/tracking_legacy.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "camera/opencv_plugin/opencv_plugin.h"
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+
+namespace airtruth::tracking {
+namespace {
+
+constexpr double kMinHaarPx = 8;
+
+cv::Mat bgr_of(const image::Picture& picture) {
+  image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  const cv::Mat shared(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+  cv::Mat bgr;
+  cv::cvtColor(shared, bgr, cv::COLOR_RGB2BGR);
+  return bgr;
+}
+
+void refuse_unsound(const Box& box, const cv::Mat& frame) {
+  const bool sound = box.width > 0 && box.height > 0 && std::isfinite(box.area()) &&
+                     std::isfinite(box.x) && std::isfinite(box.y);
+  if (!sound || !intersection(pixels_of(box), {0, 0, frame.cols, frame.rows}))
+    throw Error("the first box has no area within the picture");
+}
+
+Box whole(const Box& box) {
+  return {std::round(box.x),
+          std::round(box.y),
+          std::max(1.0, std::round(box.width)),
+          std::max(1.0, std::round(box.height))};
+}
+
+// The box on which a tracker starts: the object, with some surroundings where it is small. OpenCV's
+// MIL and Boosting draw random Haar features until some fit into the box; into a box of four by two
+// pixels none ever fits.
+class Window {
+ public:
+  Window() = default;
+  Window(const Box& box, double least_px, const cv::Mat& frame) : box_(box), window_(box) {
+    window_.width = std::min<double>(frame.cols, std::max(least_px, box.width));
+    window_.height = std::min<double>(frame.rows, std::max(least_px, box.height));
+    if (!is_larger()) return;
+    window_.x =
+        std::clamp(box.x - (window_.width - box.width) / 2, 0.0, frame.cols - window_.width);
+    window_.y =
+        std::clamp(box.y - (window_.height - box.height) / 2, 0.0, frame.rows - window_.height);
+  }
+
+  const Box& window() const { return window_; }
+  // The object in a window that was found.
+  Box object_in(const Box& found) const {
+    if (!is_larger()) return found;
+    const double across = found.width / window_.width;
+    const double down = found.height / window_.height;
+    return {found.x + (box_.x - window_.x) * across,
+            found.y + (box_.y - window_.y) * down,
+            box_.width * across,
+            box_.height * down};
+  }
+
+ private:
+  bool is_larger() const { return window_.width > box_.width || window_.height > box_.height; }
+  Box box_;
+  Box window_;
+};
+
+// OpenCV throws for boxes at the border and for boxes of a few pixels; the tracker then counts as
+// having lost its object.
+Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
+  Answer answer{last, 1, false};
+  try {
+    answer.lost = !update(answer.box_px);
+  } catch (const cv::Exception&) {
+    answer.lost = true;
+  }
+  const Box& b = answer.box_px;
+  if (!std::isfinite(b.x + b.y + b.width + b.height)) answer.lost = true;
+  if (answer.lost) answer = {last, 0, true};
+  return answer;
+}
+
+// cv::Tracker takes whole pixels. Made anew for each start: a second init() of the same KCF writes
+// past its buffers.
+class Modern : public Tracker {
+ public:
+  Modern(std::function<cv::Ptr<cv::Tracker>()> make, std::uint64_t seed, double least_px)
+      : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
+
+  void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
+  void init(const Box& box) override {
+    refuse_unsound(box, frame_);
+    cv::theRNG().state = seed_;
+    last_ = box;
+    broken_ = false;
+    tracker_ = make_();
+    window_ = Window(box, least_px_, frame_);
+    const Box window = whole(window_.window());
+    try {
+      tracker_->init(frame_,
+                     cv::Rect(static_cast<int>(window.x),
+                              static_cast<int>(window.y),
+                              static_cast<int>(window.width),
+                              static_cast<int>(window.height)));
+    } catch (const cv::Exception&) {
+      broken_ = true;
+    }
+  }
+  Answer update() override {
+    if (broken_) return {last_, 0, true};
+    const Answer answer = answer_of(
+        [&](Box& box) {
+          cv::Rect found;
+          if (!tracker_->update(frame_, found)) return false;
+          box = window_.object_in(
+              {double(found.x), double(found.y), double(found.width), double(found.height)});
+          return true;
+        },
+        last_);
+    last_ = answer.box_px;
+    return answer;
+  }
+
+ private:
+  std::function<cv::Ptr<cv::Tracker>()> make_;
+  cv::Ptr<cv::Tracker> tracker_;
+  std::uint64_t seed_;
+  double least_px_;
+  Window window_;
+  cv::Mat frame_;
+  Box last_;
+  bool broken_ = false;
+};
+
+class Legacy : public Tracker {
+ public:
+  Legacy(std::function<cv::Ptr<cv::legacy::Tracker>()> make, std::uint64_t seed, double least_px)
+      : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
+
+  void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
+  void init(const Box& box) override {
+    refuse_unsound(box, frame_);
+    cv::theRNG().state = seed_;
+    last_ = box;
+    tracker_ = make_();
+    // Boosting cuts a box between pixels in two ways and reads past its features: whole pixels for
+    // what has a least size, as the modern interface has them for all.
+    window_ = Window(least_px_ > 0 ? whole(box) : box, least_px_, frame_);
+    const Box window = least_px_ > 0 ? whole(window_.window()) : window_.window();
+    try {
+      broken_ = !opencv_plugin::functions().init(
+          *tracker_, frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
+    } catch (const cv::Exception&) {
+      broken_ = true;
+    }
+  }
+  Answer update() override {
+    if (broken_) return {last_, 0, true};
+    const Answer answer = answer_of(
+        [&](Box& box) {
+          cv::Rect2d found;
+          if (!opencv_plugin::functions().update(*tracker_, frame_, found)) return false;
+          box = window_.object_in({found.x, found.y, found.width, found.height});
+          return true;
+        },
+        last_);
+    last_ = answer.box_px;
+    return answer;
+  }
+
+ private:
+  std::function<cv::Ptr<cv::legacy::Tracker>()> make_;
+  cv::Ptr<cv::legacy::Tracker> tracker_;
+  std::uint64_t seed_;
+  double least_px_;
+  Window window_;
+  cv::Mat frame_;
+  Box last_;
+  bool broken_ = false;
+};
+
+// OpenCV's Haar features, boosting and TLD draw from the C library's rand(), one sequence for the
+// whole process, so that a tracker's answers would depend on other trackers before and beside it.
+// Here each tracker has its own sequence, from its own seed, and the trackers take turns.
+class WithOwnRand : public Tracker {
+ public:
+  WithOwnRand(std::unique_ptr<Tracker> tracker, std::uint64_t seed)
+      : tracker_(std::move(tracker)), seed_(static_cast<unsigned>(seed)) {
+    const std::lock_guard lock(mutex());
+    setstate(initstate(seed_, numbers_.data(), numbers_.size()));
+  }
+  void load(const image::Picture& picture) override { tracker_->load(picture); }
+  void init(const Box& box) override {
+    const Turn turn(numbers_.data());
+    srandom(seed_);
+    tracker_->init(box);
+  }
+  Answer update() override {
+    const Turn turn(numbers_.data());
+    const auto began = std::chrono::steady_clock::now();
+    Answer answer = tracker_->update();
+    // Waiting for the turn is not the tracker's time.
+    answer.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return answer;
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  // rand() draws from `numbers` as long as this lives.
+  class Turn {
+   public:
+    explicit Turn(char* numbers) : lock_(mutex()), before_(setstate(numbers)) {}
+    ~Turn() { setstate(before_); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    std::lock_guard<std::mutex> lock_;
+    char* before_;
+  };
+
+  std::unique_ptr<Tracker> tracker_;
+  unsigned seed_;
+  std::array<char, 128> numbers_{};  // a size that initstate(3) knows
+};
+
+}  // namespace
+
+std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed) {
+  // A state of 0 would stay 0.
+  const std::uint64_t state = seed * 2 + 1;
+  if (!name.starts_with("opencv-")) return nullptr;
+  const opencv_plugin::Functions& opencv = opencv_plugin::functions();
+  const auto modern = [&](auto make, double least_px = 0) {
+    return std::make_unique<Modern>(make, state, least_px);
+  };
+  const auto old = [&](auto make, double least_px = 0) {
+    return std::make_unique<Legacy>(make, state, least_px);
+  };
+  const auto with_own_rand = [&](std::unique_ptr<Tracker> tracker) {
+    return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own
+  };
+  if (name == "opencv-mil") return with_own_rand(modern(opencv.mil, kMinHaarPx));
+  if (name == "opencv-kcf") return modern(opencv.kcf);
+  if (name == "opencv-csrt") return modern(opencv.csrt);
+  if (name == "opencv-boosting") return with_own_rand(old(opencv.boosting, kMinHaarPx));
+  if (name == "opencv-medianflow") return old(opencv.median_flow);
+  if (name == "opencv-tld") return with_own_rand(old(opencv.tld));
+  if (name == "opencv-mosse") return old(opencv.mosse);
+  return nullptr;
+}
+
+}  // namespace airtruth::tracking

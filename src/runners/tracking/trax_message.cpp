@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runners/tracking/trax_message.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "runners/process/child.h"
+
+namespace airtruth::tracking {
+namespace {
+
+constexpr std::size_t kMaxKey = 64;
+
+constexpr std::array<std::pair<std::string_view, Type>, 6> kTypes = {
+    {{"hello", Type::kHello},
+     {"initialize", Type::kInitialize},
+     {"frame", Type::kFrame},
+     {"state", Type::kState},
+     {"status", Type::kState},
+     {"quit", Type::kQuit}}};
+
+bool is_key(std::string_view text) {
+  return !text.empty() && text.size() <= kMaxKey &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '.' || c == '_';
+         });
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+std::string excerpt(std::string_view text) {
+  std::string shown;
+  for (const char c : text.substr(0, 40)) shown += c >= ' ' && c <= '~' ? c : '?';
+  return shown + (text.size() > 40 ? "..." : "");
+}
+
+// One word from `rest` on, quotes and escapes taken off.
+std::string next_word(std::string_view& rest) {
+  const bool is_quoted = rest.front() == '"';
+  if (is_quoted) rest.remove_prefix(1);
+  std::string word;
+  while (!rest.empty()) {
+    const char c = rest.front();
+    rest.remove_prefix(1);
+    if (c == '\\' && !rest.empty()) {
+      word += rest.front() == 'n' ? '\n' : rest.front();
+      rest.remove_prefix(1);
+    } else if (is_quoted ? c == '"' : c == ' ' || c == '\t') {
+      return word;
+    } else {
+      word += c;
+    }
+  }
+  if (is_quoted) throw process::Failure("a quote is never closed");
+  return word;
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n')
+      result += "\\n";
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+std::string_view Message::property(std::string_view key) const {
+  for (const auto& [name, value] : properties)
+    if (name == key) return value;
+  return {};
+}
+
+std::optional<Message> parse_line(std::string_view line) {
+  if (!line.starts_with(kPrefix)) return std::nullopt;
+  std::string_view rest = line.substr(kPrefix.size());
+  if (!rest.empty() && rest.back() == '\r') rest.remove_suffix(1);
+  const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+  const std::string word = lower(rest.substr(0, end));
+  const auto* type = std::find_if(
+      kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == word; });
+  if (type == kTypes.end())
+    throw process::Failure("'" + excerpt(rest.substr(0, end)) + "' is no type of message");
+  rest.remove_prefix(end);
+  Message message;
+  message.type = type->second;
+  while (true) {
+    const std::size_t start = rest.find_first_not_of(" \t");
+    if (start == std::string_view::npos) return message;
+    rest.remove_prefix(start);
+    std::string argument = next_word(rest);
+    // "=" after what is no key, as in the padding of base64, is data.
+    const std::size_t equals = argument.find('=');
+    if (equals != std::string::npos && is_key(std::string_view(argument).substr(0, equals)))
+      message.properties.emplace_back(argument.substr(0, equals), argument.substr(equals + 1));
+    else
+      message.arguments.push_back(std::move(argument));
+  }
+}
+
+std::string line_of(const Message& message) {
+  std::string line(kPrefix);
+  line += std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) {
+            return known.second == message.type;
+          })->first;
+  for (const std::string& argument : message.arguments) line += " " + in_quotes(argument);
+  for (const auto& [key, value] : message.properties) line += " " + in_quotes(key + "=" + value);
+  return line + "\n";
+}
+
+}  // namespace airtruth::tracking
