@@ -38,10 +38,9 @@ endfunction()
 # add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...]
 #            [UNSANITIZED Suite.Name ...])
-# makes the static library airtruth_NAME and, from TESTS, the program NAME_test (one ctest entry; SLOW_TESTS
-# make NAME_slow_test, labelled slow; not with sanitizers, under which they take hours). UNSANITIZED Suite.Name ... names
-# tests of NAME_test that are left out with sanitizers: they repeat, for their statistics or in
-# whole runs, what other tests run.
+# makes the static library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). SLOW_TESTS are
+# left out with sanitizers, under which they take hours. UNSANITIZED Suite.Name ... names tests that are left out with sanitizers:
+# they repeat, for their statistics or in whole runs, what other tests run.
 function(add_module name)
   cmake_parse_arguments(arg "" ""
     "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED" ${ARGN})
@@ -63,17 +62,13 @@ function(add_module name)
     target_precompile_headers(airtruth_${name} REUSE_FROM airtruth_pch)
   endif()
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_MODULES airtruth_${name})
-  if(AIRTRUTH_TESTS)
-    if(arg_TESTS)
-      add_module_test(${name}_test fast ${name} "${arg_TESTS}" "${arg_TEST_DEPENDS};${arg_PRIVATE_LIBRARIES}")
-      if(arg_UNSANITIZED AND AIRTRUTH_SANITIZE)
-        list(JOIN arg_UNSANITIZED ":" left_out)
-        set_property(TEST ${name}_test APPEND PROPERTY ENVIRONMENT "GTEST_FILTER=-${left_out}")
-      endif()
-    endif()
-    if(arg_SLOW_TESTS AND NOT AIRTRUTH_SANITIZE)
-      add_module_test(${name}_slow_test slow ${name} "${arg_SLOW_TESTS}" "${arg_TEST_DEPENDS};${arg_PRIVATE_LIBRARIES}")
-    endif()
+  set(libraries airtruth_${name} ${arg_TEST_DEPENDS} ${arg_PRIVATE_LIBRARIES})
+  if(arg_TESTS)
+    keep_tests(test "${arg_TESTS}" "${libraries}")
+    set_property(GLOBAL APPEND PROPERTY AIRTRUTH_UNSANITIZED ${arg_UNSANITIZED})
+  endif()
+  if(arg_SLOW_TESTS AND NOT AIRTRUTH_SANITIZE)
+    keep_tests(slow_test "${arg_SLOW_TESTS}" "${libraries}")
   endif()
 endfunction()
 
@@ -88,26 +83,55 @@ function(add_lazy_library name)
   target_include_directories(airtruth-late-${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
 endfunction()
 
-function(add_module_test target label module sources libraries)
+# Keeps test sources of the current folder for the program WING_KIND (kind: test or slow_test) of its wing.
+function(keep_tests kind sources libraries)
+  file(RELATIVE_PATH wing ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REGEX REPLACE "/.*" "" wing ${wing})
+  list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY AIRTRUTH_SOURCES_OF_${wing}_${kind} ${sources})
+  set_property(GLOBAL APPEND PROPERTY AIRTRUTH_LIBRARIES_OF_${wing}_${kind} ${libraries})
+endfunction()
+
+# add_wing_tests(WING): the programs WING_test and WING_slow_test (labelled slow) from the tests of the wing's modules, each one
+# ctest entry. One program a wing: most of what it costs to make a test program is its link.
+function(add_wing_tests wing)
+  foreach(kind IN ITEMS test slow_test)
+    get_property(sources GLOBAL PROPERTY AIRTRUTH_SOURCES_OF_${wing}_${kind})
+    get_property(libraries GLOBAL PROPERTY AIRTRUTH_LIBRARIES_OF_${wing}_${kind})
+    if(sources)
+      add_wing_test(${wing}_${kind} "${sources}" "${libraries}")
+    endif()
+  endforeach()
+endfunction()
+
+function(add_wing_test target sources libraries)
+  list(REMOVE_DUPLICATES libraries)
   add_executable(${target} ${sources})
-  target_link_libraries(${target} PRIVATE airtruth_${module} ${libraries} GTest::gmock GTest::gtest_main)
+  compile_sources_together(${target})
+  target_link_libraries(${target} PRIVATE ${libraries} airtruth_options GTest::gmock GTest::gtest_main)
   target_compile_options(${target} PRIVATE ${airtruth_light_optimisation})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)  # for <support/...>
   if(AIRTRUTH_PCH)
     target_precompile_headers(${target} REUSE_FROM airtruth_test_pch)
   endif()
-  # The first reads the model files of tests.
-  add_dependencies(${target} airtruth-model-reader airtruth-late-opencv airtruth-late-backdrop)
+  add_dependencies(${target} airtruth_children)
+  set_property(GLOBAL APPEND PROPERTY AIRTRUTH_TEST_PROGRAMS ${target})
   add_test(NAME ${target} COMMAND ${target})
   # A limit stops a test that hangs: ten times and more what the longest of its label takes on two quiet cores.
-  set(limit_s 600)
-  if(label STREQUAL slow)
-    set(limit_s 3600)
+  if(target MATCHES "_slow_test$")
+    set_tests_properties(${target} PROPERTIES LABELS slow TIMEOUT 3600 COST 100)  # begun first, so that none is left alone at the end
+  else()
+    set_tests_properties(${target} PROPERTIES LABELS fast TIMEOUT 1200)
   endif()
-  set_tests_properties(${target} PROPERTIES
-    LABELS ${label} TIMEOUT ${limit_s}
-    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0;ASAN_OPTIONS=detect_leaks=1;AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader;AIRTRUTH_NETWORK_RUNNER=${PROJECT_BINARY_DIR}/src/cli/airtruth-network-runner")
-  if(label STREQUAL slow)
-    set_tests_properties(${target} PROPERTIES COST 100)  # begun first, so that none is left alone at the end
+  set(environment
+    "AIRTRUTH_SOURCE_DIR=${PROJECT_SOURCE_DIR}"
+    "AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader"
+    "AIRTRUTH_NETWORK_RUNNER=${PROJECT_BINARY_DIR}/src/cli/airtruth-network-runner")
+  if(AIRTRUTH_SANITIZE)
+    get_property(unsanitized GLOBAL PROPERTY AIRTRUTH_UNSANITIZED)
+    list(JOIN unsanitized ":" left_out)
+    list(APPEND environment "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0"
+      "ASAN_OPTIONS=detect_leaks=1" "GTEST_FILTER=-${left_out}")
   endif()
+  set_tests_properties(${target} PROPERTIES ENVIRONMENT "${environment}")
 endfunction()

@@ -12,10 +12,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/source_folder.h"
+
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kSource = fs::path(AIRTRUTH_SOURCE_DIR) / "src";
+const fs::path kSource = airtruth::test_support::source_folder() / "src";
 
 struct Layer {
   std::string wing;
@@ -73,7 +75,7 @@ bool is_source(const fs::path& path) {
 // where the wing is that of the row above.
 std::vector<std::string> described_modules() {
   std::vector<std::string> result;
-  std::ifstream file(fs::path(AIRTRUTH_SOURCE_DIR) / "docs" / "architecture.md");
+  std::ifstream file(airtruth::test_support::source_folder() / "docs" / "architecture.md");
   const std::regex row(R"re(^\| (`([a-z_0-9]+)`)? ?\| `([a-z_0-9]+)` \|.*)re");
   std::string wing;
   std::smatch match;
@@ -148,7 +150,7 @@ TEST(Layers, IncludesGoStrictlyDownward) {
 
 // What a user of the library includes brings nothing else along.
 TEST(Layers, PublicHeadersIncludeOnlyEachOtherAndTheStandardLibrary) {
-  const fs::path folder = fs::path(AIRTRUTH_SOURCE_DIR) / "include" / "airtruth";
+  const fs::path folder = airtruth::test_support::source_folder() / "include" / "airtruth";
   const std::regex include(R"re(^\s*#\s*include\s+(.*))re");
   const std::regex allowed(R"re(<(airtruth/[a-z_]+\.h|[a-z_]+)>)re");
   int checked = 0;

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy over the sources of src/ but the tests: tidy.py BUILD [TEXT]
+"""Runs clang-tidy over sources of src/ but the tests: tidy.py BUILD [--all]
 
-BUILD holds compile_commands.json; TEXT limits the run to sources whose path contains it. Most of clang-tidy's time goes into headers, so that up to
-sixteen sources are read as one, which takes less than a third of the time. Where they do not compile as one, for example because private names
-clash, each half of them is read as one.
+BUILD holds compile_commands.json. Without --all the sources are those that the work tree and the commits of the last day before HEAD touch, or
+those since the commit that AIRTRUTH_TIDY_BASE names; a header counts for the source of its name. Most of clang-tidy's time goes into headers, so
+that up to sixteen sources are read as one, which takes less than a third of the time. Where they do not compile as one, for example because
+private names clash, each half of them is read as one.
 The exit code is 1 where there is a finding.
 """
 import concurrent.futures
@@ -18,6 +19,22 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_SOURCES = 16
+
+
+def git(*arguments):
+    return subprocess.run(["git", "-C", ROOT, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def touched():
+    """The paths, without their ending, that differ from the base: AIRTRUTH_TIDY_BASE, or else the newest commit that is a day older than HEAD."""
+    base = os.environ.get("AIRTRUTH_TIDY_BASE", "")
+    if not base:
+        a_day_before = int(git("log", "-1", "--format=%ct")) - 24 * 3600
+        base = git("rev-list", "-1", f"--before={a_day_before}", "HEAD").strip()
+    if not base:
+        return None  # a history that is younger, or shallow: everything
+    names = git("diff", "--name-only", base).split() + git("ls-files", "--others", "--exclude-standard").split()
+    return {os.path.splitext(ROOT / name)[0] for name in names}
 
 
 def batches(flags):
@@ -72,9 +89,10 @@ def check(batch, flags, folder):
 def main():
     with open(pathlib.Path(sys.argv[1]) / "compile_commands.json") as file:
         commands = json.load(file)
+    wanted = None if sys.argv[2:] == ["--all"] else touched()
     flags = {c["file"]: flags_of(c["command"]) for c in commands
              if c["file"].startswith(f"{ROOT}/src/") and not c["file"].endswith("_test.cpp")
-             and "".join(sys.argv[2:3]) in c["file"]}
+             and (wanted is None or os.path.splitext(c["file"])[0] in wanted)}
     failed = False
     with tempfile.TemporaryDirectory() as folder, \
             concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -12,6 +12,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/source_folder.h"
 
 namespace airtruth::annotation {
 namespace {
@@ -283,7 +284,7 @@ class Schema {
 
 Schema published_schema() {
   return Schema(Json::parse(
-      read_file(std::filesystem::path(AIRTRUTH_SOURCE_DIR) / "docs/formats/truth.schema.json")));
+      read_file(test_support::source_folder() / "docs/formats/truth.schema.json")));
 }
 
 TEST(TruthSchema, HoldsWhatIsWritten) {
@@ -368,7 +369,7 @@ TEST(TruthSchema, RefusesWhatIsNot) {
 }
 
 TEST(TruthSchema, EveryKeyIsInTheManual) {
-  const std::filesystem::path formats = std::filesystem::path(AIRTRUTH_SOURCE_DIR) / "docs/formats";
+  const std::filesystem::path formats = test_support::source_folder() / "docs/formats";
   const std::string manual = read_file(formats / "truth.md");
   const Json line = Json::parse(jsonl_line(frame_of_two(), kLens));
   for (const Json& object : {line,

@@ -8,13 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
+#include "support/source_folder.h"
 
 // The table of keys against what is outside it: the struct, the files that read the members, the
 // document, and the text of scenes.
 namespace airtruth::scene {
 namespace {
 
-const fs::path kSource = AIRTRUTH_SOURCE_DIR;
+const fs::path kSource = test_support::source_folder();
 
 std::string type_of(const CameraKey& key) {
   if (std::holds_alternative<CameraKey::Number>(key.member)) return "number";

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
+#include "support/source_folder.h"
 
 namespace airtruth::scene {
 namespace {
@@ -140,7 +141,7 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
 // The shipped examples are valid scenes, and the first names every key that exists.
 TEST(Scene, ExamplesAreGood) {
   int count = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(AIRTRUTH_SOURCE_DIR) / "examples")) {
+  for (const auto& entry : fs::directory_iterator(test_support::source_folder() / "examples")) {
     if (entry.path().extension() != ".toml") continue;
     const Scene scene = read_scene(entry.path());
     EXPECT_EQ(toml_from_scene(parse_scene(toml_from_scene(scene), "/x.toml")),
@@ -151,7 +152,7 @@ TEST(Scene, ExamplesAreGood) {
 }
 
 TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
-  const fs::path root = AIRTRUTH_SOURCE_DIR;
+  const fs::path root = test_support::source_folder();
   const std::string manual = read_file(root / "docs/formats/scene.md");
   const std::string example = read_file(root / "examples/render.toml");
   for (const char* const key : {"kind",
