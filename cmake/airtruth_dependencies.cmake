@@ -3,7 +3,10 @@ find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video features2d tracking)
-find_package(embree 3 REQUIRED)
+find_package(embree 4 QUIET)  # Debian 13
+if(NOT embree_FOUND)
+  find_package(embree 3 REQUIRED)  # Debian 12
+endif()
 find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_package(pugixml REQUIRED)

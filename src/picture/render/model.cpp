@@ -109,9 +109,7 @@ bool is_blocked(const Model::Impl& model,
     ray.tnear = 0;
     ray.tfar = reach_m;
     ray.mask = 0xffffffffu;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(model.scenes[i].get(), &context, &ray);
+    occlude(model.scenes[i].get(), ray);
     if (ray.tfar < 0) return true;
   }
   return false;
@@ -133,9 +131,7 @@ std::optional<Hit> nearest_blocker(const Model::Impl& model,
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
     if (model.mesh.parts[i].moves()) continue;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(model.scenes[i].get(), &context, &query);
+    intersect(model.scenes[i].get(), query);
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
       best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
   }

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include <embree3/rtcore.h>
 
 #include "aircraft/model/mesh.h"
+#include "picture/render/embree.h"
 #include "picture/render/renderer.h"
 
 // Only this module's sources include Embree.

@@ -32,13 +32,6 @@ void set_rays(RTCRay8& packet, Lanes& valid, std::span<const BodyRay> rays) {
   }
 }
 
-RTCIntersectContext coherent() {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
-}
-
 void nearest_hits_of_eight(const Placed& placed,
                            std::span<const BodyRay> rays,
                            std::span<const double> dt_s,
@@ -55,9 +48,8 @@ void nearest_hits_of_eight(const Placed& placed,
       set_ray(packet.ray, i, {here * rays[i].origin, here.linear() * rays[i].direction});
     }
     std::fill_n(packet.hit.geomID, kLanes, RTC_INVALID_GEOMETRY_ID);
-    RTCIntersectContext context = coherent();
     // Embree shortens a ray to its nearest hit so far.
-    rtcIntersect8(valid.data(), placed.model->scenes[part].get(), &context, &packet);
+    intersect(valid.data(), placed.model->scenes[part].get(), packet);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
         hits[i] = Hit{packet.ray.tfar[i],
@@ -78,8 +70,7 @@ void find_blocked_of_eight(const Model::Impl& model,
   set_rays(packet, valid, rays);
   for (std::size_t part = 0; part < model.scenes.size(); ++part) {
     if (model.mesh.parts[part].moves()) continue;
-    RTCIntersectContext context = coherent();
-    rtcOccluded8(valid.data(), model.scenes[part].get(), &context, &packet);
+    occlude(valid.data(), model.scenes[part].get(), packet);
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (packet.tfar[i] < 0) valid[i] = 0;
   }
