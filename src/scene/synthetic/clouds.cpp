@@ -14,7 +14,7 @@ namespace {
 constexpr int kCells = 512;
 // Levels upwards.
 constexpr int kLevels = 26;
-constexpr float kCell_m = Clouds::kPeriod_m / kCells;
+constexpr float kCell_m = 40;
 constexpr float kBase_m = 1050;
 constexpr float kDepth_m = 1500;
 constexpr float kLevel_m = kDepth_m / kLevels;
@@ -41,6 +41,8 @@ float cloud_phase(float cosine) {
 }
 
 }  // namespace
+
+double Clouds::period_m() { return double{kCells} * kCell_m; }
 
 Clouds::Clouds(const Sky& sky, double cover, std::uint32_t seed)
     : sky_(sky),
@@ -260,18 +262,21 @@ void Clouds::add_cirrus(const Vector3& direction, LinearRgb& colour) const {
   colour += kept * (sky_.sunlight() * 0.82F + linear_rgb(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
 }
 
-Tile<float> Clouds::ground_shadow() const {
-  Tile<float> shadow(kCells, 1.0F);
+std::vector<float> Clouds::ground_shadow(int cells) const {
+  std::vector<float> shadow(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells),
+                            1.0F);
   if (cover_ <= 0) return shadow;
   const Vector3 sun = sky_.sun_in_world();
   const float up = static_cast<float>(std::max(-sun.z(), 0.15));
-  const int shift_x = floor_int(static_cast<float>(sun.x()) / up * kBase_m / kCell_m);
-  const int shift_y = floor_int(static_cast<float>(sun.y()) / up * kBase_m / kCell_m);
-  for (int y = 0; y < kCells; ++y)
-    for (int x = 0; x < kCells; ++x) {
-      const float quarter =
-          static_cast<float>(voxels_[voxel_index(x + shift_x, y + shift_y, 0)].sunlit) / 255.0F;
-      shadow.at(x, y) = 0.42F + 0.58F * quarter * quarter;
+  const float shift_x = static_cast<float>(sun.x()) / up * kBase_m;
+  const float shift_y = static_cast<float>(sun.y()) / up * kBase_m;
+  const float cell_m = static_cast<float>(period_m()) / static_cast<float>(cells);
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      const int i = floor_int((static_cast<float>(x) * cell_m + shift_x) / kCell_m);
+      const int j = floor_int((static_cast<float>(y) * cell_m + shift_y) / kCell_m);
+      const float quarter = voxels_[voxel_index(i, j, 0)].sunlit / 255.0F;
+      shadow[static_cast<std::size_t>(y * cells + x)] = 0.42F + 0.58F * quarter * quarter;
     }
   return shadow;
 }

@@ -9,7 +9,7 @@
 
 namespace airtruth::synthetic {
 
-// Fair-weather cumulus as a volume that repeats and shadows itself from the sun, and
+// Fair-weather cumulus as a volume that repeats every 20 km and shadows itself from the sun, and
 // thin cirrus far above. The volume is sampled once, while the sky's panorama is drawn; the frames
 // use only its shadow on the ground.
 class Clouds {
@@ -20,10 +20,9 @@ class Clouds {
   // ground.
   LinearRgb seen_through(const Vector3& direction_in_world, const LinearRgb& behind) const;
 
-  // Share of the sunlight that reaches the ground, in cells of a period; 1 is clear.
-  Tile<float> ground_shadow() const;
-  // Distance after which the clouds repeat.
-  static constexpr double kPeriod_m = 20480;
+  // Share of the sunlight that reaches the ground at each of cells x cells places; 1 is clear.
+  std::vector<float> ground_shadow(int cells) const;
+  static double period_m();
 
  private:
   struct Voxel {

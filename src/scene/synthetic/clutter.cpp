@@ -40,13 +40,13 @@ std::vector<Clutter::Disc> Clutter::at(double time_s) const {
   return discs;
 }
 
-void Clutter::draw(const std::vector<Disc>& discs, int y, std::vector<LinearRgb>& row) {
+void Clutter::draw(const std::vector<Disc>& discs, int y, int width, LightRow& row) {
   for (const Disc& disc : discs) {
     const float dy = static_cast<float>(y) + 0.5F - disc.y;
     if (std::abs(dy) >= disc.radius) continue;
     const float reach = std::sqrt(disc.radius * disc.radius - dy * dy);
     const int first = std::max(static_cast<int>(disc.x - reach), 0);
-    const int last = std::min(static_cast<int>(disc.x + reach) + 1, static_cast<int>(row.size()));
+    const int last = std::min(static_cast<int>(disc.x + reach) + 1, width);
     for (int x = first; x < last; ++x) {
       const float dx = static_cast<float>(x) + 0.5F - disc.x;
       const float edge = 1 - std::sqrt(dx * dx + dy * dy) / disc.radius;
@@ -55,8 +55,10 @@ void Clutter::draw(const std::vector<Disc>& discs, int y, std::vector<LinearRgb>
       const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
       const LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
       const float covered = smoothstep(0.0F, 0.25F, edge);
-      LinearRgb& pixel = row[static_cast<std::size_t>(x)];
-      pixel += (tone - pixel) * covered;
+      const auto i = static_cast<std::size_t>(x);
+      row.red[i] += (tone[0] - row.red[i]) * covered;
+      row.green[i] += (tone[1] - row.green[i]) * covered;
+      row.blue[i] += (tone[2] - row.blue[i]) * covered;
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/synthetic/light_row.h"
 #include "scene/synthetic/noise.h"
 
 namespace airtruth::synthetic {
@@ -12,7 +13,6 @@ namespace airtruth::synthetic {
 // must reject.
 class Clutter {
  public:
-  // The discs cover about `share` of the image.
   Clutter(int width, int height, double share, std::uint32_t seed);
 
   struct Disc {
@@ -23,7 +23,7 @@ class Clutter {
   };
   std::vector<Disc> at(double time_s) const;
   // Draws the discs over a row of light.
-  static void draw(const std::vector<Disc>& discs, int y, std::vector<LinearRgb>& row);
+  static void draw(const std::vector<Disc>& discs, int y, int width, LightRow& row);
 
  private:
   int width_;

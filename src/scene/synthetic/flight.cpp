@@ -2,21 +2,15 @@
 #include "scene/synthetic/flight.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
-#include "scene/synthetic/clouds.h"
-#include "scene/synthetic/clutter.h"
 #include "scene/synthetic/flight_path.h"
-#include "scene/synthetic/ground.h"
-#include "scene/synthetic/own_aircraft.h"
-#include "scene/synthetic/panorama.h"
+#include "scene/synthetic/row_painter.h"
 #include "scene/synthetic/sensor.h"
 
 namespace airtruth::synthetic {
@@ -79,44 +73,8 @@ std::uint32_t stream(const FlightOptions& o, std::string_view name) {
   return static_cast<std::uint32_t>(Seed(o.seed).stream(name)());
 }
 
-// Rays through the pixels' centres in the body's axes, with the lens's fall-off of light, 0 to 1,
-// as their fourth number. Beyond the lens's field a ray has no meaning; such pixels are black.
-std::vector<Ray> rays_of(const lens::Lens& lens, bool falls_off) {
-  const int width = lens.size().width;
-  const int height = lens.size().height;
-  const Quaternion body_from_cam = cam_from_body().conjugate();
-  const Pixel middle(0.5 * width, 0.5 * height);
-  std::vector<Ray> rays(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  tbb::parallel_for(0, height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const Pixel pixel(x + 0.5, y + 0.5);
-      const Vector3 ray = body_from_cam * lens.ray_from_pixel(pixel).value_or(Vector3(0, 0, 1));
-      const double off_centre = (pixel - middle).squaredNorm() / middle.squaredNorm();
-      const double fall_off = 1 - 0.26 * off_centre - 0.08 * off_centre * off_centre;
-      rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(x)] = {static_cast<float>(ray.x()),
-                                           static_cast<float>(ray.y()),
-                                           static_cast<float>(ray.z()),
-                                           falls_off ? static_cast<float>(fall_off) : 1.0F};
-    }
-  });
-  return rays;
-}
-
-// Carries rays from the body's axes into the world; the fourth number is lost.
-class Turn {
- public:
-  explicit Turn(const Quaternion& world_from_body) {
-    const Eigen::Matrix3f turn = world_from_body.toRotationMatrix().cast<float>();
-    for (int i = 0; i < 3; ++i) columns_[static_cast<std::size_t>(i)] << turn.col(i).array(), 0;
-  }
-  Ray operator()(const Ray& ray) const {
-    return columns_[0] * ray[0] + columns_[1] * ray[1] + columns_[2] * ray[2];
-  }
-
- private:
-  std::array<Ray, 3> columns_;
-};
+constexpr double kPanoramaOversampling = 1.25;
+constexpr int kRowsPerTask = 8;
 
 }  // namespace
 
@@ -130,37 +88,14 @@ struct Flight::Impl {
                               sun_in_world(o.sun_azimuth_deg - o.heading_deg, o.sun_elevation_deg),
                               sky,
                               o.own_aircraft)),
-        rays_in_body(rays_of(lens, !o.linear_light)),
-        clouds(sky, o.cloud_cover, stream(o, "clouds")),
-        // The panorama's texels at the horizon are finer than pixels by a quarter.
-        panorama(0.8 / lens.focal_px()),
+        view(lens, !o.linear_light),
+        panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
         sensor(o, stream(o, "sensor")),
         clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
-        ground(o.altitude_m,
-               1 / lens.focal_px(),
-               o.extinction_per_km,
-               sky,
-               clouds,
-               stream(o, "ground")) {
-    draw_panorama();
-    Random random = Seed(o.seed).stream("start");
-    start_in_land_m = {random.uniform(0, kLand_m), random.uniform(0, kLand_m), 0};
-  }
+        ground(make_world()) {}
 
-  // What changes from frame to frame.
-  struct Moment {
-    Turn world_from_body;
-    Eye eye;
-    std::vector<Clutter::Disc> discs;
-  };
+  Ground make_world();
   Moment moment(int index) const;
-  void draw_panorama();
-  LinearRgb seen(const Ray& ray, const Eye& eye) const;
-  LightRow row(int y, const Moment& moment) const;
-  std::size_t pixel_index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) +
-           static_cast<std::size_t>(x);
-  }
   void check_index(int index) const {
     check(index >= 0 && index < options.frame_count, "a frame outside the flight was asked for");
   }
@@ -170,61 +105,41 @@ struct Flight::Impl {
   FlightPath path;
   Sky sky;
   OwnAircraft own;
-  std::vector<Ray> rays_in_body;
-  Clouds clouds;
+  RayTable view;
   Panorama panorama;
   Sensor sensor;
   Clutter clutter;
   Vector3 start_in_land_m = Vector3::Zero();
+  float veil = 0;
   Ground ground;
 };
 
-// Draws sky and clouds in the directions that some frame looks at.
-void Flight::Impl::draw_panorama() {
-  constexpr int kStride = 16;
-  for (int k = 0; k < options.frame_count; ++k) {
-    const Turn world_from_body(path.shaken(k).world_from_body);
-    for (int y = 0; y < options.height + kStride; y += kStride)
-      for (int x = 0; x < options.width + kStride; x += kStride) {
-        const Ray ray = world_from_body(rays_in_body[pixel_index(std::min(x, options.width - 1),
-                                                                 std::min(y, options.height - 1))]);
-        panorama.want(ray[0], ray[1], -ray[2]);
-      }
-  }
+// Draws sky and clouds in the directions that some frame looks at, and passes the clouds' shadow to
+// the ground.
+Ground Flight::Impl::make_world() {
+  for (int k = 0; k < options.frame_count; ++k)
+    for (const RayNode& d : view.directions_in_world(path.shaken(k).world_from_body, 4))
+      panorama.want(d[0], d[1], -d[2]);
+  const Clouds clouds(sky, options.cloud_cover, stream(options, "clouds"));
   panorama.draw(
       sky, clouds, {options.hills_deg, options.extinction_per_km}, stream(options, "hills"));
+  Random random = Seed(options.seed).stream("start");
+  start_in_land_m = {random.uniform(0, kLand_m), random.uniform(0, kLand_m), 0};
+  const double pixel_rad = 1 / lens.focal_px();
+  return {options.altitude_m * pixel_rad * 4,
+          pixel_rad,
+          options.extinction_per_km,
+          sky,
+          clouds,
+          stream(options, "ground")};
 }
 
-Flight::Impl::Moment Flight::Impl::moment(int index) const {
+Moment Flight::Impl::moment(int index) const {
   const trajectory::State state = path.shaken(index);
   const Vector3 eye = start_in_land_m + state.position_in_world;
-  return {Turn(state.world_from_body),
+  return {view.directions_in_world(state.world_from_body, 1),
           {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
           clutter.at(index / options.frame_rate_hz)};
-}
-
-// The world along a ray. Pixels that the horizon crosses blend ground and sky.
-LinearRgb Flight::Impl::seen(const Ray& ray, const Eye& eye) const {
-  const float sky_share = static_cast<float>(lens.focal_px()) * -ray[2] + 0.5F;
-  if (sky_share >= 1) return panorama.at(ray[0], ray[1], -ray[2]);
-  const Ray down(ray[0], ray[1], std::max(ray[2], 1e-5F), 0);
-  const LinearRgb light = ground.seen(eye, down);
-  if (sky_share <= 0) return light;
-  return light + (panorama.at(ray[0], ray[1], -ray[2]) - light) * sky_share;
-}
-
-LightRow Flight::Impl::row(int y, const Moment& moment) const {
-  LightRow light(static_cast<std::size_t>(options.width), LinearRgb::Zero());
-  const std::size_t first = pixel_index(0, y);
-  for (std::size_t x = 0; x < light.size(); ++x)
-    if (own.layer[first + x][3] < 1)
-      light[x] = seen(moment.world_from_body(rays_in_body[first + x]), moment.eye);
-  Clutter::draw(moment.discs, y, light);
-  for (std::size_t x = 0; x < light.size(); ++x) {
-    const LinearRgb& over = own.layer[first + x];
-    light[x] = (light[x] * (1 - over[3]) + over) * rays_in_body[first + x][3];
-  }
-  return light;
 }
 
 Flight::Flight(const FlightOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -233,15 +148,27 @@ Flight::Flight(Flight&&) noexcept = default;
 
 image::Picture Flight::frame(int index) const {
   impl_->check_index(index);
+  const int width = impl_->options.width;
   const int height = impl_->options.height;
-  image::Picture picture = image::make_picture(impl_->options.width, height, image::Colour{});
-  const Impl::Moment moment = impl_->moment(index);
+  image::Picture picture = image::make_picture(width, height, image::Colour{});
+  const Moment moment = impl_->moment(index);
+  const Scenery scenery{impl_->view,
+                        impl_->panorama,
+                        impl_->ground,
+                        impl_->own,
+                        width,
+                        static_cast<float>(impl_->lens.focal_px())};
   Sensor::Exposure exposure = impl_->sensor.start();
-  tbb::parallel_for(0, (height + 1) / 2, [&](int pair) {
-    const int y = 2 * pair;
-    LightRow upper = impl_->row(y, moment);
-    LightRow lower = y + 1 < height ? impl_->row(y + 1, moment) : upper;
-    impl_->sensor.expose(index, y, std::move(upper), std::move(lower), exposure, picture);
+  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
+  tbb::parallel_for(0, tasks, [&](int task) {
+    RowPainter painter(scenery);
+    LightRow upper(width);
+    LightRow lower(width);
+    for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
+      painter.paint(y, moment, upper);
+      if (y + 1 < height) painter.paint(y + 1, moment, lower);
+      impl_->sensor.expose(index, y, upper, y + 1 < height ? lower : upper, exposure, picture);
+    }
   });
   tbb::parallel_for(0, height, [&](int y) { impl_->sensor.sharpen(exposure, y, picture); });
   return picture;

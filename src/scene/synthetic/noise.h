@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -72,62 +70,37 @@ inline float value_noise(float x, float y, float z, int period, std::uint32_t se
   return lerp(layer(0), layer(1), fz * fz * (3 - 2 * fz));
 }
 
-// Sum of octaves, each half as strong and twice as fine as the one before, divided by the sum of
-// their weights: about [0, 1], with a mean of 0.5. noise(scale, octave) is one octave.
-template <typename Noise>
-inline float sum_of_octaves(int octaves, const Noise& noise) {
+// Sum of octaves, each half as strong and twice as fine as the one before; about [0, 1], with a
+// mean of 0.5.
+inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
   float sum = 0;
   float weight = 0.5F;
   float total = 0;
-  for (int i = 0; i < octaves; ++i, weight *= 0.5F) {
-    sum += weight * noise(1 << i, 131U * static_cast<std::uint32_t>(i));
+  for (int i = 0; i < octaves; ++i) {
+    sum += weight * value_noise(x, y, period, seed + 131U * static_cast<std::uint32_t>(i));
     total += weight;
+    weight *= 0.5F;
+    x *= 2;
+    y *= 2;
+    period *= 2;
   }
   return sum / total;
 }
 
-inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
-  return sum_of_octaves(octaves, [&](int scale, std::uint32_t octave) {
-    const auto k = static_cast<float>(scale);
-    return value_noise(x * k, y * k, period * scale, seed + octave);
-  });
-}
-
 inline float fractal(float x, float y, float z, int octaves, int period, std::uint32_t seed) {
-  return sum_of_octaves(octaves, [&](int scale, std::uint32_t octave) {
-    const auto k = static_cast<float>(scale);
-    return value_noise(x * k, y * k, z * k, period * scale, seed + octave);
-  });
+  float sum = 0;
+  float weight = 0.5F;
+  float total = 0;
+  for (int i = 0; i < octaves; ++i) {
+    sum += weight * value_noise(x, y, z, period, seed + 131U * static_cast<std::uint32_t>(i));
+    total += weight;
+    weight *= 0.5F;
+    x *= 2;
+    y *= 2;
+    z *= 2;
+    period *= 2;
+  }
+  return sum / total;
 }
-
-// A square table that repeats along both axes; its size is a power of two.
-template <typename Cell>
-class Tile {
- public:
-  Tile() = default;
-  explicit Tile(int size) : size_(size), cells_(std::size_t(size) * std::size_t(size)) {}
-  Tile(int size, const Cell& cell) : Tile(size) { cells_.assign(cells_.size(), cell); }
-
-  int size() const { return size_; }
-  Cell& at(int x, int y) { return cells_[index(x, y)]; }
-  const Cell& at(int x, int y) const { return cells_[index(x, y)]; }
-  // Bilinear interpolation; whole numbers are the centres of cells.
-  Cell between(float x, float y) const {
-    const int ix = floor_int(x);
-    const int iy = floor_int(y);
-    const float fx = x - static_cast<float>(ix);
-    const float fy = y - static_cast<float>(iy);
-    return (at(ix, iy) * (1 - fx) + at(ix + 1, iy) * fx) * (1 - fy) +
-           (at(ix, iy + 1) * (1 - fx) + at(ix + 1, iy + 1) * fx) * fy;
-  }
-
- private:
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y & (size_ - 1)) * static_cast<std::size_t>(size_) +
-           static_cast<std::size_t>(x & (size_ - 1));
-  }
-  int size_ = 0;
-  std::vector<Cell> cells_;
-};
 
 }  // namespace airtruth::synthetic

@@ -175,6 +175,32 @@ LinearRgb trace(const Point& ray, float pixel_rad, const Scene& scene) {
   return colour;
 }
 
+// True where a ray of the block may touch the aircraft: one ray tests whether the distance relative
+// to the block's cone becomes small enough. Blocks without a touch are skipped.
+bool may_touch(const Point& ray, float block_rad) {
+  float t = 0.45F;
+  for (int i = 0; i < 60 && t < kFarthestPart_m; ++i) {
+    const float d = nearest(ray * t).distance_m;
+    if (d < t * block_rad) return true;
+    t += std::max(d - t * block_rad, 0.01F);
+  }
+  return false;
+}
+
+constexpr int kBlock = 8;
+
+// Marks the pixels of the layer in the mask, and where each row begins and ends.
+void mark_layer(OwnAircraft& own, int width, int height) {
+  const auto w = static_cast<std::size_t>(width);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+    for (std::size_t x = 0; x < w; ++x) {
+      if (own.layer[y * w + x][3] <= 0) continue;
+      own.mask.free[y * w + x] = 0;
+      own.first[y] = std::min(own.first[y], static_cast<int>(x));
+      own.last[y] = static_cast<int>(x) + 1;
+    }
+}
+
 }  // namespace
 
 OwnAircraft draw_own_aircraft(const lens::Lens& lens,
@@ -183,24 +209,38 @@ OwnAircraft draw_own_aircraft(const lens::Lens& lens,
                               bool visible) {
   const int width = lens.size().width;
   const int height = lens.size().height;
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  OwnAircraft own{std::vector<LinearRgb>(count, LinearRgb::Zero()),
-                  {width, height, std::vector<unsigned char>(count, 255)}};
+  const auto w = static_cast<std::size_t>(width);
+  const auto h = static_cast<std::size_t>(height);
+  OwnAircraft own{std::vector<LinearRgb>(w * h, LinearRgb::Zero()),
+                  std::vector<int>(h, width),
+                  std::vector<int>(h, 0),
+                  {width, height, std::vector<unsigned char>(w * h, 255)}};
   const Scene scene{sun_in_body.cast<float>().array(), sky.sunlight()};
   const auto pixel_rad = static_cast<float>(1 / lens.focal_px());
   const Quaternion body_from_cam = cam_from_body().conjugate();
-  tbb::parallel_for(0, height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(x);
-      const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
-      if (!ray)
-        own.layer[i] = {0, 0, 0, 1};
-      else if (visible)
-        own.layer[i] = trace((body_from_cam * *ray).cast<float>().array(), pixel_rad, scene);
-      if (own.layer[i][3] > 0) own.mask.free[i] = 0;
+  const auto ray_in_body = [&](double x, double y) -> std::optional<Point> {
+    const auto ray = lens.ray_from_pixel({x, y});
+    if (!ray) return std::nullopt;
+    return Point((body_from_cam * *ray).cast<float>().array());
+  };
+  const int columns = (width + kBlock - 1) / kBlock;
+  tbb::parallel_for(0, (height + kBlock - 1) / kBlock, [&](int block_y) {
+    for (int block_x = 0; block_x < columns; ++block_x) {
+      const auto middle =
+          ray_in_body(block_x * kBlock + 0.5 * kBlock, block_y * kBlock + 0.5 * kBlock);
+      const bool near = visible && middle && may_touch(*middle, 9 * pixel_rad);
+      for (int y = block_y * kBlock; y < std::min((block_y + 1) * kBlock, height); ++y)
+        for (int x = block_x * kBlock; x < std::min((block_x + 1) * kBlock, width); ++x) {
+          const std::size_t i = static_cast<std::size_t>(y) * w + static_cast<std::size_t>(x);
+          if (middle && !near) continue;
+          const auto ray = ray_in_body(x + 0.5, y + 0.5);
+          own.layer[i] = !ray   ? LinearRgb(0, 0, 0, 1)
+                         : near ? trace(*ray, pixel_rad, scene)
+                                : LinearRgb::Zero();
+        }
     }
   });
+  mark_layer(own, width, height);
   return own;
 }
 

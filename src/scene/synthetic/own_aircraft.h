@@ -13,8 +13,11 @@ namespace airtruth::synthetic {
 // The aircraft that carries the camera, seen from its tail: wings, body and nose. It does not move
 // in the image.
 struct OwnAircraft {
-  // Premultiplied colour and coverage by pixel; black and opaque beyond the lens's field.
+  // Premultiplied colour and coverage by pixel; empty without an aircraft.
   std::vector<LinearRgb> layer;
+  // First and last column, by row, that the aircraft covers.
+  std::vector<int> first;
+  std::vector<int> last;
   // 0 where the aircraft, or the area beyond the lens's field, covers any part of the pixel.
   image::Mask mask;
 };

@@ -60,6 +60,28 @@ class HillRanges {
   std::uint32_t seed_;
 };
 
+// Places in the map.
+struct Texels {
+  alignas(64) Integers index;
+  alignas(64) Floats right;
+  alignas(64) Floats lower;
+};
+
+AIRTRUTH_FOR_VECTORS
+void locate(const Rays& rays, float radius, float centre, int size, Texels& texels) {
+  const int count = rays.count;
+  for (int i = 0; i < count; ++i) {
+    const float scale = radius / (1 - rays.down[i]);
+    const float x = centre + rays.north[i] * scale;
+    const float y = centre + rays.east[i] * scale;
+    const auto ix = static_cast<std::int32_t>(x);
+    const auto iy = static_cast<std::int32_t>(y);
+    texels.index[i] = iy * size + ix;
+    texels.right[i] = x - static_cast<float>(ix);
+    texels.lower[i] = y - static_cast<float>(iy);
+  }
+}
+
 }  // namespace
 
 Panorama::Panorama(double texel_rad) : radius_(static_cast<float>(1 / texel_rad)) {
@@ -102,6 +124,20 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, st
                 static_cast<std::size_t>(x)] = colour;
       }
   });
+}
+
+void Panorama::seen(const Rays& rays, Light& light) const {
+  Texels texels;
+  locate(rays, radius_, centre_, size_, texels);
+  for (int i = 0; i < rays.count; ++i) {
+    const LinearRgb* p = &texels_[static_cast<std::size_t>(texels.index[i])];
+    const LinearRgb upper = p[0] + (p[1] - p[0]) * texels.right[i];
+    const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * texels.right[i];
+    const LinearRgb colour = upper + (lower - upper) * texels.lower[i];
+    light.red[i] = colour[0];
+    light.green[i] = colour[1];
+    light.blue[i] = colour[2];
+  }
 }
 
 }  // namespace airtruth::synthetic

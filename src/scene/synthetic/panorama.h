@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/synthetic/batch.h"
 #include "scene/synthetic/clouds.h"
 #include "scene/synthetic/noise.h"
 #include "scene/synthetic/sky.h"
@@ -43,6 +44,8 @@ class Panorama {
     const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
     return upper + (lower - upper) * fy;
   }
+  // The same for the rays of a batch.
+  void seen(const Rays& rays, Light& light) const;
   // The component `up` of the lowest direction.
   static constexpr float kLowest = -0.02F;
 

@@ -6,12 +6,16 @@
 
 #include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
+#include "scene/synthetic/batch.h"
+#include "scene/synthetic/noise.h"
 
 namespace airtruth::synthetic {
 namespace {
 
 constexpr int kCurve = 8192;
 constexpr float kBrightest = 2.5F;
+constexpr int kGrain = 256;
+constexpr float kSharpening = 0.22F;
 
 // Code values 0..255 by the square root of light, so that dark tones are resolved as finely as
 // bright ones.
@@ -27,8 +31,94 @@ std::vector<float> tone_curve(bool linear) {
   return curve;
 }
 
-std::uint8_t code(float value) {
+inline std::uint8_t code(float value) {
   return static_cast<std::uint8_t>(static_cast<int>(std::clamp(value + 0.5F, 0.0F, 255.0F)));
+}
+
+// Code values of a row, and of one pixel more, which repeats the last one.
+struct Codes {
+  float* red;
+  float* green;
+  float* blue;
+};
+
+AIRTRUTH_FOR_VECTORS
+void develop(const float* __restrict light,
+             const float* __restrict fall_off,
+             const float* __restrict curve,
+             int width,
+             float* __restrict codes) {
+  for (int x = 0; x < width; ++x) {
+    const float exposed = std::min(std::max(light[x] * fall_off[x], 0.0F), kBrightest);
+    codes[x] = std::sqrt(exposed * (1 / kBrightest)) * kCurve + 0.5F;
+  }
+  for (int x = 0; x < width; ++x) codes[x] = curve[static_cast<int>(codes[x])];
+  codes[width] = codes[width - 1];
+}
+
+AIRTRUTH_FOR_VECTORS
+void expose_luma(const Codes& codes,
+                 const float* __restrict grain,
+                 float noise,
+                 int width,
+                 std::uint16_t* __restrict luma) {
+  const float* __restrict red = codes.red;
+  const float* __restrict green = codes.green;
+  const float* __restrict blue = codes.blue;
+  for (int x = 0; x < width; ++x) {
+    const float value = 16 + (65.481F * red[x] + 128.553F * green[x] + 24.966F * blue[x]) / 255;
+    const float spread = noise * (1.9F - 0.0045F * value);
+    const float noisy = std::clamp(value + spread * grain[x], 0.0F, 255.0F);
+    luma[x] = static_cast<std::uint16_t>(static_cast<int>(noisy * 64 + 0.5F));
+  }
+}
+
+inline float mean_of_four(const float* upper, const float* lower, int x) {
+  return 0.25F * (upper[x] + upper[x + 1] + lower[x] + lower[x + 1]);
+}
+
+// The noise of blue is that of the left pixel of each pair, the noise of red that of the right one.
+AIRTRUTH_FOR_VECTORS
+void expose_chroma(const Codes& upper,
+                   const Codes& lower,
+                   const float* __restrict grain,
+                   float spread,
+                   int pairs,
+                   std::uint8_t* __restrict blue,
+                   std::uint8_t* __restrict red) {
+  for (int i = 0; i < pairs; ++i) {
+    const float r = mean_of_four(upper.red, lower.red, 2 * i);
+    const float g = mean_of_four(upper.green, lower.green, 2 * i);
+    const float b = mean_of_four(upper.blue, lower.blue, 2 * i);
+    blue[i] = code(128 + (-37.797F * r - 74.203F * g + 112.0F * b) / 255 + spread * grain[2 * i]);
+    red[i] = code(128 + (112.0F * r - 93.786F * g - 18.214F * b) / 255 + spread * grain[2 * i + 1]);
+  }
+}
+
+// A row and its neighbours before sharpening.
+struct Rows {
+  const std::uint16_t* here;
+  const std::uint16_t* above;
+  const std::uint16_t* below;
+  const std::uint16_t* far_above;
+  const std::uint16_t* far_below;
+};
+
+// First the lens's blur, then the camera's unsharp mask. The last four are the columns beside x.
+[[gnu::always_inline]] inline std::uint8_t sharpened(
+    const Rows& rows, int x, int l, int r, int ll, int rr) {
+  const int near = rows.here[l] + rows.here[r] + rows.above[x] + rows.below[x];
+  const int far = rows.here[ll] + rows.here[rr] + rows.far_above[x] + rows.far_below[x];
+  const float soft =
+      0.72F * static_cast<float>(int{rows.here[x]}) + 0.07F * static_cast<float>(near);
+  const float sharp = soft + kSharpening * (soft - 0.25F * static_cast<float>(far));
+  return code(sharp / 64);
+}
+
+AIRTRUTH_FOR_VECTORS
+void sharpen_middle(const Rows& given, int width, std::uint8_t* __restrict out) {
+  const Rows rows = given;
+  for (int x = 2; x < width - 2; ++x) out[x] = sharpened(rows, x, x - 1, x + 1, x - 2, x + 2);
 }
 
 }  // namespace
@@ -47,85 +137,82 @@ Sensor::Sensor(const FlightOptions& options, std::uint32_t seed)
 }
 
 Sensor::Exposure Sensor::start() const {
-  return Exposure(stride() * static_cast<std::size_t>(height_));
+  return {std::make_unique_for_overwrite<std::uint16_t[]>(static_cast<std::size_t>(width_) *
+                                                          static_cast<std::size_t>(height_))};
 }
 
-// Every 16 rows use another part of the noise tile, so that no pattern repeats.
-Sensor::Grain Sensor::grain(int frame, int y, std::size_t channel) const {
+// Every 16 rows use another part of the noise tile, so that no pattern repeats. Writes the noise of
+// the row and of one pixel more.
+void Sensor::copy_grain(int frame, int y, int channel, float* grain) const {
   const std::uint32_t offset = hash(frame, y >> 4, seed_);
   const std::uint32_t row = (static_cast<std::uint32_t>(y) + (offset >> 16)) & (kGrain - 1);
-  return {grain_[channel].data() + row * kGrain, static_cast<int>(offset & (kGrain - 1))};
-}
-
-// Replaces light by code values, and repeats the last pixel, so that pairs of pixels are whole.
-void Sensor::develop(LightRow& row) const {
-  for (LinearRgb& pixel : row)
-    for (int c = 0; c < 3; ++c) {
-      const float exposed = std::min(std::max(pixel[c], 0.0F), kBrightest);
-      pixel[c] = curve_[static_cast<std::size_t>(
-          static_cast<int>(std::sqrt(exposed * (1 / kBrightest)) * kCurve + 0.5F))];
-    }
-  row.push_back(row.back());
-}
-
-void Sensor::expose_luma(const LightRow& codes, const Grain& grain, std::uint16_t* luma) const {
-  for (int x = 0; x < width_; ++x) {
-    const LinearRgb& c = codes[static_cast<std::size_t>(x)];
-    const float value = 16 + (65.481F * c[0] + 128.553F * c[1] + 24.966F * c[2]) / 255;
-    const float spread = noise_ * (1.9F - 0.0045F * value);
-    const float noisy = std::clamp(value + spread * grain.at(x), 0.0F, 255.0F);
-    luma[x + 2] = static_cast<std::uint16_t>(static_cast<int>(noisy * 64 + 0.5F));
+  const float* tile = grain_[static_cast<std::size_t>(channel)].data() + row * kGrain;
+  auto column = static_cast<int>(offset & (kGrain - 1));
+  for (int x = 0; x < width_;) {
+    const int count = std::min(kGrain - column, width_ - x);
+    std::copy_n(tile + column, count, grain + x);
+    x += count;
+    column = 0;
   }
-  luma[0] = luma[1] = luma[2];
-  luma[width_ + 2] = luma[width_ + 3] = luma[width_ + 1];
+  grain[width_] = grain[width_ - 1];
 }
 
 void Sensor::expose(int frame,
                     int y,
-                    LightRow upper,
-                    LightRow lower,
+                    const LightRow& upper,
+                    const LightRow& lower,
                     Exposure& exposure,
                     image::Picture& picture) const {
-  develop(upper);
-  develop(lower);
-  std::uint16_t* luma = exposure.data() + static_cast<std::size_t>(y) * stride();
-  expose_luma(upper, grain(frame, y, 0), luma);
-  if (y + 1 < height_) expose_luma(lower, grain(frame, y, 2), luma + stride());
-  // The noise of blue is that of the left pixel of each pair, the noise of red that of the right
-  // one.
-  const Grain noise = grain(frame, y, 1);
-  std::uint8_t* blue = picture.planes[1].row(y / 2);
-  std::uint8_t* red = picture.planes[2].row(y / 2);
-  for (int i = 0; i < (width_ + 1) / 2; ++i) {
-    const auto x = static_cast<std::size_t>(2 * i);
-    const LinearRgb c = 0.25F * (upper[x] + upper[x + 1] + lower[x] + lower[x + 1]);
-    blue[i] = code(128 + (-37.797F * c[0] - 74.203F * c[1] + 112.0F * c[2]) / 255 +
-                   0.8F * noise_ * noise.at(2 * i));
-    red[i] = code(128 + (112.0F * c[0] - 93.786F * c[1] - 18.214F * c[2]) / 255 +
-                  0.8F * noise_ * noise.at(std::min(2 * i + 1, width_ - 1)));
+  const std::size_t room = static_cast<std::size_t>(width_) + 1;
+  const auto memory = std::make_unique_for_overwrite<float[]>(7 * room);
+  const auto part = [&](std::size_t i) { return memory.get() + i * room; };
+  const auto developed = [&](const LightRow& row, std::size_t first) {
+    const Codes codes{part(first), part(first + 1), part(first + 2)};
+    develop(row.red.data(), row.fall_off.data(), curve_.data(), width_, codes.red);
+    develop(row.green.data(), row.fall_off.data(), curve_.data(), width_, codes.green);
+    develop(row.blue.data(), row.fall_off.data(), curve_.data(), width_, codes.blue);
+    return codes;
+  };
+  const Codes above = developed(upper, 0);
+  const Codes below = developed(lower, 3);
+  float* grain = part(6);
+  std::uint16_t* luma =
+      exposure.luma.get() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  copy_grain(frame, y, 0, grain);
+  expose_luma(above, grain, noise_, width_, luma);
+  if (y + 1 < height_) {
+    copy_grain(frame, y, 2, grain);
+    expose_luma(below, grain, noise_, width_, luma + width_);
   }
+  copy_grain(frame, y, 1, grain);
+  expose_chroma(above,
+                below,
+                grain,
+                0.8F * noise_,
+                (width_ + 1) / 2,
+                picture.planes[1].row(y / 2),
+                picture.planes[2].row(y / 2));
 }
 
 void Sensor::sharpen(const Exposure& exposure, int y, image::Picture& picture) const {
   const auto row = [&](int at) {
-    return exposure.data() + static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) * stride() +
-           2;
+    return exposure.luma.get() + static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) *
+                                     static_cast<std::size_t>(width_);
   };
-  const std::uint16_t* here = row(y);
-  const std::uint16_t* above = row(y - 1);
-  const std::uint16_t* below = row(y + 1);
-  const std::uint16_t* far_above = row(y - 2);
-  const std::uint16_t* far_below = row(y + 2);
-  const float side = ideal_ ? 0 : 0.07F;
-  const float middle = 1 - 4 * side;
-  const float gain = ideal_ ? 0 : 0.22F;
+  const Rows rows{row(y), row(y - 1), row(y + 1), row(y - 2), row(y + 2)};
   std::uint8_t* out = picture.planes[0].row(y);
-  for (int x = 0; x < width_; ++x) {
-    const int near = here[x - 1] + here[x + 1] + above[x] + below[x];
-    const int far = here[x - 2] + here[x + 2] + far_above[x] + far_below[x];
-    const float soft = middle * static_cast<float>(here[x]) + side * static_cast<float>(near);
-    out[x] = code((soft + gain * (soft - 0.25F * static_cast<float>(far))) / 64);
+  if (ideal_) {
+    for (int x = 0; x < width_; ++x) out[x] = code(static_cast<float>(rows.here[x]) / 64);
+    return;
   }
+  sharpen_middle(rows, width_, out);
+  for (const int x : {0, 1, width_ - 2, width_ - 1})
+    out[x] = sharpened(rows,
+                       x,
+                       std::max(x - 1, 0),
+                       std::min(x + 1, width_ - 1),
+                       std::max(x - 2, 0),
+                       std::min(x + 2, width_ - 1));
 }
 
 }  // namespace airtruth::synthetic

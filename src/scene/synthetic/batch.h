@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "foundation/base/vectors.h"
+
+// Rays are traced in batches, one array for each quantity, so that the compiler emits loops over
+// vectors.
+namespace airtruth::synthetic {
+
+// Number of rays that are traced together. The arrays of a batch fit in the first-level cache.
+constexpr int kBatch = 128;
+
+using Floats = float[kBatch];
+using Integers = std::int32_t[kBatch];
+
+// Directions into the world (north-east-down, unit vectors) of the first `count` places.
+struct Rays {
+  int count = 0;
+  alignas(64) Floats north;
+  alignas(64) Floats east;
+  alignas(64) Floats down;
+};
+
+// Linear red, green and blue of the same places.
+struct Light {
+  alignas(64) Floats red;
+  alignas(64) Floats green;
+  alignas(64) Floats blue;
+};
+
+// Base-2 logarithm of a positive number with an error below 0.09, which suffices to choose a mip
+// level.
+inline float fast_log2(float x) {
+  return static_cast<float>(std::bit_cast<std::int32_t>(x)) * 0x1p-23F - 126.94F;
+}
+
+// e^x for x from -80 to 0, rounded to a float: Taylor's series in double precision, with an error
+// below 1e-12 before rounding. It gives the same bits everywhere, unlike std::exp.
+inline float exp_of_negative(float x) {
+  constexpr double kLog2E = 1.4426950408889634;
+  constexpr double kLn2 = 0.6931471805599453;
+  const double power = kLog2E * static_cast<double>(x);
+  const auto whole = static_cast<std::int32_t>(power - 0.5);
+  const double r = kLn2 * (power - whole);
+  double sum = 1 + r * (1.0 / 10);
+  sum = 1 + r * (1.0 / 9) * sum;
+  sum = 1 + r * (1.0 / 8) * sum;
+  sum = 1 + r * (1.0 / 7) * sum;
+  sum = 1 + r * (1.0 / 6) * sum;
+  sum = 1 + r * (1.0 / 5) * sum;
+  sum = 1 + r * (1.0 / 4) * sum;
+  sum = 1 + r * (1.0 / 3) * sum;
+  sum = 1 + r * (1.0 / 2) * sum;
+  sum = 1 + r * sum;
+  const auto scale = std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52);
+  return static_cast<float>(sum * scale);
+}
+
+// The cosine of an angle up to some thousand radians, rounded to a float: 1 - 2 sin^2 of the half
+// angle by Taylor's series in double precision, with an error below 1e-11 before rounding. It gives
+// the same bits everywhere, unlike std::cos.
+inline float cosine_of(float angle_rad) {
+  constexpr double kPerTurn = 0.15915494309189535;
+  constexpr double kHalfTurn = 3.141592653589793;
+  const double turns = kPerTurn * static_cast<double>(angle_rad);
+  const auto whole = static_cast<std::int32_t>(turns + (turns < 0 ? -0.5 : 0.5));
+  const double half = kHalfTurn * (turns - whole);
+  const double square = half * half;
+  double sum = 1 - square * (1.0 / (16 * 17));
+  sum = 1 - square * (1.0 / (14 * 15)) * sum;
+  sum = 1 - square * (1.0 / (12 * 13)) * sum;
+  sum = 1 - square * (1.0 / (10 * 11)) * sum;
+  sum = 1 - square * (1.0 / (8 * 9)) * sum;
+  sum = 1 - square * (1.0 / (6 * 7)) * sum;
+  sum = 1 - square * (1.0 / (4 * 5)) * sum;
+  sum = 1 - square * (1.0 / (2 * 3)) * sum;
+  const double sine = half * sum;
+  return static_cast<float>(1 - 2 * sine * sine);
+}
+
+}  // namespace airtruth::synthetic
