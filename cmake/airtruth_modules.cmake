@@ -7,12 +7,6 @@ if(AIRTRUTH_PCH)
   set(airtruth_common_headers
               <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <sstream>
               <string> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h>)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
-    # Clang keeps the Eigen expressions that their inline functions instantiate; GCC instantiates them anew in every source.
-    list(APPEND airtruth_common_headers
-                <foundation/base/error.h> <foundation/geometry/within_frame.h> <foundation/geometry/box.h>
-                <foundation/image/layer.h> <foundation/image/picture.h> <camera/lens/lens.h> <aircraft/model/mesh.h>)
-  endif()
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pch.cpp CONTENT "")
   add_library(airtruth_pch STATIC ${PROJECT_BINARY_DIR}/pch.cpp)
   target_link_libraries(airtruth_pch PRIVATE airtruth_options Eigen3::Eigen)

@@ -4,9 +4,9 @@
 #include <opencv2/core.hpp>
 
 // Functions of OpenCV's modules calib3d, video, tracking and ml. They stand in a library that is
-// loaded at the first call (foundation/lazy_library/lazy_library.h), because these modules need more
-// libraries, and more time to load, than all others of a render with known motion. The parameters
-// are OpenCV's, without default values.
+// loaded at the first call (foundation/lazy_library/lazy_library.h), because these modules need
+// more libraries, and more time to load, than all others of a render with known motion. The
+// parameters are OpenCV's, without default values.
 namespace cv {
 class Tracker;
 namespace legacy {

@@ -17,7 +17,7 @@
 namespace airtruth::dataset {
 namespace {
 
-Catalogue with_random(const std::string& keys) {
+Catalogue catalogue_with_random(const std::string& keys) {
   std::string text = kCatalogue;
   text.resize(text.find("[[product]]"));
   return parse_catalogue(
@@ -26,7 +26,7 @@ Catalogue with_random(const std::string& keys) {
 
 std::string error_of(const std::string& keys) {
   try {
-    with_random(keys);
+    catalogue_with_random(keys);
   } catch (const Error& error) {
     return error.what();
   }
@@ -38,7 +38,7 @@ const std::string kApproach =
     "course_deg = { any_of = [170, 180, 190] }\nclimb_mps = -1\n";
 
 TEST(DrawnPath, AnApproachIsDrawnFromRangesAndLists) {
-  const Catalogue catalogue = with_random(kApproach);
+  const Catalogue catalogue = catalogue_with_random(kApproach);
   const Expansion expansion(catalogue);
   std::map<double, int> courses;
   int right = 0;
@@ -67,7 +67,7 @@ TEST(DrawnPath, AnApproachIsDrawnFromRangesAndLists) {
 }
 
 TEST(DrawnPath, TheDrawnPathHasTheDrawnApproach) {
-  const Catalogue catalogue = with_random(kApproach + "cpa_time_s = 2\n");
+  const Catalogue catalogue = catalogue_with_random(kApproach + "cpa_time_s = 2\n");
   Item item = Expansion(catalogue).at(7);
   place(item, catalogue, {"sky.mkv", {}, 160, 120, 30, 90});
   const auto own = sequence::camera_path(item.scene.camera);
@@ -80,7 +80,7 @@ TEST(DrawnPath, TheDrawnPathHasTheDrawnApproach) {
 }
 
 TEST(DrawnPath, WhatIsSeenIsDrawn) {
-  const Catalogue catalogue = with_random(
+  const Catalogue catalogue = catalogue_with_random(
       "[[random.seen]]\ntime_s = [0, 1]\nx_px = [10, 150]\ny_px = { any_of = [20, 40] }\n"
       "range_m = [300, 900]\n[[random.seen]]\ntime_s = 2.5\npixel = [80, 60]\nwidth_px = [5, "
       "50]\n");
@@ -114,10 +114,11 @@ TEST(DrawnPath, ATrajectoryMayBeAnEncounter) {
 
 // A camera that hovers is never passed sideways by what crosses before it: the draw is counted.
 TEST(DrawnPath, ThePlanCountsDrawsThatNoPathFulfils) {
-  const Plan plan = plan_of(
-      with_random("[random.encounter]\ncpa_right_m = 50\ncourse_deg = { any_of = [90, 180] }\n"),
-      {},
-      {});
+  const Plan plan =
+      plan_of(catalogue_with_random(
+                  "[random.encounter]\ncpa_right_m = 50\ncourse_deg = { any_of = [90, 180] }\n"),
+              {},
+              {});
   EXPECT_NEAR(double(plan.not_flyable), 200, 40);
   ASSERT_FALSE(plan.not_flyable_words.empty());
   EXPECT_NE(plan.not_flyable_words[0].find("no closest approach has this cpa_right_m"),

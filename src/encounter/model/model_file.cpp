@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "encounter/model/model_file.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "encounter/model/model_file.h"
 #include "encounter/model/model_fields.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

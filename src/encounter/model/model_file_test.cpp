@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "encounter/model/model_file.h"
+
 #include <cstdlib>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/model/model_file.h"
 #include "encounter/model/small_model.h"
 #include "foundation/base/error.h"
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "encounter/model/model_file.h"
 #include "encounter/model/cut.h"
+#include "encounter/model/model_file.h"
 #include "encounter/track/track.h"
 #include "foundation/base/seed.h"
 

@@ -21,7 +21,7 @@ constexpr const char* kCsv =
     "1,other,0.5,800,10,-310,2.5\n"
     "4,own,0,1,2,3,1\n";
 
-std::string fault_of(const std::string& text) {
+std::string fault_of_encounter_csv(const std::string& text) {
   try {
     parse_encounter_csv(text, "a.csv");
   } catch (const Error& error) {
@@ -61,25 +61,30 @@ TEST(EncounterCsv, WhatIsWrittenReadsTheSame) {
 }
 
 TEST(EncounterCsv, EachFaultNamesTheLineAndWhatWasExpected) {
-  EXPECT_THAT(fault_of(""), StartsWith("a.csv: is empty"));
-  EXPECT_THAT(fault_of("encounter,aircraft,time_s,north_m,east_m,down_m\n"),
+  EXPECT_THAT(fault_of_encounter_csv(""), StartsWith("a.csv: is empty"));
+  EXPECT_THAT(fault_of_encounter_csv("encounter,aircraft,time_s,north_m,east_m,down_m\n"),
               StartsWith("a.csv:1: has no rows"));
-  EXPECT_THAT(fault_of(changed("north_m", "norht_m")),
+  EXPECT_THAT(fault_of_encounter_csv(changed("north_m", "norht_m")),
               StartsWith("a.csv:1: unknown column 'norht_m'; did you mean 'north_m'?"));
-  EXPECT_THAT(fault_of(changed("weight", "north_m")), HasSubstr("'north_m' is twice there"));
-  EXPECT_THAT(fault_of(changed("weight", "east_mps")), HasSubstr("has no column 'north_mps'"));
-  EXPECT_THAT(fault_of(changed("1,own,0,0,0,-300,2.5", "1,own,0,0,0,-300")),
+  EXPECT_THAT(fault_of_encounter_csv(changed("weight", "north_m")),
+              HasSubstr("'north_m' is twice there"));
+  EXPECT_THAT(fault_of_encounter_csv(changed("weight", "east_mps")),
+              HasSubstr("has no column 'north_mps'"));
+  EXPECT_THAT(fault_of_encounter_csv(changed("1,own,0,0,0,-300,2.5", "1,own,0,0,0,-300")),
               StartsWith("a.csv:2: has 6 cells for 7 columns"));
-  EXPECT_THAT(fault_of(changed("1,own,1,", "1,own,0,")),
+  EXPECT_THAT(fault_of_encounter_csv(changed("1,own,1,", "1,own,0,")),
               StartsWith("a.csv:3: the time of 'own' is 0 s after 0 s"));
-  EXPECT_THAT(fault_of(changed("1,own,1,50", "1,own,1,nan")),
+  EXPECT_THAT(fault_of_encounter_csv(changed("1,own,1,50", "1,own,1,nan")),
               StartsWith("a.csv:3: north_m is 'nan'; expected a number"));
-  EXPECT_THAT(fault_of(changed("-310,2.5", "-310,2")),
+  EXPECT_THAT(fault_of_encounter_csv(changed("-310,2.5", "-310,2")),
               StartsWith("a.csv:4: weight is 2 after 2.5"));
-  EXPECT_THAT(fault_of(changed("3,1\n", "3,-1\n")), HasSubstr("expected a positive number"));
-  EXPECT_THAT(fault_of(changed("4,own", "4.5,own")), HasSubstr("expected a whole number from 0"));
-  EXPECT_THAT(fault_of(changed("4,own", "4,")), HasSubstr("the aircraft is named ''"));
-  EXPECT_THAT(fault_of(std::string(kCsv) + "1,own,2,0,0,0,2.5\n"),
+  EXPECT_THAT(fault_of_encounter_csv(changed("3,1\n", "3,-1\n")),
+              HasSubstr("expected a positive number"));
+  EXPECT_THAT(fault_of_encounter_csv(changed("4,own", "4.5,own")),
+              HasSubstr("expected a whole number from 0"));
+  EXPECT_THAT(fault_of_encounter_csv(changed("4,own", "4,")),
+              HasSubstr("the aircraft is named ''"));
+  EXPECT_THAT(fault_of_encounter_csv(std::string(kCsv) + "1,own,2,0,0,0,2.5\n"),
               StartsWith("a.csv:6: encounter 1 goes on after another"));
 }
 

@@ -32,7 +32,7 @@ std::string changed(std::string text, const std::string& from, const std::string
   return text.replace(at, from.size(), to);
 }
 
-std::string fault_of(const std::string& text) {
+std::string fault_of_state_table(const std::string& text) {
   try {
     parse_state_table(text, "a.daa");
   } catch (const Error& error) {
@@ -113,48 +113,56 @@ TEST(StateTable, LatitudesAndLongitudesAreProjected) {
 }
 
 TEST(StateTable, EachFaultNamesTheLineAndWhatWasExpected) {
-  EXPECT_THAT(fault_of(""), StartsWith("a.daa: is empty; expected headings"));
-  EXPECT_THAT(fault_of("# only a comment\n"), HasSubstr("is empty"));
-  EXPECT_THAT(fault_of("NAME sx sy sz trk gs vs time\n"), StartsWith("a.daa:1: ends after the"));
-  EXPECT_THAT(fault_of(changed(kDaa, "[none] [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]\n", "")),
-              StartsWith("a.daa:3: has no units; expected a row of them"));
-  EXPECT_THAT(fault_of(changed(kDaa, "[none] [nmi] [nmi]", "[none] [nmi]")),
+  EXPECT_THAT(fault_of_state_table(""), StartsWith("a.daa: is empty; expected headings"));
+  EXPECT_THAT(fault_of_state_table("# only a comment\n"), HasSubstr("is empty"));
+  EXPECT_THAT(fault_of_state_table("NAME sx sy sz trk gs vs time\n"),
+              StartsWith("a.daa:1: ends after the"));
+  EXPECT_THAT(
+      fault_of_state_table(changed(kDaa, "[none] [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]\n", "")),
+      StartsWith("a.daa:3: has no units; expected a row of them"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "[none] [nmi] [nmi]", "[none] [nmi]")),
               StartsWith("a.daa:3: has 7 units for 8 headings"));
-  EXPECT_THAT(fault_of("NAME,sx,sy,sz,trk,gs,vs,time\n"
-                       "[none],[nmi],[nmi],,[deg],[knot],[fpm],[s]\n"),
+  EXPECT_THAT(fault_of_state_table("NAME,sx,sy,sz,trk,gs,vs,time\n"
+                                   "[none],[nmi],[nmi],,[deg],[knot],[fpm],[s]\n"),
               StartsWith("a.daa:2: the unit of 'sz' is missing; expected one of m, km, ft, nmi"));
   EXPECT_THAT(
-      fault_of(changed(kDaa, "[knot]", "[furlong]")),
+      fault_of_state_table(changed(kDaa, "[knot]", "[furlong]")),
       StartsWith("a.daa:3: the unit of 'gs' is [furlong]; expected one of m/s, km/h, knot"));
-  EXPECT_THAT(fault_of(changed(kDaa, "[deg]", "[ft]")), HasSubstr("expected one of deg, rad"));
-  EXPECT_THAT(fault_of(changed(kDaa, "[s]", "unitless")), HasSubstr("the unit of 'time'"));
-  EXPECT_THAT(fault_of(changed(kDaa, "NAME", "WHO")), HasSubstr("lack the aircraft"));
-  EXPECT_THAT(fault_of(changed(kDaa, "time", "when")), HasSubstr("lack the time"));
-  EXPECT_THAT(fault_of(changed(kDaa, "sx", "x")), HasSubstr("lack the position"));
-  EXPECT_THAT(fault_of(changed(kDaa, "gs", "vx")), HasSubstr("lack the velocity"));
-  EXPECT_THAT(fault_of(changed(kDaa, "sz", "sx")), HasSubstr("hold 'sx' and 'sx' for the same"));
-  EXPECT_THAT(fault_of(changed(kDaa, "100 0 0", "100 0")),
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "[deg]", "[ft]")),
+              HasSubstr("expected one of deg, rad"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "[s]", "unitless")),
+              HasSubstr("the unit of 'time'"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "NAME", "WHO")), HasSubstr("lack the aircraft"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "time", "when")), HasSubstr("lack the time"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "sx", "x")), HasSubstr("lack the position"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "gs", "vx")), HasSubstr("lack the velocity"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "sz", "sx")),
+              HasSubstr("hold 'sx' and 'sx' for the same"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "100 0 0", "100 0")),
               StartsWith("a.daa:4: has 7 cells for 8 headings"));
-  EXPECT_THAT(fault_of(changed(kDaa, "0.5 2", "inf 2")), StartsWith("a.daa:5: sx is 'inf'"));
-  EXPECT_THAT(fault_of(changed(kDaa, "0.5 2", "nan 2")), HasSubstr("sx is 'nan'"));
-  EXPECT_THAT(fault_of(changed(kDaa, "0.5 2", "1e10 2")), HasSubstr("up to 1e9"));
-  EXPECT_THAT(fault_of(changed(kDaa, "120 -600", "-120 -600")), HasSubstr("the speed is -61"));
-  EXPECT_THAT(fault_of(changed(kDaa, "100 0 1\n", "100 0 0\n")),
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "0.5 2", "inf 2")),
+              StartsWith("a.daa:5: sx is 'inf'"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "0.5 2", "nan 2")), HasSubstr("sx is 'nan'"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "0.5 2", "1e10 2")), HasSubstr("up to 1e9"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "120 -600", "-120 -600")),
+              HasSubstr("the speed is -61"));
+  EXPECT_THAT(fault_of_state_table(changed(kDaa, "100 0 1\n", "100 0 0\n")),
               StartsWith("a.daa:6: the time of 'Own' is 0 s after 0 s; expected times that"));
   EXPECT_THAT(
-      fault_of("name sx sy sz vx vy vz time\n[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n"
-               "own 0 0 0 0 0 0 0\nown 0 0 0 0 0 0 1\n"),
+      fault_of_state_table("name sx sy sz vx vy vz time\n[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n"
+                           "own 0 0 0 0 0 0 0\nown 0 0 0 0 0 0 1\n"),
       StartsWith("a.daa: holds one aircraft only, 'own'; expected the own one and another"));
-  EXPECT_THAT(fault_of("name sx sy sz vx vy vz time\n[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n"),
+  EXPECT_THAT(fault_of_state_table(
+                  "name sx sy sz vx vy vz time\n[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n"),
               HasSubstr("has no rows"));
 }
 
 TEST(StateTable, LatitudesOutOfRangeAreErrors) {
   const auto with = [](const char* place) {
-    return fault_of(std::string("name lat lon alt vx vy vz time\n"
-                                "[none] [deg] [deg] [m] [m/s] [m/s] [m/s] [s]\n"
-                                "own 10 20 0 0 0 0 0\nb ") +
-                    place + " 0 0 0 0 0\n");
+    return fault_of_state_table(std::string("name lat lon alt vx vy vz time\n"
+                                            "[none] [deg] [deg] [m] [m/s] [m/s] [m/s] [s]\n"
+                                            "own 10 20 0 0 0 0 0\nb ") +
+                                place + " 0 0 0 0 0\n");
   };
   EXPECT_THAT(with("91 20"), HasSubstr("outside of 90 degrees"));
   EXPECT_THAT(with("10 400"), HasSubstr("360 of longitude"));

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 // 200 ft/s northward, then a turn to the right (east) with a climb, as sample2track.m prints it.
 constexpr const char* kTrack = "time_s,x_ft,y_ft,z_ft\n0,0,0,1500\n1,200,0,1510\n2,399,17,1520\n";
 
-std::string fault_of(const std::string& text) {
+std::string fault_of_track_csv(const std::string& text) {
   try {
     parse_encounters(text, "a.csv");
   } catch (const Error& error) {
@@ -40,14 +40,17 @@ TEST(TrackCsv, FeetBecomeMetresNorthEastDown) {
 }
 
 TEST(TrackCsv, FaultsNameFileAndLine) {
-  EXPECT_EQ(fault_of("time_s,x_ft,y_ft\n0,0,0\n"),
+  EXPECT_EQ(fault_of_track_csv("time_s,x_ft,y_ft\n0,0,0\n"),
             "a.csv:1: the header is 'time_s,x_ft,y_ft'; expected time_s,x_ft,y_ft,z_ft");
-  EXPECT_THAT(fault_of("time_s,x_ft,x_ft,z_ft\n"), HasSubstr("a.csv:1: the header is "));
-  EXPECT_THAT(fault_of("time_s,x_ft,y_ft,z_ft,w\n"), HasSubstr("a.csv:1: the header is "));
-  EXPECT_THAT(fault_of("time_s,x_ft,y_ft,z_ft\n"), HasSubstr("has no rows"));
-  EXPECT_THAT(fault_of("time_s,x_ft,y_ft,z_ft\n0,0,0\n"), HasSubstr("a.csv:2: has 3 cells"));
-  EXPECT_THAT(fault_of("time_s,x_ft,y_ft,z_ft\n0,0,inf,0\n"), HasSubstr("a.csv:2: y_ft"));
-  EXPECT_THAT(fault_of("time_s,x_ft,y_ft,z_ft\n0,0,0,0\n0,1,0,0\n"), HasSubstr("a.csv:3: "));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,x_ft,z_ft\n"), HasSubstr("a.csv:1: the header is "));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,y_ft,z_ft,w\n"),
+              HasSubstr("a.csv:1: the header is "));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,y_ft,z_ft\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,y_ft,z_ft\n0,0,0\n"),
+              HasSubstr("a.csv:2: has 3 cells"));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,y_ft,z_ft\n0,0,inf,0\n"), HasSubstr("a.csv:2: y_ft"));
+  EXPECT_THAT(fault_of_track_csv("time_s,x_ft,y_ft,z_ft\n0,0,0,0\n0,1,0,0\n"),
+              HasSubstr("a.csv:3: "));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ Bytes two_encounters() {
   return bytes;
 }
 
-std::string fault_of(const std::string& bytes) {
+std::string fault_of_waypoint(const std::string& bytes) {
   try {
     parse_waypoints(bytes, "a.dat");
   } catch (const Error& error) {
@@ -79,35 +79,35 @@ TEST(WaypointFile, AFirstUpdateAtTimeZeroRepeatsThePosition) {
   EXPECT_EQ(parse_waypoints(bytes.text, "a.dat")[0].aircraft[0].size(), 2u);
   EXPECT_EQ(parse_waypoints(bytes.text, "a.dat")[0].aircraft[0].name, "track");
   other << std::uint16_t{1} << 0.0 << 1.0 << 2.0 << 4.0;
-  EXPECT_THAT(fault_of(other.text), HasSubstr("time 0 s follows 0 s"));
+  EXPECT_THAT(fault_of_waypoint(other.text), HasSubstr("time 0 s follows 0 s"));
 }
 
 TEST(WaypointFile, EveryCutOffFileIsAnError) {
   const std::string whole = two_encounters().text;
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_THROW(parse_waypoints(whole.substr(0, size), "a.dat"), Error) << size;
-  EXPECT_THAT(fault_of(whole.substr(0, 40)),
+  EXPECT_THAT(fault_of_waypoint(whole.substr(0, 40)),
               StartsWith("a.dat: announces 2 encounters of 2 aircraft in 32 bytes; expected 104"));
-  EXPECT_THAT(fault_of(whole.substr(0, whole.size() - 1)),
+  EXPECT_THAT(fault_of_waypoint(whole.substr(0, whole.size() - 1)),
               StartsWith("a.dat: encounter 2, aircraft 2: has 1 updates and 31 bytes behind them"));
-  EXPECT_THAT(fault_of(whole + "x"), HasSubstr("goes on for 1 bytes after encounter 2"));
+  EXPECT_THAT(fault_of_waypoint(whole + "x"), HasSubstr("goes on for 1 bytes after encounter 2"));
 }
 
 TEST(WaypointFile, CountsAndNumbersThatCannotBeAreErrors) {
   Bytes none, huge;
   none << std::uint32_t{0} << std::uint32_t{2};
-  EXPECT_THAT(fault_of(none.text), HasSubstr("holds 0 encounters of 2 aircraft"));
+  EXPECT_THAT(fault_of_waypoint(none.text), HasSubstr("holds 0 encounters of 2 aircraft"));
   huge << std::uint32_t{0xffffffff} << std::uint32_t{1000} << 0.0 << 0.0 << 0.0;
-  EXPECT_THAT(fault_of(huge.text), HasSubstr("announces 4294967295 encounters"));
+  EXPECT_THAT(fault_of_waypoint(huge.text), HasSubstr("announces 4294967295 encounters"));
   for (const double number : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 2e9}) {
     Bytes bytes;
     bytes << std::uint32_t{1} << std::uint32_t{1} << 0.0 << number << 0.0 << std::uint16_t{0};
-    EXPECT_THAT(fault_of(bytes.text), HasSubstr("encounter 1, aircraft 1: east is "));
+    EXPECT_THAT(fault_of_waypoint(bytes.text), HasSubstr("encounter 1, aircraft 1: east is "));
   }
   Bytes twice;
   twice << std::uint32_t{1} << std::uint32_t{1} << 0.0 << 0.0 << 0.0 << std::uint16_t{2};
   twice << 1.0 << 0.0 << 0.0 << 0.0 << 1.0 << 0.0 << 0.0 << 0.0;
-  EXPECT_THAT(fault_of(twice.text),
+  EXPECT_THAT(fault_of_waypoint(twice.text),
               HasSubstr("time 1 s follows 1 s; expected times that increase"));
 }
 

@@ -283,8 +283,8 @@ class Schema {
 };
 
 Schema published_schema() {
-  return Schema(Json::parse(
-      read_file(test_support::source_folder() / "docs/formats/truth.schema.json")));
+  return Schema(
+      Json::parse(read_file(test_support::source_folder() / "docs/formats/truth.schema.json")));
 }
 
 TEST(TruthSchema, HoldsWhatIsWritten) {

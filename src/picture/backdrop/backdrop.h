@@ -72,8 +72,8 @@ class Backdrop {
 };
 
 // OpenSceneGraph and OpenGL are in a library that is loaded at the first call
-// (foundation/lazy_library/lazy_library.h). Throws Error where it is not installed, and where no EGL
-// device can be opened.
+// (foundation/lazy_library/lazy_library.h). Throws Error where it is not installed, and where no
+// EGL device can be opened.
 std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& options);
 
 // The library holds a BackdropOpener of this name.

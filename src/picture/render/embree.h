@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Embree 3 (Debian 12) and Embree 4 (Debian 13) differ in how a query is asked; this header is the one place that knows.
+// Embree 3 (Debian 12) and Embree 4 (Debian 13) differ in how a query is asked; this header is the
+// one place that knows.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else

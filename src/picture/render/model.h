@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-
 #include "aircraft/model/mesh.h"
 #include "picture/render/embree.h"
 #include "picture/render/renderer.h"

@@ -8,16 +8,17 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kSide = 16;
+constexpr int kTexelsPerSide = 16;
 
-// A texture of kSide x kSide texels whose columns from 8 on are transparent, and one triangle.
+// A texture of kTexelsPerSide x kTexelsPerSide texels whose columns from 8 on are transparent, and
+// one triangle.
 aircraft::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
   aircraft::Mesh mesh;
   aircraft::Texture texture;
-  texture.levels.push_back({kSide, kSide, {}});
-  for (int i = 0; i < kSide * kSide; ++i)
-    texture.levels[0].texels.push_back(i % kSide < 8 ? std::array<float, 4>{1, 1, 1, 1}
-                                                     : std::array<float, 4>{0, 0, 0, 0});
+  texture.levels.push_back({kTexelsPerSide, kTexelsPerSide, {}});
+  for (int i = 0; i < kTexelsPerSide * kTexelsPerSide; ++i)
+    texture.levels[0].texels.push_back(i % kTexelsPerSide < 8 ? std::array<float, 4>{1, 1, 1, 1}
+                                                              : std::array<float, 4>{0, 0, 0, 0});
   texture.has_translucency = true;
   mesh.textures.push_back(texture);
   mesh.materials.emplace_back();
@@ -26,7 +27,7 @@ aircraft::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
   for (const Eigen::Vector2f& at : in_texels) {
     mesh.positions.emplace_back(0, at.x(), at.y());
     mesh.normals.emplace_back(1, 0, 0);
-    mesh.uvs.push_back(at / kSide);
+    mesh.uvs.push_back(at / kTexelsPerSide);
   }
   return mesh;
 }

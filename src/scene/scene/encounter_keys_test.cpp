@@ -9,19 +9,19 @@
 namespace airtruth::scene {
 namespace {
 
-std::string scene_with(const std::string& path) {
+std::string encounter_scene_text(const std::string& path) {
   return "[background]\nvideo = 'flight.mp4'\n[lens]\nvertical_fov_deg = 90\n[[intruder]]\n"
          "aircraft = 'c172/news'\n" +
          path;
 }
 
 Intruder intruder_with(const std::string& path) {
-  return parse_scene(scene_with(path), "s.toml").intruders.at(0);
+  return parse_scene(encounter_scene_text(path), "s.toml").intruders.at(0);
 }
 
-std::string message_of(const std::string& path) {
+std::string encounter_message_of(const std::string& path) {
   try {
-    parse_scene(scene_with(path), "s.toml");
+    parse_scene(encounter_scene_text(path), "s.toml");
   } catch (const Error& error) {
     return error.what();
   }
@@ -61,7 +61,7 @@ TEST(EncounterKeys, WhatIsSeenArrives) {
 
 TEST(EncounterKeys, TheEffectiveSceneReadsBackTheSame) {
   for (const std::string& path : {"roll_deg = 3\n" + kEncounter + "cpa_ahead_m = -7.25\n", kSeen}) {
-    const Scene scene = parse_scene(scene_with(path), "/data/s.toml");
+    const Scene scene = parse_scene(encounter_scene_text(path), "/data/s.toml");
     const std::string text = toml_from_scene(scene);
     const Scene again = parse_scene(text, "/elsewhere/t.toml");
     EXPECT_EQ(toml_from_scene(again), text);
@@ -76,37 +76,38 @@ TEST(EncounterKeys, TheEffectiveSceneReadsBackTheSame) {
 
 TEST(EncounterKeys, APathIsGivenOnce) {
   const std::string waypoints = "waypoints_ned_m = [[1, 2, 3], [4, 5, 6]]\n";
-  EXPECT_EQ(message_of(waypoints + "speed_mps = 3\n" + kEncounter),
+  EXPECT_EQ(encounter_message_of(waypoints + "speed_mps = 3\n" + kEncounter),
             "s.toml:7:19: encounter and waypoints_ned_m exclude each other; keep one of them");
-  EXPECT_EQ(message_of("start_s = 2\n" + kSeen),
+  EXPECT_EQ(encounter_message_of("start_s = 2\n" + kSeen),
             "s.toml:7:11: seen and start_s exclude each other; keep one of them");
-  EXPECT_NE(message_of(kEncounter + kSeen).find("encounter and seen exclude each other"),
+  EXPECT_NE(encounter_message_of(kEncounter + kSeen).find("encounter and seen exclude each other"),
             std::string::npos);
 }
 
 TEST(EncounterKeys, WhatIsMissingIsNamed) {
-  EXPECT_EQ(message_of("[intruder.encounter]\ncourse_deg = 180\nspeed_mps = 62\n"),
+  EXPECT_EQ(encounter_message_of("[intruder.encounter]\ncourse_deg = 180\nspeed_mps = 62\n"),
             "s.toml:7:1: [intruder.encounter] has no cpa_time_s; expected the time of the closest "
             "approach, in seconds");
-  EXPECT_EQ(message_of("[[intruder.seen]]\ntime_s = 1\nrange_m = 9\n"),
+  EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\nrange_m = 9\n"),
             "s.toml:7:1: [[intruder.seen]] has no pixel; expected time_s, pixel = [x, y], and "
             "range_m or width_px");
-  EXPECT_EQ(message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\n"),
+  EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\n"),
             "s.toml:7:1: [[intruder.seen]] has no range_m and no width_px; expected one of them");
-  EXPECT_EQ(message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\nrange_m = 9\n"),
+  EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\nrange_m = 9\n"),
             "s.toml:7:1: [[intruder.seen]] is alone; expected at least two of them");
 }
 
 TEST(EncounterKeys, WhatCannotBeIsAnError) {
-  EXPECT_EQ(message_of(kEncounter + "climb_mps = -63\n"),
+  EXPECT_EQ(encounter_message_of(kEncounter + "climb_mps = -63\n"),
             "s.toml:11:13: climb_mps is -63 at a speed_mps of 62; expected no more than the speed");
   std::string twice = kSeen;
   twice.replace(twice.find("time_s = 6"), 10, "time_s = 0");
-  EXPECT_EQ(message_of(twice),
+  EXPECT_EQ(encounter_message_of(twice),
             "s.toml:12:10: time_s is 0, not after the 0 of the [[intruder.seen]] before; expected "
             "increasing times");
-  EXPECT_NE(message_of(kSeen + "range_m = 3\n").find("exclude each other"), std::string::npos);
-  EXPECT_NE(message_of(kEncounter + "turn_rate_dps = inf\n").find("turn_rate_dps"),
+  EXPECT_NE(encounter_message_of(kSeen + "range_m = 3\n").find("exclude each other"),
+            std::string::npos);
+  EXPECT_NE(encounter_message_of(kEncounter + "turn_rate_dps = inf\n").find("turn_rate_dps"),
             std::string::npos);
 }
 

@@ -25,16 +25,16 @@
 namespace airtruth::sequence {
 namespace {
 
-constexpr int kWidth = 160;
-constexpr int kHeight = 120;
-constexpr int kFrames = 8;
+constexpr int kReplayWidth = 160;
+constexpr int kReplayHeight = 120;
+constexpr int kReplayFrames = 8;
 
 // A camera that turns about a point, 2 degrees rms in pitch and yaw.
 synthetic::FlightOptions turning_flight() {
   synthetic::FlightOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
-  options.frame_count = kFrames;
+  options.width = kReplayWidth;
+  options.height = kReplayHeight;
+  options.frame_count = kReplayFrames;
   options.own_aircraft = false;
   options.shake_deg = 2;
   options.translate = false;
@@ -98,9 +98,9 @@ TEST_F(TruthOf, OneIntruderThroughAPointSpreadIsHiddenByNothing) {
 
 // A mask beside an intruder takes some of its spread light and hides none of it.
 TEST_F(TruthOf, WhatHidesAnIntruderDoesNotDependOnThePointSpread) {
-  image::Rgb8 mask = image::make_rgb8(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 60; x < kWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
+  image::Rgb8 mask = image::make_rgb8(kReplayWidth, kReplayHeight);
+  for (int y = 0; y < kReplayHeight; ++y)
+    for (int x = 60; x < kReplayWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
   video::write_still(root_ / "left.png", mask);
   const std::string two =
       intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
@@ -137,7 +137,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
     const Finished finished =
         rendered(intruder("one", "738/738-Ryanair", "[[300, 20, -170], [300, 80, -175]]"),
                  std::string("[motion]\nmodel = \"") + model + "\"\n");
-    const lens::Lens lens = lens_of(finished.scene->lens, {kWidth, kHeight});
+    const lens::Lens lens = lens_of(finished.scene->lens, {kReplayWidth, kReplayHeight});
     double moved_deg = 0;
     for (const annotation::Frame& frame : finished.truth.frames) {
       SCOPED_TRACE(testing::Message() << model << ' ' << frame.frame);
@@ -171,7 +171,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
   }
 }
 
-const std::string kEverything =
+const std::string kReplayedScene =
     kStill +
     "[shutter]\nexposure_s = 0.01\n[air]\nextinction_per_km = [0.2, 0.25, 0.3]\n"
     "[optics]\npoint_spread_px = 0.8\nsharpening = 0.5\n"
@@ -181,7 +181,7 @@ const std::string kEverything =
 // Sharpening, noise and the codec's quantiser move samples far around; the covered box stays.
 TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {
   const std::string one = intruder("one", "738/738-Ryanair", "[[300, -20, -170], [300, 80, -170]]");
-  const Finished coded = rendered(one, kEverything + "codec_step = 16\n");
+  const Finished coded = rendered(one, kReplayedScene + "codec_step = 16\n");
   const Finished plain =
       rendered(one, kStill + "[shutter]\nexposure_s = 0.01\n[optics]\npoint_spread_px = 0.8\n");
   int wider = 0;
@@ -215,7 +215,7 @@ TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
 
 TEST_F(TruthOf, TheEvisionRectangleIsTheCoveredBox) {
   const Finished finished = rendered(
-      intruder("one", "738/738-Ryanair", "[[200, -20, -170], [200, 80, -170]]"), kEverything);
+      intruder("one", "738/738-Ryanair", "[[200, -20, -170], [200, 80, -170]]"), kReplayedScene);
   const auto evision = annotation::read_evision(finished.folder / (finished.name + ".xml"));
   ASSERT_EQ(evision.frames.size(), finished.truth.frames.size());
   for (std::size_t k = 0; k < evision.frames.size(); ++k)
@@ -225,19 +225,20 @@ TEST_F(TruthOf, TheEvisionRectangleIsTheCoveredBox) {
 // The masks are grey pictures of the frame's size: their sum is alpha_sum_px, their bounds are
 // covered_box_px, and no pixel of two intruders or of the own aircraft counts twice.
 TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
-  image::Rgb8 mask = image::make_rgb8(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 70; x < kWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
+  image::Rgb8 mask = image::make_rgb8(kReplayWidth, kReplayHeight);
+  for (int y = 0; y < kReplayHeight; ++y)
+    for (int x = 70; x < kReplayWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
   video::write_still(root_ / "own.png", mask);
   const std::string two =
       intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
       intruder("near", "c172/news", "[[60, -2, -150], [60, 60, -150]]");
-  const Finished finished = rendered(two, kEverything, "mask = \"own.png\"\n", "masks = true\n", 1);
+  const Finished finished =
+      rendered(two, kReplayedScene, "mask = \"own.png\"\n", "masks = true\n", 1);
   const auto record =
       nlohmann::json::parse(read_file(finished.folder / "sequence.json")).at("outputs");
   int hidden_in_part = 0;
   for (const annotation::Frame& frame : finished.truth.frames) {
-    std::vector<int> both(kWidth * kHeight, 0);
+    std::vector<int> both(kReplayWidth * kReplayHeight, 0);
     for (const annotation::Intruder& one : frame.intruders) {
       SCOPED_TRACE(one.id + " " + std::to_string(frame.frame));
       const std::string name = mask_name(one.id, frame.frame);
@@ -250,15 +251,15 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
       ASSERT_NE(listed, record.end());
       EXPECT_EQ(listed->at("sha256"), sha256_of_file(file));
       const video::Grey grey = video::read_grey(file);
-      ASSERT_EQ(grey.width, kWidth);
-      ASSERT_EQ(grey.height, kHeight);
+      ASSERT_EQ(grey.width, kReplayWidth);
+      ASSERT_EQ(grey.height, kReplayHeight);
       double sum = 0;
       std::optional<PixelBox> covered;
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-          const int a = grey.samples[static_cast<std::size_t>(y * kWidth + x)];
+      for (int y = 0; y < kReplayHeight; ++y)
+        for (int x = 0; x < kReplayWidth; ++x) {
+          const int a = grey.samples[static_cast<std::size_t>(y * kReplayWidth + x)];
           sum += a / 255.0;
-          both[static_cast<std::size_t>(y * kWidth + x)] += a;
+          both[static_cast<std::size_t>(y * kReplayWidth + x)] += a;
           EXPECT_TRUE(a == 0 || x >= 70);
           const PixelBox pixel{x, y, 1, 1};
           if (a >= 20) covered = covered ? bounds(*covered, pixel) : pixel;
@@ -274,7 +275,8 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
   EXPECT_GT(hidden_in_part, 0);
   const Recomposition again = recompose(finished, 2, {});
   EXPECT_THAT(again.faults, testing::ElementsAre());
-  const Finished with_two = rendered(two, kEverything, "mask = \"own.png\"\n", "masks = true\n", 2);
+  const Finished with_two =
+      rendered(two, kReplayedScene, "mask = \"own.png\"\n", "masks = true\n", 2);
   for (const auto& entry : fs::recursive_directory_iterator(finished.folder / "masks")) {
     if (!entry.is_regular_file()) continue;
     const fs::path name = fs::relative(entry.path(), finished.folder);

@@ -22,7 +22,7 @@
 namespace airtruth::sequence {
 namespace {
 
-constexpr int kFrames = 60;
+constexpr int kEncounterFrames = 60;
 constexpr double kRate_hz = 10;
 
 const std::string kScene =
@@ -44,7 +44,7 @@ class EncounterTruth : public testing::Test {
     synthetic::FlightOptions options;
     options.width = 160;
     options.height = 120;
-    options.frame_count = kFrames;
+    options.frame_count = kEncounterFrames;
     options.frame_rate_hz = kRate_hz;
     options.own_aircraft = false;
     VirtualFlightOptions how;
@@ -97,7 +97,7 @@ Observed observed(const std::vector<annotation::Frame>& frames, std::size_t k, s
 
 TEST_F(EncounterTruth, EveryFrameIsWhatItsNeighboursPositionsSay) {
   const auto& frames = finished_->truth.frames;
-  ASSERT_EQ(frames.size(), std::size_t{kFrames});
+  ASSERT_EQ(frames.size(), std::size_t{kEncounterFrames});
   int compared = 0;
   for (std::size_t k = 1; k + 1 < frames.size(); ++k) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -155,7 +155,7 @@ TEST_F(EncounterTruth, TheRecordHasTheClosestApproachOfTheWholePaths) {
     const auto path = path_of(scene_->intruders[i], own);
     double least_m = 1e9;
     double at_s = 0;
-    for (double t = 0; t < kFrames / kRate_hz + 180; t += 1e-3) {
+    for (double t = 0; t < kEncounterFrames / kRate_hz + 180; t += 1e-3) {
       const double distance_m =
           (path.at(t)->position_in_world - own.at(t)->position_in_world).norm();
       if (distance_m >= least_m) continue;

@@ -21,9 +21,9 @@
 namespace airtruth::sequence {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
-constexpr int kFrames = 40;
+constexpr int kPathWidth = 640;
+constexpr int kPathHeight = 480;
+constexpr int kPathFrames = 40;
 
 class StatedPath : public testing::Test {
  protected:
@@ -31,9 +31,9 @@ class StatedPath : public testing::Test {
     root_ = fs::temp_directory_path() / ("airtruth_stated_path_" + std::to_string(::getpid()));
     fs::create_directories(root_);
     synthetic::FlightOptions options;
-    options.width = kWidth;
-    options.height = kHeight;
-    options.frame_count = kFrames;
+    options.width = kPathWidth;
+    options.height = kPathHeight;
+    options.frame_count = kPathFrames;
     options.own_aircraft = false;
     flight_.emplace(options);
     VirtualFlightOptions how;
