@@ -78,15 +78,18 @@ class TruthOf : public testing::Test {
 const std::string kStill = "[motion]\nmodel = \"none\"\n";
 const std::string kSpread = "[optics]\npoint_spread_px = 0.7\n";
 
-std::string intruder(const std::string& id, const std::string& aircraft, const std::string& way) {
+std::string replayed_intruder(const std::string& id,
+                              const std::string& aircraft,
+                              const std::string& way) {
   return "[[intruder]]\nid = \"" + id + "\"\naircraft = \"" + aircraft +
          "\"\nwaypoints_ned_m = " + way + "\nspeed_mps = 60\n";
 }
 
 TEST_F(TruthOf, OneIntruderThroughAPointSpreadIsHiddenByNothing) {
   // From within the view out over its right edge.
-  const Finished finished = rendered(
-      intruder("one", "738/738-Ryanair", "[[80, 60, -150], [80, 160, -150]]"), kStill + kSpread);
+  const Finished finished =
+      rendered(replayed_intruder("one", "738/738-Ryanair", "[[80, 60, -150], [80, 160, -150]]"),
+               kStill + kSpread);
   int cut = 0;
   for (const annotation::Frame& frame : finished.truth.frames) {
     EXPECT_EQ(frame.intruders[0].hidden_by_intruder, 0) << frame.frame;
@@ -103,8 +106,8 @@ TEST_F(TruthOf, WhatHidesAnIntruderDoesNotDependOnThePointSpread) {
     for (int x = 60; x < kReplayWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
   video::write_still(root_ / "left.png", mask);
   const std::string two =
-      intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
-      intruder("near", "c172/news", "[[60, -2, -150], [60, 60, -150]]");
+      replayed_intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
+      replayed_intruder("near", "c172/news", "[[60, -2, -150], [60, 60, -150]]");
   const std::string mask_key = "mask = \"left.png\"\n";
   const Finished sharp = rendered(two, kStill, mask_key);
   const Finished soft = rendered(two, kStill + kSpread, mask_key);
@@ -135,7 +138,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
   };
   for (const char* model : {"homography", "rotation"}) {
     const Finished finished =
-        rendered(intruder("one", "738/738-Ryanair", "[[300, 20, -170], [300, 80, -175]]"),
+        rendered(replayed_intruder("one", "738/738-Ryanair", "[[300, 20, -170], [300, 80, -175]]"),
                  std::string("[motion]\nmodel = \"") + model + "\"\n");
     const lens::Lens lens = lens_of(finished.scene->lens, {kReplayWidth, kReplayHeight});
     double moved_deg = 0;
@@ -180,7 +183,8 @@ const std::string kReplayedScene =
 
 // Sharpening, noise and the codec's quantiser move samples far around; the covered box stays.
 TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {
-  const std::string one = intruder("one", "738/738-Ryanair", "[[300, -20, -170], [300, 80, -170]]");
+  const std::string one =
+      replayed_intruder("one", "738/738-Ryanair", "[[300, -20, -170], [300, 80, -170]]");
   const Finished coded = rendered(one, kReplayedScene + "codec_step = 16\n");
   const Finished plain =
       rendered(one, kStill + "[shutter]\nexposure_s = 0.01\n[optics]\npoint_spread_px = 0.8\n");
@@ -205,7 +209,7 @@ TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {
 TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
   // 0.5 px of light aircraft, seen from behind through a wide point spread.
   const Finished finished =
-      rendered(intruder("far", "c172/news", "[[1500, 0, -250], [1600, 0, -250]]"),
+      rendered(replayed_intruder("far", "c172/news", "[[1500, 0, -250], [1600, 0, -250]]"),
                kStill + "[optics]\npoint_spread_px = 2\n");
   const std::string text = read_file(finished.folder / "truth.jsonl");
   EXPECT_EQ(text.find("covered_box_px"), std::string::npos);
@@ -214,8 +218,9 @@ TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
 }
 
 TEST_F(TruthOf, TheEvisionRectangleIsTheCoveredBox) {
-  const Finished finished = rendered(
-      intruder("one", "738/738-Ryanair", "[[200, -20, -170], [200, 80, -170]]"), kReplayedScene);
+  const Finished finished =
+      rendered(replayed_intruder("one", "738/738-Ryanair", "[[200, -20, -170], [200, 80, -170]]"),
+               kReplayedScene);
   const auto evision = annotation::read_evision(finished.folder / (finished.name + ".xml"));
   ASSERT_EQ(evision.frames.size(), finished.truth.frames.size());
   for (std::size_t k = 0; k < evision.frames.size(); ++k)
@@ -230,8 +235,8 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
     for (int x = 70; x < kReplayWidth; ++x) std::fill_n(mask.at(x, y), 3, std::uint8_t{255});
   video::write_still(root_ / "own.png", mask);
   const std::string two =
-      intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
-      intruder("near", "c172/news", "[[60, -2, -150], [60, 60, -150]]");
+      replayed_intruder("far", "738/738-Ryanair", "[[160, -25, -150], [160, 60, -150]]") +
+      replayed_intruder("near", "c172/news", "[[60, -2, -150], [60, 60, -150]]");
   const Finished finished =
       rendered(two, kReplayedScene, "mask = \"own.png\"\n", "masks = true\n", 1);
   const auto record =
@@ -286,7 +291,7 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
 
 TEST_F(TruthOf, WithoutMasksThereIsNoSuchFolder) {
   const Finished finished =
-      rendered(intruder("one", "c172/news", "[[60, -2, -150], [60, 60, -150]]"), kStill);
+      rendered(replayed_intruder("one", "c172/news", "[[60, -2, -150], [60, 60, -150]]"), kStill);
   EXPECT_FALSE(fs::exists(finished.folder / "masks"));
 }
 
