@@ -111,11 +111,11 @@ function(add_wing_test target sources libraries)
   add_dependencies(${target} airtruth_children)
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_TEST_PROGRAMS ${target})
   add_test(NAME ${target} COMMAND ${target})
-  # A limit stops a test that hangs: ten times and more what the longest of its label takes on two quiet cores.
+  # A limit stops a test that hangs: ten times and more what the longest takes on two quiet cores.
   if(target MATCHES "_slow_test$")
     set_tests_properties(${target} PROPERTIES LABELS slow TIMEOUT 3600 COST 100)  # begun first, so that none is left alone at the end
   else()
-    set_tests_properties(${target} PROPERTIES LABELS fast TIMEOUT 1200)
+    set_tests_properties(${target} PROPERTIES LABELS fast TIMEOUT 3600)
   endif()
   set(environment
     "AIRTRUTH_SOURCE_DIR=${PROJECT_SOURCE_DIR}"

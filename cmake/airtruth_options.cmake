@@ -29,7 +29,7 @@ if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
 endif()
 if(AIRTRUTH_UNITY)
   # What these find between two sources that are compiled as one is no fault. The file-by-file builds keep both.
-  target_compile_options(airtruth_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+  target_compile_options(airtruth_options INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(AIRTRUTH_WERROR)
   target_compile_options(airtruth_options INTERFACE -Werror)
