@@ -10,6 +10,7 @@
 #include "picture/render/openness.h"
 #include "picture/render/openness_cache.h"
 #include "picture/render/outer_sides.h"
+#include "picture/render/shade.h"
 
 namespace airtruth::render {
 namespace {
@@ -80,7 +81,28 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
 }
 
-Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, bool is_opaque) {
+PartGeometry geometry_of(const aircraft::Mesh& mesh, const aircraft::Part& part) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  PartGeometry geometry;
+  std::vector<std::uint32_t> of_vertex(mesh.positions.size(), kNone);
+  for (const aircraft::Triangle& triangle : part.triangles) {
+    auto& vertices = geometry.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& own = of_vertex[triangle.vertex[k]];
+      if (own == kNone) {
+        own = static_cast<std::uint32_t>(geometry.positions.size());
+        geometry.positions.push_back(mesh.positions[triangle.vertex[k]]);
+      }
+      vertices[k] = own;
+    }
+  }
+  return geometry;
+}
+
+Facet facet_of(const aircraft::Mesh& mesh,
+               const aircraft::Triangle& triangle,
+               bool is_opaque,
+               bool is_even) {
   Facet facet;
   for (std::size_t k = 0; k < 3; ++k) {
     facet.corner[k] = mesh.positions[triangle.vertex[k]];
@@ -92,6 +114,10 @@ Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, b
   facet.texels_per_m = density(mesh, triangle);
   facet.material = triangle.material;
   facet.is_opaque = is_opaque;
+  facet.is_even = is_even;
+  if (is_even)
+    facet.even_opacity =
+        opacity_at(mesh, facet, mesh.materials[triangle.material], 1.0f / 3, 1.0f / 3, 0);
   return facet;
 }
 
@@ -150,13 +176,15 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
   const Device device = new_device();
   impl_->device.reset(device.device);
   impl_->opaque = opaque_triangles(mesh);
-  impl_->even = even_triangles(mesh, impl_->opaque);
+  const auto even = even_triangles(mesh, impl_->opaque);
   for (const aircraft::Part& part : mesh.parts) {
     impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
     std::vector<Facet>& facets = impl_->facets.emplace_back();
-    const std::vector<std::uint8_t>& opaque = impl_->opaque[impl_->facets.size() - 1];
+    const std::size_t p = impl_->facets.size() - 1;
     for (std::size_t i = 0; i < part.triangles.size(); ++i)
-      facets.push_back(facet_of(mesh, part.triangles[i], opaque[i] != 0));
+      facets.push_back(
+          facet_of(mesh, part.triangles[i], impl_->opaque[p][i] != 0, even[p][i] != 0));
+    impl_->geometry.push_back(geometry_of(mesh, part));
   }
   impl_->find_sphere();
   impl_->find_openness(openness_cache(cache, mesh, device.name));

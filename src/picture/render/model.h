@@ -64,6 +64,15 @@ struct Facet {
   float texels_per_m = 0;  // 0 without a texture
   std::uint32_t material = 0;
   bool is_opaque = true;
+  // Whether the opacity is the same all over the triangle, and which it is then.
+  bool is_even = true;
+  float even_opacity = 1;
+};
+
+// A part's own vertices and triangles, without what only the shading needs.
+struct PartGeometry {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 struct Model::Impl {
@@ -76,10 +85,9 @@ struct Model::Impl {
   // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
   std::vector<std::vector<Facet>> facets;  // [part][triangle]
+  std::vector<PartGeometry> geometry;      // [part]
   // By [part][triangle]; 1 where the whole triangle is opaque.
   std::vector<std::vector<std::uint8_t>> opaque;
-  // By [part][triangle]; 1 where the opacity is the same all over the triangle.
-  std::vector<std::vector<std::uint8_t>> even;
   std::vector<std::vector<TriangleOpenness>> openness;  // [part][triangle]
   std::vector<std::vector<OuterSides>> outer_sides;     // [part][triangle]: of outer_sides.h
   Eigen::Vector3d centre_in_body{0, 0, 0};

@@ -88,35 +88,19 @@ std::vector<std::vector<OuterSides>> outer_sides(const Model::Impl& model) {
   return outer;
 }
 
-HiddenTriangles::HiddenTriangles(const aircraft::Mesh& mesh,
-                                 const aircraft::Part& part,
-                                 const std::vector<OuterSides>& outer,
-                                 std::vector<Vector3> eye_in_part)
-    : mesh_(mesh), part_(part), outer_(outer), eye_in_part_(std::move(eye_in_part)) {}
-
-bool HiddenTriangles::operator()(std::size_t triangle) const {
+bool is_hidden(OuterSides outer, std::span<const double> front_to_eye, double scale) {
   // Sine of the angle between a line of sight and a triangle's plane below which rounding decides
   // which side is seen.
   constexpr double kEdgeOn = 1e-6;
-  if (outer_[triangle] == kBothSides) return false;
-  if (outer_[triangle] == kNoSide) return true;
-  const auto& [a, b, c] = part_.triangles[triangle].vertex;
-  const Vector3 p = mesh_.positions[a].cast<double>();
-  const Vector3 normal =
-      (outer_[triangle] == kFrontSide ? 1 : -1) *
-      (mesh_.positions[b].cast<double>() - p).cross(mesh_.positions[c].cast<double>() - p);
-  std::array<double, 3> height{};
+  if (outer == kBothSides) return false;
+  if (outer == kNoSide) return true;
+  const double sign = outer == kFrontSide ? 1 : -1;
   double most = -std::numeric_limits<double>::infinity();
-  double reach = 0;
-  for (std::size_t k = 0; k < eye_in_part_.size(); ++k) {
-    const Vector3 to_eye = eye_in_part_[k] - p;
-    height[k] = normal.dot(to_eye);
-    most = std::max(most, height[k]);
-    reach = std::max(reach, to_eye.norm());
-  }
+  for (const double height : front_to_eye) most = std::max(most, sign * height);
   // A parabola goes at most an eighth of the second difference beyond its values.
-  if (eye_in_part_.size() > 1) most += std::abs(height[0] - 2 * height[1] + height[2]) / 8;
-  return most < -kEdgeOn * normal.norm() * reach;
+  if (front_to_eye.size() == 3)
+    most += std::abs(front_to_eye[0] - 2 * front_to_eye[1] + front_to_eye[2]) / 8;
+  return most < -kEdgeOn * scale;
 }
 
 }  // namespace airtruth::render

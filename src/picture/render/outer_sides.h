@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "aircraft/model/mesh.h"
-#include "foundation/geometry/transform.h"
 #include "picture/render/model.h"
 
 // The sides of an aircraft's triangles that an eye outside it can see. A triangle that turns
@@ -36,25 +36,10 @@ enum OuterSides : std::uint8_t {
 // known.
 std::vector<std::vector<OuterSides>> outer_sides(const Model::Impl& model);
 
-// Which triangles of a part cannot be seen.
-class HiddenTriangles {
- public:
-  // References mesh, part and outer, the part's entry of outer_sides(). eye_in_part: at one moment
-  // or at three; the eye must be outside the aircraft.
-  HiddenTriangles(const aircraft::Mesh& mesh,
-                  const aircraft::Part& part,
-                  const std::vector<OuterSides>& outer,
-                  std::vector<Vector3> eye_in_part);
-
-  // True where a triangle has no outer side, or where its only one faces away from the eye at all
-  // moments and on the parabola between them.
-  bool operator()(std::size_t triangle) const;
-
- private:
-  const aircraft::Mesh& mesh_;
-  const aircraft::Part& part_;
-  const std::vector<OuterSides>& outer_;
-  std::vector<Vector3> eye_in_part_;
-};
+// True where an eye outside the aircraft cannot see a triangle: it has no outer side, or its only one
+// faces away at all moments and on the parabola between them. front_to_eye: the product of the
+// front's normal and the vector from the triangle to the eye, at one moment or at three. `scale`: of
+// the lengths of both.
+bool is_hidden(OuterSides outer, std::span<const double> front_to_eye, double scale);
 
 }  // namespace airtruth::render

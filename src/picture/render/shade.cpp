@@ -8,21 +8,26 @@
 
 namespace airtruth::render {
 
-float opacity_at(const Placed& placed, const Hit& hit, float footprint_m) {
-  const aircraft::Mesh& mesh = placed.model->mesh;
-  const Facet& facet = placed.facet(hit);
+float opacity_at(const aircraft::Mesh& mesh,
+                 const Facet& facet,
+                 const aircraft::Material& material,
+                 float u,
+                 float v,
+                 float footprint_m) {
   if (facet.is_opaque) return 1;
-  const aircraft::Material& material = placed.material(facet);
   const bool textured = material.texture >= 0 &&
                         mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
   const float alpha =
-      material.opacity * (textured ? Skin(mesh, facet, footprint_m).texel(hit.u, hit.v)[3] : 1.0f);
+      material.opacity * (textured ? Skin(mesh, facet, footprint_m).texel(u, v)[3] : 1.0f);
   return alpha >= aircraft::kOpaque ? 1.0f : alpha;
 }
 
-Surface surface_at(const Placed& placed, const Eigen::Vector3f& view, const Hit& hit) {
+Surface surface_at(const Placed& placed,
+                   const Eigen::Affine3f& body_from_part,
+                   const Eigen::Vector3f& view,
+                   const Hit& hit) {
   const Facet& facet = placed.facet(hit);
-  const auto linear = placed.body_from_part[static_cast<std::size_t>(hit.part)].linear();
+  const auto linear = body_from_part.linear();
   Surface surface;
   surface.view = view;
   surface.face = linear * facet.face;
@@ -187,29 +192,6 @@ Rgb colour_of(const aircraft::Material& material,
   const float sun = in_shadow ? 0 : sunlit.sun;
   return light.surroundings ? coated(material, texel, around, sunlit, cosine, sun, light)
                             : as_opengl(material, texel, around, sunlit, sun, light);
-}
-
-std::array<float, 3> shade(const Placed& placed,
-                           const BodyRay& ray,
-                           const Hit& hit,
-                           const Light& light,
-                           float footprint_m) {
-  const Facet& facet = placed.facet(hit);
-  const aircraft::Material& material = placed.material(facet);
-  const Surface surface = surface_at(placed, ray.direction, hit);
-  const Sunlit sunlit = sunlit_at(placed, surface, material);
-  bool in_shadow = true;
-  if (sunlit.sun > 0) {
-    const BodyRay to_sun = to_sun_from(placed, ray.origin + hit.t * ray.direction, surface);
-    in_shadow = is_blocked(*placed.model, to_sun.origin, to_sun.direction);
-  }
-  return colour_of(material,
-                   Skin(placed.model->mesh, facet, footprint_m).albedo(hit.u, hit.v),
-                   around_at(placed, surface, hit, light),
-                   sunlit,
-                   surface.cosine,
-                   in_shadow,
-                   light);
 }
 
 }  // namespace airtruth::render

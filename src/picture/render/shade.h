@@ -11,7 +11,6 @@
 #include "picture/render/coat.h"
 #include "picture/render/model.h"
 #include "picture/render/skin.h"
-#include "picture/render/swing.h"
 
 namespace airtruth::render {
 
@@ -21,18 +20,16 @@ struct BodyRay {
   Eigen::Vector3f direction;  // unit
 };
 
-// An instance with the transforms that ray queries need.
+// An instance as the shading uses it.
 struct Placed {
   const Model::Impl* model = nullptr;
   Eigen::Vector3f to_sun_in_body{0, 0, -1};
   Eigen::Vector3f up_in_body{0, 0, -1};
   // Light::surroundings by directions in body.
   std::optional<Environment> surroundings;
-  double time_s = 0;
-  std::vector<Eigen::Affine3f> part_from_body;  // at that time
+  // By part in the middle of the patch's span, then those of parts that turn, in the middle of each
+  // of their spans.
   std::vector<Eigen::Affine3f> body_from_part;
-  // By part; without moments for a part that does not swing, and where the span is an instant.
-  std::vector<SwingTable> swings;
 
   const Facet& facet(const Hit& hit) const {
     return model->facets[static_cast<std::size_t>(hit.part)][hit.triangle];
@@ -42,8 +39,13 @@ struct Placed {
   }
 };
 
-// Opacity of the surface at a hit, texture included.
-float opacity_at(const Placed& placed, const Hit& hit, float footprint_m);
+// Opacity of a triangle at barycentric weights, texture included.
+float opacity_at(const aircraft::Mesh& mesh,
+                 const Facet& facet,
+                 const aircraft::Material& material,
+                 float u,
+                 float v,
+                 float footprint_m);
 
 // A point of the surface in body coordinates, as the shading uses it. Both sides of a surface are
 // lit.
@@ -58,7 +60,11 @@ struct Surface {
   // The cosine between the view and the normal.
   float cosine = 1;
 };
-Surface surface_at(const Placed& placed, const Eigen::Vector3f& view, const Hit& hit);
+// body_from_part: of the hit part.
+Surface surface_at(const Placed& placed,
+                   const Eigen::Affine3f& body_from_part,
+                   const Eigen::Vector3f& view,
+                   const Hit& hit);
 
 // The light of the surroundings at a point of a surface.
 struct Around {
@@ -98,12 +104,5 @@ Rgb colour_of(const aircraft::Material& material,
               float cosine,
               bool in_shadow,
               const Light& light);
-
-// The light of a surface at a hit, with the aircraft's own shadow.
-std::array<float, 3> shade(const Placed& placed,
-                           const BodyRay& ray,
-                           const Hit& hit,
-                           const Light& light,
-                           float footprint_m);
 
 }  // namespace airtruth::render
