@@ -36,10 +36,10 @@ enum OuterSides : std::uint8_t {
 // known.
 std::vector<std::vector<OuterSides>> outer_sides(const Model::Impl& model);
 
-// True where an eye outside the aircraft cannot see a triangle: it has no outer side, or its only one
-// faces away at all moments and on the parabola between them. front_to_eye: the product of the
-// front's normal and the vector from the triangle to the eye, at one moment or at three. `scale`: of
-// the lengths of both.
+// True where an eye outside the aircraft cannot see a triangle: it has no outer side, or its only
+// one faces away at all moments and on the parabola between them. front_to_eye: the product of the
+// front's normal and the vector from the triangle to the eye, at one moment or at three. `scale`:
+// of the lengths of both.
 bool is_hidden(OuterSides outer, std::span<const double> front_to_eye, double scale);
 
 }  // namespace airtruth::render

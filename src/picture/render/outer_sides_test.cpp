@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/render/outer_sides.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -120,32 +121,47 @@ TEST(OuterSides, AreBothOfASurfaceWithOneSideOnly) {
   EXPECT_EQ(from(outer_of(mesh), 12), Outer(24, kBothSides));
 }
 
-TEST(HiddenTriangles, OfACubeAreThoseThatFaceAway) {
-  const aircraft::Mesh mesh = cube();
-  const Outer outer(12, kFrontSide);
-  // The eye is before the side x = 1 and above none of the others.
-  const HiddenTriangles from_front(mesh, mesh.parts[0], outer, {Vector3(5, 0.5, -0.5)});
-  for (std::size_t t = 0; t < 12; ++t) EXPECT_EQ(from_front(t), t / 2 != 1) << t;
-  // It moves from before the side x = 1 to before the side y = 1: both are left at all times.
-  const HiddenTriangles around(
-      mesh, mesh.parts[0], outer, {Vector3(5, 0, 0), Vector3(4, 4, 0), Vector3(0, 5, 0)});
-  for (std::size_t t = 0; t < 12; ++t) EXPECT_EQ(around(t), t / 2 != 1 && t / 2 != 3) << t;
+// Whether an eye at one place or at three cannot see a triangle.
+bool is_hidden_from(const aircraft::Mesh& mesh,
+                    const aircraft::Triangle& triangle,
+                    OuterSides outer,
+                    const std::vector<Vector3>& eyes) {
+  const auto& [a, b, c] = triangle.vertex;
+  const Vector3 p = mesh.positions[a].cast<double>();
+  const Vector3 front =
+      (mesh.positions[b].cast<double>() - p).cross(mesh.positions[c].cast<double>() - p);
+  std::vector<double> front_to_eye;
+  double scale = 0;
+  for (const Vector3& eye : eyes) {
+    front_to_eye.push_back(front.dot(eye - p));
+    scale = std::max(scale, front.norm() * (eye - p).norm());
+  }
+  return is_hidden(outer, front_to_eye, scale);
 }
 
-TEST(HiddenTriangles, AreAllWithoutAnOuterSideAndNoneWithBoth) {
+TEST(IsHidden, OfACubeAreThoseThatFaceAway) {
   const aircraft::Mesh mesh = cube();
-  const Outer without(12, kNoSide);
-  const Outer with_both(12, kBothSides);
-  const HiddenTriangles all(mesh, mesh.parts[0], without, {Vector3(5, 0, 0)});
-  const HiddenTriangles none(mesh, mesh.parts[0], with_both, {Vector3(5, 0, 0)});
+  // The eye is before the side x = 1 and above none of the others; or it moves from before the side
+  // x = 1 to before the side y = 1: both are left at all times.
+  const std::vector<Vector3> before = {Vector3(5, 0.5, -0.5)};
+  const std::vector<Vector3> around = {Vector3(5, 0, 0), Vector3(4, 4, 0), Vector3(0, 5, 0)};
   for (std::size_t t = 0; t < 12; ++t) {
-    EXPECT_TRUE(all(t)) << t;
-    EXPECT_FALSE(none(t)) << t;
+    const aircraft::Triangle& triangle = mesh.parts[0].triangles[t];
+    EXPECT_EQ(is_hidden_from(mesh, triangle, kFrontSide, before), t / 2 != 1) << t;
+    EXPECT_EQ(is_hidden_from(mesh, triangle, kFrontSide, around), t / 2 != 1 && t / 2 != 3) << t;
+  }
+}
+
+TEST(IsHidden, IsAllWithoutAnOuterSideAndNoneWithBoth) {
+  const aircraft::Mesh mesh = cube();
+  for (const aircraft::Triangle& triangle : mesh.parts[0].triangles) {
+    EXPECT_TRUE(is_hidden_from(mesh, triangle, kNoSide, {Vector3(5, 0, 0)}));
+    EXPECT_FALSE(is_hidden_from(mesh, triangle, kBothSides, {Vector3(5, 0, 0)}));
   }
 }
 
 // Embree's nearest hit of rays from all around never is a triangle that is left out.
-TEST(HiddenTriangles, AreNotMetByRaysFromOutside) {
+TEST(IsHidden, IsNoTriangleThatRaysFromOutsideMeet) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   for (const char* name :
@@ -163,11 +179,12 @@ TEST(HiddenTriangles, AreNotMetByRaysFromOutside) {
           impl, eye.cast<float>(), (aim - eye).normalized().cast<float>(), INFINITY);
       if (!hit) continue;
       const auto part = static_cast<std::size_t>(hit->part);
-      const HiddenTriangles is_hidden(
-          impl.mesh, impl.mesh.parts[part], impl.outer_sides[part], {eye});
-      EXPECT_FALSE(is_hidden(hit->triangle)) << name << ", triangle " << hit->triangle;
+      const OuterSides outer = impl.outer_sides[part][hit->triangle];
+      EXPECT_FALSE(
+          is_hidden_from(impl.mesh, impl.mesh.parts[part].triangles[hit->triangle], outer, {eye}))
+          << name << ", triangle " << hit->triangle;
       ++hits;
-      of_one_side += impl.outer_sides[part][hit->triangle] != kBothSides;
+      of_one_side += outer != kBothSides;
     }
     EXPECT_GT(hits, 500) << name;
     EXPECT_GT(of_one_side, 100) << name;

@@ -23,10 +23,8 @@ const ScreenBounds kWholeFrame{-kEverywhere, -kEverywhere, kEverywhere, kEverywh
 
 ScreenBounds mixed(const ScreenBounds& a, const ScreenBounds& b, float share) {
   const auto mean = [&](float p, float q) { return p == q ? p : p + share * (q - p); };
-  return {mean(a.left, b.left),
-          mean(a.top, b.top),
-          mean(a.right, b.right),
-          mean(a.bottom, b.bottom)};
+  return {
+      mean(a.left, b.left), mean(a.top, b.top), mean(a.right, b.right), mean(a.bottom, b.bottom)};
 }
 
 ScreenBounds united(const ScreenBounds& a, const ScreenBounds& b) {
@@ -100,7 +98,10 @@ ScreenBounds bounds_before_plane(const Corners& corners, const Projection& proje
 
 // How far the picture of a straight side may be from the line between its ends: twice the deviation
 // of the middle of its picture. Negative where that has no pixel.
-double bend_px(const Vector3& from, const Vector3& to, const Pixel& a, const Pixel& b,
+double bend_px(const Vector3& from,
+               const Vector3& to,
+               const Pixel& a,
+               const Pixel& b,
                const Projection& projection) {
   const auto middle = projection.pixel(from.normalized() + to.normalized());
   if (!middle) return -1;
@@ -166,13 +167,13 @@ class RayTriangles::Projected {
     for (std::size_t k = 0; k < (span.is_instant() ? 1U : 3U); ++k) {
       const double dt_s = span.is_instant() ? span.begin_s : span.at(static_cast<int>(k));
       const View then = view.at(dt_s);
-      const Rigid cam_from_body = then.world_from_cam.inverse() *
-                                  carried(instance.world_from_body, instance.twist, dt_s);
-      Eigen::Affine3d cam_from_part = Eigen::Translation3d(cam_from_body.translation) *
-                                      Eigen::Affine3d(cam_from_body.rotation);
+      const Rigid cam_from_body =
+          then.world_from_cam.inverse() * carried(instance.world_from_body, instance.twist, dt_s);
+      Eigen::Affine3d cam_from_part =
+          Eigen::Translation3d(cam_from_body.translation) * Eigen::Affine3d(cam_from_body.rotation);
       if (source.moves())
-        cam_from_part = cam_from_part *
-                        aircraft::body_from_part(source, instance.time_s + dt_s).cast<double>();
+        cam_from_part =
+            cam_from_part * aircraft::body_from_part(source, instance.time_s + dt_s).cast<double>();
       views_.emplace_back(then);
       std::vector<Vector3>& in_cam = in_cam_.emplace_back();
       in_cam.reserve(part_.positions.size());
@@ -262,8 +263,8 @@ class RayTriangles::Projected {
     const Corners in_cam = corners(triangle, k);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
-      const double bend = bend_px(in_cam[i], in_cam[j], pixels_[vertices[i]].at[k],
-                                  pixels_[vertices[j]].at[k], projection);
+      const double bend = bend_px(
+          in_cam[i], in_cam[j], pixels_[vertices[i]].at[k], pixels_[vertices[j]].at[k], projection);
       if (bend < 0) return kWholeFrame;
       margin_px = std::max(margin_px, static_cast<float>(bend));
     }
@@ -297,9 +298,8 @@ struct Moment {
     const double a = p[0].norm();
     const double b = p[1].norm();
     const double c = p[2].norm();
-    const double longest =
-        std::sqrt(std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(),
-                            (p[0] - p[2]).squaredNorm()}));
+    const double longest = std::sqrt(std::max(
+        {(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()}));
     // No point is nearer than the plane, nor farther from a corner than the longest side.
     const double normal_m2 = normal.norm();
     const double plane_m = normal_m2 > 0 ? std::abs(determinant) / normal_m2 : 0;
@@ -322,8 +322,7 @@ RayTriangles::RayTriangles(const View& view,
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     if (!instances[i].pixels) continue;
     const std::size_t parts = instances[i].placed.model->mesh.parts.size();
-    for (std::uint32_t part = 0; part < parts; ++part)
-      add_part(view, span, instances[i], i, part);
+    for (std::uint32_t part = 0; part < parts; ++part) add_part(view, span, instances[i], i, part);
   }
   sort_into_rows();
 }
@@ -365,8 +364,8 @@ void RayTriangles::add(const Projected& projected, std::size_t t, RayTriangle re
   Thrice<Moment> of_moment;
   const auto moments = std::span(of_moment).first(projected.moments());
   for (std::size_t k = 0; k < moments.size(); ++k) moments[k] = Moment(projected.corners(t, k));
-  const auto [least, most] = std::minmax_element(
-      moments.begin(), moments.end(), [](const Moment& a, const Moment& b) {
+  const auto [least, most] =
+      std::minmax_element(moments.begin(), moments.end(), [](const Moment& a, const Moment& b) {
         return a.determinant < b.determinant;
       });
   // A triangle that is seen edge-on covers nothing.
@@ -424,8 +423,8 @@ void RayTriangles::sort_into_rows() {
       const auto i = static_cast<std::uint32_t>(key);
       const ScreenBounds& bounds = all_[i].over_all;
       const auto row = [&](float y, int most) {
-        return static_cast<int>(std::clamp(y - static_cast<float>(patch_.y), 0.0f,
-                                           static_cast<float>(most)));
+        return static_cast<int>(
+            std::clamp(y - static_cast<float>(patch_.y), 0.0f, static_cast<float>(most)));
       };
       const int last = row(std::floor(bounds.bottom), patch_.height - 1);
       for (int y = row(std::floor(bounds.top), patch_.height - 1); y <= last; ++y)

@@ -23,10 +23,10 @@
 //
 //   1 / s = d . m,   m = (b x c + c x a + a x b) / (a . (b x c))
 //
-// and the edge functions are in the ratio of the barycentric weights of a, b and c. During a span of
-// time the corners move along parabolas, and so do the four vectors to within the third order of the
-// angles by which they move. A part that turns is divided into spans in each of which it turns by
-// little.
+// and the edge functions are in the ratio of the barycentric weights of a, b and c. During a span
+// of time the corners move along parabolas, and so do the four vectors to within the third order of
+// the angles by which they move. A part that turns is divided into spans in each of which it turns
+// by little.
 namespace airtruth::render {
 
 // An aircraft of a frame.

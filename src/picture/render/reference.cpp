@@ -40,9 +40,12 @@ class Then {
       body_from_part_.push_back(aircraft::body_from_part(part, instance.time_s + dt_s));
   }
 
-  // Appends the surfaces that the ray through a point of the frame meets. Returns the share of light
-  // that they stop.
-  double collect(const Pixel& at, double footprint_rad, std::size_t index, std::vector<Fragment>& fragments) const {
+  // Appends the surfaces that the ray through a point of the frame meets. Returns the share of
+  // light that they stop.
+  double collect(const Pixel& at,
+                 double footprint_rad,
+                 std::size_t index,
+                 std::vector<Fragment>& fragments) const {
     // A step beyond a translucent surface, in metres, and the most of those along one ray.
     constexpr float kStepM = 1e-4f;
     constexpr int kMostLayers = 24;
@@ -57,8 +60,12 @@ class Then {
       if (!hit) break;
       const Facet& facet = placed_.placed.facet(*hit);
       const double distance_m = start_m_ + static_cast<double>(hit->t);
-      const float alpha = opacity_at(model.mesh, facet, placed_.placed.material(facet), hit->u,
-                                     hit->v, static_cast<float>(distance_m * footprint_rad));
+      const float alpha = opacity_at(model.mesh,
+                                     facet,
+                                     placed_.placed.material(facet),
+                                     hit->u,
+                                     hit->v,
+                                     static_cast<float>(distance_m * footprint_rad));
       if (alpha > 0) fragments.push_back({distance_m, index, alpha, *hit});
       through *= 1 - static_cast<double>(alpha);
       if (alpha >= 1) break;
@@ -67,23 +74,32 @@ class Then {
     return 1 - through;
   }
 
-  Rgb colour(const Pixel& at, const Fragment& fragment, double footprint_rad, const Light& light) const {
+  Rgb colour(const Pixel& at,
+             const Fragment& fragment,
+             double footprint_rad,
+             const Light& light) const {
     const BodyRay ray = ray_of(ray_in_cam(view_, at));
     const Placed& placed = placed_.placed;
     const Hit& hit = fragment.hit;
     const Facet& facet = placed.facet(hit);
     const aircraft::Material& material = placed.material(facet);
-    const Surface surface = surface_at(placed, body_from_part_[static_cast<std::size_t>(hit.part)],
-                                       ray.direction, hit);
+    const Surface surface =
+        surface_at(placed, body_from_part_[static_cast<std::size_t>(hit.part)], ray.direction, hit);
     const Sunlit sunlit = sunlit_at(placed, surface, material);
     bool in_shadow = true;
     if (sunlit.sun > 0) {
       const BodyRay to_sun = to_sun_from(placed, ray.origin + hit.t * ray.direction, surface);
       in_shadow = is_blocked(*placed.model, to_sun.origin, to_sun.direction);
     }
-    const Skin skin(placed.model->mesh, facet, static_cast<float>(fragment.distance_m * footprint_rad));
-    return colour_of(material, skin.albedo(hit.u, hit.v), around_at(placed, surface, hit, light),
-                     sunlit, surface.cosine, in_shadow, light);
+    const Skin skin(
+        placed.model->mesh, facet, static_cast<float>(fragment.distance_m * footprint_rad));
+    return colour_of(material,
+                     skin.albedo(hit.u, hit.v),
+                     around_at(placed, surface, hit, light),
+                     sunlit,
+                     surface.cosine,
+                     in_shadow,
+                     light);
   }
 
  private:
@@ -120,8 +136,7 @@ void blend(std::vector<Fragment>& fragments,
     pixel.distance_m += share * fragment.distance_m;
     if (light != nullptr) {
       const Rgb rgb = now[fragment.instance].colour(at, fragment, footprint_rad, *light);
-      for (std::size_t c = 0; c < 3; ++c)
-        pixel.rgb[c] += through * static_cast<double>(rgb[c]);
+      for (std::size_t c = 0; c < 3; ++c) pixel.rgb[c] += through * static_cast<double>(rgb[c]);
     }
     through *= 1 - static_cast<double>(fragment.alpha);
     if (through <= 0) break;
@@ -164,8 +179,8 @@ TracedPixel trace_pixel(const View& view,
     fragments.clear();
     for (std::size_t a = 0; a < instances.size(); ++a)
       if (instances[a].pixels && instances[a].pixels->contains(x, y))
-        pixel.alone[a] += now[a].collect(at, kOpacityShare * pixel_rad, a, fragments) /
-                          PixelSamples::kMost;
+        pixel.alone[a] +=
+            now[a].collect(at, kOpacityShare * pixel_rad, a, fragments) / PixelSamples::kMost;
     if (fragments.empty()) continue;
     const bool shades = shaded < kShaded;
     const double before = pixel.alpha;
@@ -176,8 +191,7 @@ TracedPixel trace_pixel(const View& view,
   }
   // The shaded samples stand for all.
   if (shaded_alpha > 0)
-    for (double& channel : pixel.rgb)
-      channel *= pixel.alpha / (shaded_alpha * PixelSamples::kMost);
+    for (double& channel : pixel.rgb) channel *= pixel.alpha / (shaded_alpha * PixelSamples::kMost);
   return pixel;
 }
 

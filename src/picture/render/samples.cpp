@@ -43,7 +43,9 @@ constexpr SobolPoint sobol_point(std::uint32_t n) {
   return point;
 }
 
-constexpr int strata_of(int n) { return n >= 256 ? Samples::kMostStrata : Samples::kMostStrata / 4; }
+constexpr int strata_of(int n) {
+  return n >= 256 ? Samples::kMostStrata : Samples::kMostStrata / 4;
+}
 
 // The first n points, by their stratum of one dimension before the scrambling.
 struct SortedPoints {

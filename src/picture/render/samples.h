@@ -24,8 +24,9 @@ struct Samples {
 };
 
 // The sample points of a pixel: the three-dimensional Sobol sequence (Sobol 1967), two dimensions
-// for the place and one for the time, xor-scrambled by the pixel (Kollig and Keller 2002). Any power
-// of two of its places is a (0, 2)-net, which keeps the error at an edge small for every slope.
+// for the place and one for the time, xor-scrambled by the pixel (Kollig and Keller 2002). Any
+// power of two of its places is a (0, 2)-net, which keeps the error at an edge small for every
+// slope.
 class PixelSamples {
  public:
   // Largest number of points.

@@ -39,14 +39,12 @@ PixelShading::Lit PixelShading::lit_at(const Visibility& seen,
   const Eigen::Affine3f& body_from_part = placed.body_from_part[triangle.pose];
   lit.in_body = body_from_part * Eigen::Vector3f((1 - u - v) * facet.corner[0] +
                                                  u * facet.corner[1] + v * facet.corner[2]);
-  const double span_u =
-      rays_.span().u(rays_.middle_s(x, y) +
-                     0.5 * rays_.exposure_s() * static_cast<double>(visible.middle.t));
+  const double span_u = rays_.span().u(
+      rays_.middle_s(x, y) + 0.5 * rays_.exposure_s() * static_cast<double>(visible.middle.t));
   const Thrice<Vector3>& eye = lit.placed->eye_in_body;
   const Vector3 from_eye =
       lit.in_body.cast<double>() - (eye[0] + span_u * (eye[1] + span_u * eye[2]));
-  lit.surface =
-      surface_at(placed, body_from_part, from_eye.normalized().cast<float>(), lit.hit);
+  lit.surface = surface_at(placed, body_from_part, from_eye.normalized().cast<float>(), lit.hit);
   lit.sunlit = sunlit_at(placed, lit.surface, placed.material(facet));
   lit.in_shadow = true;
   return lit;
@@ -68,8 +66,7 @@ void PixelShading::find_shadows() {
     }
     blocked_.resize(to_sun_.size());
     find_blocked(*model, to_sun_, blocked_);
-    for (std::size_t k = 0; k < of_ray_.size(); ++k)
-      lit_[of_ray_[k]].in_shadow = blocked_[k] != 0;
+    for (std::size_t k = 0; k < of_ray_.size(); ++k) lit_[of_ray_[k]].in_shadow = blocked_[k] != 0;
     first = i;
   }
 }
@@ -80,10 +77,10 @@ Texel PixelShading::albedo_of(const Visibility& seen, const Lit& lit) const {
   if (placed.material(facet).texture < 0) return {1, 1, 1, 1};
   const VisibleSurface& visible = *lit.visible;
   const std::size_t reads = visible.end_read - visible.first_read;
-  const float share =
-      visible.light / static_cast<float>(seen.result().samples) / static_cast<float>(std::max<std::size_t>(reads, 1));
-  const Skin skin(placed.model->mesh, facet,
-                  lit.distance_m * seen.ray().pixel_rad() * std::sqrt(share));
+  const float share = visible.light / static_cast<float>(seen.result().samples) /
+                      static_cast<float>(std::max<std::size_t>(reads, 1));
+  const Skin skin(
+      placed.model->mesh, facet, lit.distance_m * seen.ray().pixel_rad() * std::sqrt(share));
   if (reads == 0) return skin.albedo(lit.hit.u, lit.hit.v);
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (std::uint32_t i = visible.first_read; i < visible.end_read; ++i) {

@@ -74,7 +74,12 @@ template <int kTerms>
     // Floats that are not negative have the order of their bits, and the least of whole numbers may
     // be found by vectors.
     std::int32_t least = 0x7f800000;
-    each_sample<kTerms>(functions, farthest, nearest, buffer.samples, s * each, (s + 1) * each,
+    each_sample<kTerms>(functions,
+                        farthest,
+                        nearest,
+                        buffer.samples,
+                        s * each,
+                        (s + 1) * each,
                         [&](int i, bool inside, float here) {
                           const bool in_front = inside & (here > depth[i]);
                           const float now = in_front ? here : depth[i];
@@ -88,18 +93,27 @@ template <int kTerms>
 }
 
 AIRTRUTH_FOR_SHORT_VECTORS
-void keep_nearest_still(const PixelFunctions& functions, float farthest, float nearest,
-                        std::int32_t who, const Buffer& buffer) {
+void keep_nearest_still(const PixelFunctions& functions,
+                        float farthest,
+                        float nearest,
+                        std::int32_t who,
+                        const Buffer& buffer) {
   keep_nearest_of<3>(functions, farthest, nearest, who, buffer);
 }
 AIRTRUTH_FOR_SHORT_VECTORS
-void keep_nearest_uniform(const PixelFunctions& functions, float farthest, float nearest,
-                          std::int32_t who, const Buffer& buffer) {
+void keep_nearest_uniform(const PixelFunctions& functions,
+                          float farthest,
+                          float nearest,
+                          std::int32_t who,
+                          const Buffer& buffer) {
   keep_nearest_of<4>(functions, farthest, nearest, who, buffer);
 }
 AIRTRUTH_FOR_SHORT_VECTORS
-void keep_nearest_moving(const PixelFunctions& functions, float farthest, float nearest,
-                         std::int32_t who, const Buffer& buffer) {
+void keep_nearest_moving(const PixelFunctions& functions,
+                         float farthest,
+                         float nearest,
+                         std::int32_t who,
+                         const Buffer& buffer) {
   keep_nearest_of<7>(functions, farthest, nearest, who, buffer);
 }
 
@@ -114,10 +128,10 @@ void find_fragments(const PixelFunctions& functions_of_triangle,
                     const float* __restrict depth,
                     float* __restrict fragment) {
   const PixelFunctions functions = functions_of_triangle;
-  each_sample<7>(functions, farthest, nearest, samples, from, to,
-                 [&](int i, bool inside, float here) {
-                   fragment[i] = inside & (here > depth[i]) ? here : 0.0f;
-                 });
+  each_sample<7>(
+      functions, farthest, nearest, samples, from, to, [&](int i, bool inside, float here) {
+        fragment[i] = inside & (here > depth[i]) ? here : 0.0f;
+      });
 }
 
 // True where a pixel's motion is uniform to within a fiftieth of a pixel, so that the terms of
@@ -358,9 +372,9 @@ template <typename Shares, typename Of>
 std::array<int, 2> strata_of(const Shares& span, const Of& candidate, int strata) {
   const auto all = static_cast<float>(strata);
   const auto whole = [&](float at) { return static_cast<int>(std::clamp(at, 0.0f, all)); };
-  return {std::max(whole(std::ceil(span.from * all - 0.5f)),
-                   whole(std::floor(candidate.from * all))),
-          std::min(whole(std::ceil(span.to * all - 0.5f)), whole(std::ceil(candidate.to * all)))};
+  return {
+      std::max(whole(std::ceil(span.from * all - 0.5f)), whole(std::floor(candidate.from * all))),
+      std::min(whole(std::ceil(span.to * all - 0.5f)), whole(std::ceil(candidate.to * all)))};
 }
 
 }  // namespace
@@ -372,7 +386,9 @@ void Visibility::keep_nearest(std::size_t in_pixel,
   const auto keep = !by_time_              ? keep_nearest_still
                     : candidate.is_uniform ? keep_nearest_uniform
                                            : keep_nearest_moving;
-  keep(functions_[in_pixel], triangle.farthest, triangle.nearest,
+  keep(functions_[in_pixel],
+       triangle.farthest,
+       triangle.nearest,
        static_cast<std::int32_t>(in_pixel),
        {samples_, from, to, inverse_depth_.data(), nearest_.data(), hidden_.data()});
 }
@@ -387,8 +403,14 @@ void Visibility::add_fragments(std::size_t in_pixel,
   layer.in_pixel = in_pixel;
   const int each = samples_.of_stratum();
   std::fill_n(layer.inverse_depth.begin(), samples_.count, 0.0f);
-  find_fragments(functions_[in_pixel], triangle.farthest, triangle.nearest, samples_, from * each,
-                 to * each, inverse_depth_.data(), layer.inverse_depth.data());
+  find_fragments(functions_[in_pixel],
+                 triangle.farthest,
+                 triangle.nearest,
+                 samples_,
+                 from * each,
+                 to * each,
+                 inverse_depth_.data(),
+                 layer.inverse_depth.data());
 }
 
 void Visibility::resolve(std::span<const std::uint32_t> list) {
@@ -405,8 +427,8 @@ void Visibility::resolve(std::span<const std::uint32_t> list) {
 void Visibility::add(std::size_t in_pixel, float weight, float light, std::size_t sample) {
   Sum& sum = sums_[in_pixel];
   const int stride = std::max(1, samples_.count / kReads);
-  sum.weight += weight;
-  sum.light += light;
+  sum.weight += static_cast<double>(weight);
+  sum.light += static_cast<double>(light);
   sum.one = static_cast<std::uint32_t>(sample);
   if (sum.samples++ % stride == stride / 2)
     read_.push_back({static_cast<std::uint32_t>(in_pixel), static_cast<std::uint32_t>(sample)});
@@ -424,7 +446,7 @@ void Visibility::resolve_opaque() {
     if ((sum.samples++ & (stride - 1)) == stride / 2)
       read_.push_back({static_cast<std::uint32_t>(who), static_cast<std::uint32_t>(i)});
   }
-  for (Sum& sum : sums_) sum.weight = sum.light = static_cast<float>(sum.samples);
+  for (Sum& sum : sums_) sum.weight = sum.light = sum.samples;
 }
 
 float Visibility::opacity_of(const RayTriangle& triangle,
@@ -440,7 +462,11 @@ float Visibility::opacity_of(const RayTriangle& triangle,
   const float distance_m = 1 / std::clamp(f[3], triangle.farthest, triangle.nearest);
   // Footprint of one of the many samples, as a share of the pixel's side.
   constexpr float kSampleShare = 0.25f;
-  return opacity_at(placed.placed.model->mesh, facet, material, f[1] / sum, f[2] / sum,
+  return opacity_at(placed.placed.model->mesh,
+                    facet,
+                    material,
+                    f[1] / sum,
+                    f[2] / sum,
                     kSampleShare * distance_m * ray_.pixel_rad());
 }
 
@@ -472,9 +498,9 @@ void Visibility::finish(std::span<const std::uint32_t> list) {
     VisibleSurface surface;
     surface.triangle = list[i];
     surface.in_pixel = static_cast<std::uint32_t>(i);
-    surface.weight = sum.weight;
-    surface.light = sum.light;
-    result_.alpha += static_cast<double>(sum.weight);
+    surface.weight = static_cast<float>(sum.weight);
+    surface.light = static_cast<float>(sum.light);
+    result_.alpha += sum.weight;
     const std::uint32_t instance = triangles_.all()[list[i]].instance;
     if (result_.surfaces.empty()) full_of_ = instance;
     is_one = is_one && instance == full_of_ && layer_count_ == 0;

@@ -12,9 +12,9 @@
 
 // What a pixel's samples see. The triangles over the pixel, nearest first, are tested against the
 // samples by their edge functions (Pineda 1988, "A parallel algorithm for polygon rasterization");
-// a visibility buffer keeps the nearest opaque one of each sample with its inverse distance (Catmull
-// 1974). Translucent triangles before it are kept as fragments of the sample and blended in the
-// order of their distance (the A-buffer: Carpenter 1984).
+// a visibility buffer keeps the nearest opaque one of each sample with its inverse distance
+// (Catmull 1974). Translucent triangles before it are kept as fragments of the sample and blended
+// in the order of their distance (the A-buffer: Carpenter 1984).
 //
 // Over a pixel and its exposure the edge functions are of the form
 //
@@ -33,7 +33,10 @@ struct PixelFunctions {
   }
 };
 // `u`: the middle of the pixel's exposure in the triangle's span; `half_u`: half of the exposure.
-PixelFunctions functions_over(const RayTriangle& triangle, const PixelRay& ray, float u, float half_u);
+PixelFunctions functions_over(const RayTriangle& triangle,
+                              const PixelRay& ray,
+                              float u,
+                              float half_u);
 
 // A place and a time in a pixel, as in Samples.
 struct PixelPlace {
@@ -165,7 +168,7 @@ class Visibility {
   // By the index in the pixel's list: what a triangle contributes, how many samples see it, and one
   // of those.
   struct Sum {
-    float weight = 0, light = 0;
+    double weight = 0, light = 0;
     int samples = 0;
     std::uint32_t one = 0;
   };
