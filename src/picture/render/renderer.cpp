@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "foundation/base/error.h"
@@ -57,10 +57,14 @@ class Painter {
   }
 
  private:
-  // What a pixel's first samples see: nothing, one opaque aircraft (kFull + its index), or more.
-  static constexpr std::uint32_t kEmpty = 0;
-  static constexpr std::uint32_t kMixed = 1;
-  static constexpr std::uint32_t kFull = 2;
+  // What a thread keeps from one pixel to the next.
+  struct Scratch {
+    Visibility seen;
+    PixelShading shading;
+    // Of a pixel, by instance.
+    std::vector<double> coverage;
+    std::vector<double> alone;
+  };
 
   template <typename Row>
   void each_row(const Row& row) {
@@ -78,63 +82,35 @@ class Painter {
     });
   }
 
-  // All pixels are looked at by few samples: those on an outline at once by many, and the others by
-  // many where they are beside one.
   void rasterise(const SampleCounts& counts) {
     const PixelBox& patch = layer_.patch;
     const RayTriangles triangles(view_, patch, rays_.span(), instances_);
-    std::vector<std::uint32_t> kinds(layer_.pixels.size(), kEmpty);
-    each_row([&](int y) {
-      const auto seen = std::make_unique<Visibility>(triangles, instances_, rays_);
-      PixelShading shading(triangles, instances_, rays_, light_);
-      seen->begin_row(y, patch.x, patch.right());
-      for (int x = patch.x; x < patch.right(); ++x) {
-        if (seen->triangles_of(x).empty()) continue;
-        seen->look(x, counts.where_even);
-        std::uint32_t& kind = kinds[layer_.index(x, y)];
-        if (!seen->is_empty()) kind = seen->is_full() ? kFull + seen->full_of() : kMixed;
-        if (kind == kMixed) finish(x, y, counts.on_outline, *seen, shading);
-      }
+    tbb::enumerable_thread_specific<Scratch> scratch([&] {
+      return Scratch{{triangles, instances_, rays_, counts},
+                     {triangles, instances_, rays_, light_},
+                     std::vector<double>(instances_.size()),
+                     std::vector<double>(instances_.size())};
     });
     each_row([&](int y) {
-      const auto seen = std::make_unique<Visibility>(triangles, instances_, rays_);
-      PixelShading shading(triangles, instances_, rays_, light_);
-      seen->begin_row(y, patch.x, patch.right());
+      Scratch& here = scratch.local();
+      here.seen.begin_row(y, patch.x, patch.right());
       for (int x = patch.x; x < patch.right(); ++x) {
-        if (seen->triangles_of(x).empty()) continue;
-        const std::uint32_t kind = kinds[layer_.index(x, y)];
-        if (kind == kMixed) continue;
-        const bool on_outline = is_on_outline(kinds, x, y);
-        if (on_outline || kind != kEmpty)
-          finish(x, y, on_outline ? counts.on_outline : counts.where_even, *seen, shading);
+        here.seen.look(x);
+        if (here.seen.alpha() > 0) finish(x, y, here);
       }
     });
   }
 
-  // True where a neighbour is of another kind.
-  bool is_on_outline(const std::vector<std::uint32_t>& kinds, int x, int y) const {
-    const PixelBox& patch = layer_.patch;
-    const std::uint32_t own = kinds[layer_.index(x, y)];
-    for (int j = std::max(y - 1, patch.y); j <= std::min(y + 1, patch.bottom() - 1); ++j)
-      for (int i = std::max(x - 1, patch.x); i <= std::min(x + 1, patch.right() - 1); ++i)
-        if (kinds[layer_.index(i, j)] != own) return true;
-    return false;
-  }
-
-  void finish(int x, int y, int samples, Visibility& seen, PixelShading& shading) {
-    seen.look(x, samples);
-    if (seen.is_empty()) return;
+  void finish(int x, int y, Scratch& scratch) {
+    auto& [seen, shading, coverage, alone] = scratch;
     const PixelLight light = shading.light_of(seen, x, y);
-    std::vector<double> coverage(instances_.size(), 0.0);
-    for (const VisibleSurface& surface : seen.result().surfaces)
-      coverage[seen.instance_of(surface)] += static_cast<double>(surface.weight) / samples;
-    std::vector<double> alone = coverage;
+    std::fill(coverage.begin(), coverage.end(), 0.0);
+    for (const VisibleSurface& surface : seen.surfaces())
+      coverage[seen.instance_of(surface)] += static_cast<double>(surface.weight);
     const double alpha = seen.alpha();
-    if (seen.has_several(x))
-      for (std::uint32_t i = 0; i < instances_.size(); ++i) {
-        seen.look(x, samples, i);
-        alone[i] = seen.alpha();
-      }
+    alone = coverage;
+    if (seen.has_several())
+      for (std::uint32_t i = 0; i < instances_.size(); ++i) alone[i] = seen.alpha_of(i);
     write(x, y, light.rgb, alpha, light.distance_m, coverage, alone);
   }
 

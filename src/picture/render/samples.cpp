@@ -43,16 +43,12 @@ constexpr SobolPoint sobol_point(std::uint32_t n) {
   return point;
 }
 
-constexpr int strata_of(int n) {
-  return n >= 256 ? Samples::kMostStrata : Samples::kMostStrata / 4;
-}
-
-// The first n points, by their stratum of one dimension before the scrambling.
+// The first n points, by their block of one dimension before the scrambling.
 struct SortedPoints {
   std::array<std::vector<std::uint32_t>, 3> of;
 
   SortedPoints(int n, std::size_t dimension) {
-    const int shift = 32 - std::countr_zero(static_cast<unsigned>(strata_of(n)));
+    const int shift = 32 - std::countr_zero(static_cast<unsigned>(n / Samples::kBlock));
     std::vector<SobolPoint> points;
     for (int i = 0; i < n; ++i) points.push_back(sobol_point(static_cast<std::uint32_t>(i)));
     std::stable_sort(points.begin(), points.end(), [&](const SobolPoint& a, const SobolPoint& b) {
@@ -66,11 +62,12 @@ struct SortedPoints {
 const SortedPoints& sorted_points(int n, bool by_time) {
   static const std::vector<std::array<SortedPoints, 2>> all = [] {
     std::vector<std::array<SortedPoints, 2>> result;
-    for (int count = 1; count <= Samples::kMost; count *= 2)
+    for (int count = Samples::kBlock; count <= Samples::kMost; count *= 2)
       result.push_back({SortedPoints(count, kX), SortedPoints(count, kT)});
     return result;
   }();
-  return all[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(n)))][by_time ? 1 : 0];
+  return all[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(n / Samples::kBlock)))]
+            [by_time ? 1 : 0];
 }
 
 }  // namespace
@@ -83,19 +80,19 @@ PixelSamples::PixelSamples(int x, int y) {
 
 void PixelSamples::fill(int n, bool by_time, Samples& samples) const {
   samples.count = n;
-  samples.strata = strata_of(n);
   const SortedPoints& points = sorted_points(n, by_time);
-  const int each = samples.of_stratum();
-  // The scrambling permutes the strata.
-  const int shift = 32 - std::countr_zero(static_cast<unsigned>(samples.strata));
+  constexpr int kBlock = Samples::kBlock;
+  const int blocks = n / kBlock;
+  // The scrambling permutes the blocks.
+  const int shift = 32 - std::countr_zero(static_cast<unsigned>(blocks));
   const auto turned = static_cast<int>(scramble_[by_time ? kT : kX] >> shift);
   const auto copy = [&](std::size_t dimension, float scale, float* to) {
-    for (int stratum = 0; stratum < samples.strata; ++stratum) {
-      const std::uint32_t* from = points.of[dimension].data() + (stratum ^ turned) * each;
-      // As a signed number the middle is 0.
-      const std::uint32_t scramble = scramble_[dimension] ^ 0x80000000u;
-      for (int i = 0; i < each; ++i)
-        to[stratum * each + i] =
+    // As a signed number the middle is 0.
+    const std::uint32_t scramble = scramble_[dimension] ^ 0x80000000u;
+    for (int block = 0; block < blocks; ++block) {
+      const std::uint32_t* from = points.of[dimension].data() + (block ^ turned) * kBlock;
+      for (int i = 0; i < kBlock; ++i)
+        to[block * kBlock + i] =
             (static_cast<float>(static_cast<std::int32_t>(from[i] ^ scramble) >> 8) + 0.5f) * scale;
     }
   };
@@ -115,15 +112,15 @@ SampleCounts counts_for(int quality, bool exposes) {
   const int more = exposes ? 2 : 1;
   switch (quality) {
     case 1:
-      return {64, 64};
+      return {32 * more, 64, 64};
     case 2:
-      return {64, 256 * more};
+      return {64 * more, 64, 256 * more};
     case 3:
-      return {64, 512 * more};
+      return {128 * more, 64, 512 * more};
     case 4:
-      return {256, 1024 * more};
+      return {256 * more, 256, 1024 * more};
     case 5:
-      return {PixelSamples::kMost, PixelSamples::kMost, true};
+      return {0, PixelSamples::kMost, PixelSamples::kMost, true};
     default:
       break;
   }

@@ -7,20 +7,17 @@
 namespace airtruth::render {
 
 // The samples of a pixel as arrays: places from the pixel's middle in units of its sides, and times
-// from the middle of its exposure in units of half of it. Strata divide them evenly by place across
-// (x) or by time (t): stratum k of n holds those with that coordinate from k / n to (k + 1) / n of
-// its span, and all strata hold equally many.
+// from the middle of its exposure in units of half of it. Blocks divide them evenly by place across
+// (x) or by time (t): block k of n holds those with that coordinate from k / n to (k + 1) / n of
+// its span.
 struct Samples {
   static constexpr int kMost = 2048;
-  static constexpr int kMostStrata = 16;
+  static constexpr int kBlock = 8;
   int count = 0;
-  int strata = 1;
-  // One after another, stratum by stratum.
+  // One after another, block by block.
   alignas(64) std::array<float, kMost> x;
   alignas(64) std::array<float, kMost> y;
   alignas(64) std::array<float, kMost> t;
-
-  int of_stratum() const { return count / strata; }
 };
 
 // The sample points of a pixel: the three-dimensional Sobol sequence (Sobol 1967), two dimensions
@@ -33,7 +30,7 @@ class PixelSamples {
   static constexpr int kMost = 4096;
 
   PixelSamples(int x, int y);
-  // The first n points, in strata by time or by place. n: a power of two from 64 to Samples::kMost.
+  // The first n points, in blocks by time or by place. n: a power of two from 64 to Samples::kMost.
   void fill(int n, bool by_time, Samples& samples) const;
   // Point i of [0, kMost): its place from the pixel's top left corner, and its time from the
   // beginning of the exposure, each in (0, 1).
@@ -45,9 +42,11 @@ class PixelSamples {
 
 // The numbers of samples of a pixel, by the quality of a picture.
 struct SampleCounts {
-  // Where the neighbours agree that the pixel is covered, or that it is empty.
+  // Lines of the coverage masks.
+  int lines = 128;
+  // Samples of the visibility buffer where masks tell alpha, or no outline crosses the pixel.
   int where_even = 64;
-  // Beside and on an outline.
+  // Samples where outlines of translucent surfaces or several aircraft cross the pixel.
   int on_outline = 512;
   // True for the reference: every pixel has PixelSamples::kMost rays.
   bool by_rays = false;

@@ -27,7 +27,7 @@ PixelShading::Lit PixelShading::lit_at(const Visibility& seen,
                                        int y) const {
   const RayTriangle& triangle = triangles_.all()[visible.triangle];
   const PixelPlace& at = visible.middle;
-  const Eigen::Array4f functions = seen.functions(visible.in_pixel)(at.x, at.y, at.t);
+  const Eigen::Array4f functions = seen.functions(visible.candidate)(at.x, at.y, at.t);
   const auto [u, v] = weights_of(functions);
   Lit lit;
   lit.visible = &visible;
@@ -77,15 +77,13 @@ Texel PixelShading::albedo_of(const Visibility& seen, const Lit& lit) const {
   if (placed.material(facet).texture < 0) return {1, 1, 1, 1};
   const VisibleSurface& visible = *lit.visible;
   const std::size_t reads = visible.end_read - visible.first_read;
-  const float share = visible.light / static_cast<float>(seen.result().samples) /
-                      static_cast<float>(std::max<std::size_t>(reads, 1));
+  const float share = visible.light / static_cast<float>(reads);
   const Skin skin(
       placed.model->mesh, facet, lit.distance_m * seen.ray().pixel_rad() * std::sqrt(share));
-  if (reads == 0) return skin.albedo(lit.hit.u, lit.hit.v);
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (std::uint32_t i = visible.first_read; i < visible.end_read; ++i) {
-    const PixelPlace& at = seen.result().reads[i];
-    const auto [u, v] = weights_of(seen.functions(visible.in_pixel)(at.x, at.y, at.t));
+    const PixelPlace& at = seen.reads()[i];
+    const auto [u, v] = weights_of(seen.functions(visible.candidate)(at.x, at.y, at.t));
     const Texel texel = skin.albedo(u, v);
     sum += Eigen::Map<const Eigen::Array4f>(texel.data());
   }
@@ -96,7 +94,7 @@ Texel PixelShading::albedo_of(const Visibility& seen, const Lit& lit) const {
 
 PixelLight PixelShading::light_of(const Visibility& seen, int x, int y) {
   lit_.clear();
-  for (const VisibleSurface& visible : seen.result().surfaces)
+  for (const VisibleSurface& visible : seen.surfaces())
     lit_.push_back(lit_at(seen, visible, x, y));
   find_shadows();
   PixelLight sum;
@@ -109,10 +107,10 @@ PixelLight PixelShading::light_of(const Visibility& seen, int x, int y) {
                               lit.surface.cosine,
                               lit.in_shadow,
                               light_);
-    const double light = static_cast<double>(lit.visible->light) / seen.result().samples;
+    const double light = static_cast<double>(lit.visible->light);
     for (std::size_t c = 0; c < 3; ++c) sum.rgb[c] += light * static_cast<double>(rgb[c]);
-    sum.distance_m += static_cast<double>(lit.visible->weight) / seen.result().samples *
-                      static_cast<double>(lit.distance_m);
+    sum.distance_m +=
+        static_cast<double>(lit.visible->weight) * static_cast<double>(lit.distance_m);
   }
   return sum;
 }

@@ -10,52 +10,49 @@
 namespace airtruth::render {
 namespace {
 
-// Samples of a pixel whose textures are read.
-constexpr int kReads = 16;
+// Places of a pixel at which textures are read.
+constexpr std::uint32_t kReads = 16;
 
-// Calls use(i, is_inside, inverse distance) for the samples [from, to). kTerms: 3 at an instant, 4
-// for a uniform motion, 7 for all.
+// Calls use(i, is_inside, inverse distance) for the samples of a block. kTerms: 4 for a uniform
+// motion and at an instant, 7 for all.
 template <int kTerms, typename Use>
 [[gnu::always_inline]] inline void each_sample(const PixelFunctions& k,
                                                float farthest,
                                                float nearest,
                                                const Samples& samples,
-                                               int from,
-                                               int to,
+                                               int block,
                                                const Use& use) {
-  const float* px = samples.x.data();
-  const float* py = samples.y.data();
-  const float* pt = samples.t.data();
+  const int begin = block * Samples::kBlock;
+  const float* px = samples.x.data() + begin;
+  const float* py = samples.y.data() + begin;
+  const float* pt = samples.t.data() + begin;
   const auto value_of = [&](int f, float x, float y, float t) {
-    if constexpr (kTerms == 3) return (k.at[f] + k.per_x[f] * x) + k.per_y[f] * y;
     if constexpr (kTerms == 4)
       return (k.at[f] + k.per_x[f] * x) + (k.per_y[f] * y + k.per_t[f] * t);
     return (k.at[f] + t * (k.per_t[f] + k.per_tt[f] * t)) + x * (k.per_x[f] + k.per_xt[f] * t) +
            y * (k.per_y[f] + k.per_yt[f] * t);
   };
-  for (int i = from; i < to; ++i) {
-    const float x = px[i];
-    const float y = py[i];
-    const float t = kTerms == 3 ? 0 : pt[i];
-    const float e0 = value_of(0, x, y, t);
-    const float e1 = value_of(1, x, y, t);
-    const float e2 = value_of(2, x, y, t);
-    const float depth = value_of(3, x, y, t);
-    const bool inside = (e0 >= 0) & (e1 >= 0) & (e2 >= 0);
+  for (int i = 0; i < Samples::kBlock; ++i) {
+    const float e0 = value_of(0, px[i], py[i], pt[i]);
+    const float e1 = value_of(1, px[i], py[i], pt[i]);
+    const float e2 = value_of(2, px[i], py[i], pt[i]);
+    const float depth = value_of(3, px[i], py[i], pt[i]);
+    const bool holds = kTerms == 4 || ((pt[i] >= k.begin_t) & (pt[i] < k.end_t));
+    const bool inside = (e0 >= 0) & (e1 >= 0) & (e2 >= 0) & holds;
     const float above = depth < farthest ? farthest : depth;
-    use(i, inside, above > nearest ? nearest : above);
+    use(begin + i, inside, above > nearest ? nearest : above);
   }
 }
 
 // What a kernel reads and writes.
-struct Buffer {
+struct SampleBuffer {
   const Samples& samples;
-  // The strata that are looked at.
+  // The blocks that are tested.
   int from;
   int to;
   float* __restrict depth;
   std::int32_t* __restrict nearest;
-  // By stratum.
+  // By block.
   float* __restrict hidden;
 };
 
@@ -64,13 +61,12 @@ template <int kTerms>
                                                    float farthest,
                                                    float nearest,
                                                    std::int32_t who,
-                                                   const Buffer& buffer) {
+                                                   const SampleBuffer& buffer) {
   const PixelFunctions functions = functions_of_triangle;
-  const int each = buffer.samples.of_stratum();
   float* __restrict const depth = buffer.depth;
   std::int32_t* __restrict const nearest_of = buffer.nearest;
-  for (int s = buffer.from; s < buffer.to; ++s) {
-    if (nearest < buffer.hidden[s]) continue;
+  for (int block = buffer.from; block < buffer.to; ++block) {
+    if (nearest < buffer.hidden[block]) continue;
     // Floats that are not negative have the order of their bits, and the least of whole numbers may
     // be found by vectors.
     std::int32_t least = 0x7f800000;
@@ -78,8 +74,7 @@ template <int kTerms>
                         farthest,
                         nearest,
                         buffer.samples,
-                        s * each,
-                        (s + 1) * each,
+                        block,
                         [&](int i, bool inside, float here) {
                           const bool in_front = inside & (here > depth[i]);
                           const float now = in_front ? here : depth[i];
@@ -88,24 +83,16 @@ template <int kTerms>
                           const auto bits = std::bit_cast<std::int32_t>(now);
                           least = bits < least ? bits : least;
                         });
-    buffer.hidden[s] = std::bit_cast<float>(least);
+    buffer.hidden[block] = std::bit_cast<float>(least);
   }
 }
 
-AIRTRUTH_FOR_SHORT_VECTORS
-void keep_nearest_still(const PixelFunctions& functions,
-                        float farthest,
-                        float nearest,
-                        std::int32_t who,
-                        const Buffer& buffer) {
-  keep_nearest_of<3>(functions, farthest, nearest, who, buffer);
-}
 AIRTRUTH_FOR_SHORT_VECTORS
 void keep_nearest_uniform(const PixelFunctions& functions,
                           float farthest,
                           float nearest,
                           std::int32_t who,
-                          const Buffer& buffer) {
+                          const SampleBuffer& buffer) {
   keep_nearest_of<4>(functions, farthest, nearest, who, buffer);
 }
 AIRTRUTH_FOR_SHORT_VECTORS
@@ -113,7 +100,7 @@ void keep_nearest_moving(const PixelFunctions& functions,
                          float farthest,
                          float nearest,
                          std::int32_t who,
-                         const Buffer& buffer) {
+                         const SampleBuffer& buffer) {
   keep_nearest_of<7>(functions, farthest, nearest, who, buffer);
 }
 
@@ -128,55 +115,33 @@ void find_fragments(const PixelFunctions& functions_of_triangle,
                     const float* __restrict depth,
                     float* __restrict fragment) {
   const PixelFunctions functions = functions_of_triangle;
-  each_sample<7>(
-      functions, farthest, nearest, samples, from, to, [&](int i, bool inside, float here) {
-        fragment[i] = inside & (here > depth[i]) ? here : 0.0f;
-      });
+  for (int block = from; block < to; ++block)
+    each_sample<7>(
+        functions, farthest, nearest, samples, block, [&](int i, bool inside, float here) {
+          fragment[i] = inside & (here > depth[i]) ? here : 0.0f;
+        });
 }
 
-// True where a pixel's motion is uniform to within a fiftieth of a pixel, so that the terms of
-// rotation and of acceleration change alpha by less than the samples leave: at an edge a deviation
-// that is uniform between -e and e adds e / 4 to the mean.
-bool is_uniform(const PixelFunctions& f) {
-  constexpr float kLeftOutPx = 0.02f;
-  const Eigen::Array4f left_out = 0.5f * (f.per_xt.abs() + f.per_yt.abs()) + 0.5f * f.per_tt.abs();
-  const Eigen::Array4f slope = f.per_x.abs().max(f.per_y.abs());
-  return (left_out <= kLeftOutPx * slope).head<3>().all();
+// The blocks that hold the samples of a range.
+template <typename Range>
+std::array<int, 2> blocks_of(const Range& range, const Samples& samples) {
+  const auto all = static_cast<float>(samples.count / Samples::kBlock);
+  return {static_cast<int>(std::clamp(range.from * all, 0.0f, all)),
+          static_cast<int>(std::ceil(std::clamp(range.to * all, 0.0f, all)))};
 }
 
 }  // namespace
 
-PixelFunctions functions_over(const RayTriangle& triangle,
-                              const PixelRay& ray,
-                              float u,
-                              float half_u) {
-  PixelFunctions f;
-  std::array<Eigen::Array4f, 3> now;
-  for (std::size_t c = 0; c < 3; ++c)
-    now[c] = triangle.of(0, c) + u * (triangle.of(1, c) + u * triangle.of(2, c));
-  const auto dot = [](const Eigen::Vector3f& d, const std::array<Eigen::Array4f, 3>& n) {
-    return Eigen::Array4f(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]);
-  };
-  f.at = dot(ray.middle, now);
-  f.per_x = dot(ray.per_x, now);
-  f.per_y = dot(ray.per_y, now);
-  f.per_t = f.per_xt = f.per_yt = f.per_tt = Eigen::Array4f::Zero();
-  if (!(half_u > 0)) return f;
-  std::array<Eigen::Array4f, 3> per_t;
-  std::array<Eigen::Array4f, 3> per_tt;
-  for (std::size_t c = 0; c < 3; ++c) {
-    per_t[c] = half_u * (triangle.of(1, c) + (2 * u) * triangle.of(2, c));
-    per_tt[c] = (half_u * half_u) * triangle.of(2, c);
-  }
-  f.per_t = dot(ray.middle, per_t);
-  f.per_xt = dot(ray.per_x, per_t);
-  f.per_yt = dot(ray.per_y, per_t);
-  f.per_tt = dot(ray.middle, per_tt);
-  if (!ray.moves) return f;
-  f.per_t += dot(ray.per_t, now);
-  f.per_tt += dot(ray.per_t, per_t) + dot(ray.per_tt, now);
-  return f;
-}
+Visibility::Visibility(const RayTriangles& triangles,
+                       const std::vector<PlacedInstance>& instances,
+                       const PixelRays& rays,
+                       const SampleCounts& counts)
+    : triangles_(triangles),
+      instances_(instances),
+      rays_(rays),
+      counts_(counts),
+      lines_(counts.lines, rays.exposure_s() > 0),
+      by_time_(rays.exposure_s() > 0) {}
 
 void Visibility::begin_row(int y, int x0, int x1) {
   y_ = y;
@@ -184,17 +149,9 @@ void Visibility::begin_row(int y, int x0, int x1) {
   spans_.resize(triangles_.spans().size());
   const auto width = static_cast<std::size_t>(x1 - x0);
   first_.assign(width + 1, 0);
-  struct Columns {
-    std::uint32_t triangle;
-    int from;
-    int to;
-  };
-  thread_local std::vector<Columns> columns;
-  columns.clear();
+  columns_.clear();
   const bool by_row = rays_.reads_rows();
-  by_time_ = rays_.exposure_s() > 0;
   if (by_row) find_spans(x0);
-  x_ = kNoPixel;
   const auto row = static_cast<float>(y);
   for (const std::uint32_t i : triangles_.in_row(y)) {
     const RayTriangle& triangle = triangles_.all()[i];
@@ -211,65 +168,14 @@ void Visibility::begin_row(int y, int x0, int x1) {
     const int from = column(std::floor(bounds.left));
     const int to = column(std::ceil(bounds.right));
     if (from >= to) continue;
-    columns.push_back({i, from, to});
+    columns_.push_back({i, from, to});
     for (int x = from; x < to; ++x) ++first_[static_cast<std::size_t>(x) + 1];
   }
   for (std::size_t x = 0; x < width; ++x) first_[x + 1] += first_[x];
   list_.resize(first_.back());
-  thread_local std::vector<std::uint32_t> next;
-  next.assign(first_.begin(), first_.end() - 1);
-  for (const Columns& of : columns)
-    for (int x = of.from; x < of.to; ++x) list_[next[static_cast<std::size_t>(x)]++] = of.triangle;
-}
-
-bool Visibility::has_several(int x) const {
-  const auto list = triangles_of(x);
-  return std::any_of(list.begin(), list.end(), [&](std::uint32_t i) {
-    return triangles_.all()[i].instance != triangles_.all()[list[0]].instance;
-  });
-}
-
-void Visibility::begin_pixel(int x) {
-  x_ = x;
-  ray_ = rays_.at(x, y_);
-  if (!rays_.reads_rows()) find_spans(x);
-  const std::size_t count = triangles_of(x).size();
-  candidates_.assign(count, {});
-  functions_.resize(count);
-}
-
-void Visibility::look(int x, int n, std::uint32_t only) {
-  result_.samples = n;
-  result_.alpha = 0;
-  result_.surfaces.clear();
-  result_.reads.clear();
-  is_full_ = false;
-  const auto list = triangles_of(x);
-  if (list.empty()) return;
-  if (x != x_) begin_pixel(x);
-  if (!ray_.known) return;
-  PixelSamples(x, y_).fill(n, by_time_, samples_);
-  std::fill_n(inverse_depth_.begin(), n, 0.0f);
-  std::fill_n(nearest_.begin(), n, -1);
-  hidden_.fill(0);
-  layer_count_ = 0;
-  float hidden_everywhere = 0;
-  for (const bool opaque : {true, false})
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const RayTriangle& triangle = triangles_.all()[list[i]];
-      // All others are hidden too.
-      if (triangle.nearest < hidden_everywhere) break;
-      if (triangle.is_opaque != opaque || (only != kAll && triangle.instance != only)) continue;
-      const Candidate& over = candidate(i, triangle);
-      if (over.is_outside) continue;
-      if (opaque) {
-        keep_nearest(i, triangle, over);
-        hidden_everywhere = *std::min_element(hidden_.begin(), hidden_.begin() + samples_.strata);
-      } else {
-        add_fragments(i, triangle, over);
-      }
-    }
-  resolve(list);
+  next_.assign(first_.begin(), first_.end() - 1);
+  for (const Columns& of : columns_)
+    for (int x = of.from; x < of.to; ++x) list_[next_[static_cast<std::size_t>(x)]++] = of.triangle;
 }
 
 void Visibility::find_spans(int x) {
@@ -298,41 +204,57 @@ void Visibility::find_spans(int x) {
   }
 }
 
-const Visibility::Candidate& Visibility::candidate(std::size_t in_pixel,
-                                                   const RayTriangle& triangle) {
-  Candidate& result = candidates_[in_pixel];
-  if (result.known) return result;
-  result.known = true;
-  const PixelSpan& span = spans_[triangle.span];
-  if (by_time_)
-    clip_time(triangle, span, result);
-  else
-    clip_place(triangle, result);
-  if (!(result.from < result.to) || !(span.from < span.to)) return result;
-  const PixelFunctions& f = functions_[in_pixel] =
-      functions_over(triangle, ray_, span.u, span.half_u);
-  const Eigen::Array4f most = f.at + 0.5f * (f.per_x.abs() + f.per_y.abs()) + f.per_t.abs() +
-                              0.5f * (f.per_xt.abs() + f.per_yt.abs()) + f.per_tt.abs();
-  result.is_outside = !(most.head<3>() >= 0).all();
-  result.is_uniform = is_uniform(f);
-  return result;
+void Visibility::begin_pixel(int x) {
+  x_ = x;
+  has_several_ = false;
+  moves_down_px_ = 0;
+  candidates_.clear();
+  const auto pixel = static_cast<std::size_t>(x - x0_);
+  if (first_[pixel] == first_[pixel + 1]) return;
+  ray_ = rays_.at(x, y_);
+  if (!ray_.known) return;
+  if (!rays_.reads_rows()) find_spans(x);
+  for (std::uint32_t i = first_[pixel]; i < first_[pixel + 1]; ++i) add_candidate(list_[i]);
 }
 
-// The places across the pixel at which a triangle can be.
-void Visibility::clip_place(const RayTriangle& triangle, Candidate& candidate) const {
+void Visibility::add_candidate(std::uint32_t triangle) {
+  const RayTriangle& of = triangles_.all()[triangle];
+  const PixelSpan& span = spans_[of.span];
+  if (!(span.from < span.to)) return;
+  Candidate& candidate = candidates_.emplace_back();
+  candidate.triangle = triangle;
+  candidate.of = &of;
+  candidate.functions = functions_over(of, ray_, span.u, span.half_u);
+  if (span.from > 0) candidate.functions.begin_t = 2 * span.from - 1;
+  if (span.to < 1) candidate.functions.end_t = 2 * span.to - 1;
+  const Eigen::Array4f reach = candidate.functions.reach();
+  const Eigen::Array4f& at = candidate.functions.at;
+  if (!(at + reach >= 0).head<3>().all() ||
+      !(by_time_ ? clip_time(of, span, candidate) : clip_place(of, candidate))) {
+    candidates_.pop_back();
+    return;
+  }
+  candidate.is_everywhere =
+      candidate.functions.hold_always() && (at >= reach).head<3>().all();
+  has_several_ = has_several_ || of.instance != candidates_[0].of->instance;
+}
+
+bool Visibility::clip_place(const RayTriangle& triangle, Candidate& candidate) const {
   const PixelSpan& span = spans_[triangle.span];
   const ScreenBounds bounds = triangles_.spans()[triangle.span].is_instant()
                                   ? triangle.over_all
                                   : bounds_between(triangle, span.u, span.u);
   const auto x = static_cast<float>(x_);
-  candidate.from = bounds.left - x;
-  candidate.to = bounds.right - x;
+  const auto y = static_cast<float>(y_);
+  candidate.of_samples = {bounds.left - x, bounds.right - x};
+  candidate.of_lines = {bounds.top - y, bounds.bottom - y};
+  return bounds.left < x + 1 && bounds.right > x && bounds.top < y + 1 && bounds.bottom > y;
 }
 
-// The times at which a triangle can be over the pixel: its bounds are linear over the exposure.
-void Visibility::clip_time(const RayTriangle& triangle,
+// The bounds are linear over the exposure.
+bool Visibility::clip_time(const RayTriangle& triangle,
                            const PixelSpan& span,
-                           Candidate& candidate) const {
+                           Candidate& candidate) {
   const ScreenBounds first = bounds_between(triangle, span.from_u, span.from_u);
   const ScreenBounds last = bounds_between(triangle, span.to_u, span.to_u);
   // Where the exposure has parts of both chords, how far the bounds bend between its ends.
@@ -348,178 +270,232 @@ void Visibility::clip_time(const RayTriangle& triangle,
     off(first.top, last.top, middle.top);
     off(first.bottom, last.bottom, middle.bottom);
   }
+  Range range{span.from, span.to};
   // Bounds without a limit have no bend.
-  if (!std::isfinite(bend)) return;
-  // `a` and `b`: what a bound is at the ends; it must be above `limit`.
-  const auto clip = [&](float a, float b, float limit) {
-    if (a < limit && b < limit) candidate.to = -1;
-    if (a < limit && b >= limit) candidate.from = std::max(candidate.from, (limit - a) / (b - a));
-    if (a >= limit && b < limit) candidate.to = std::min(candidate.to, (limit - a) / (b - a));
-  };
-  const auto x = static_cast<float>(x_);
-  const auto y = static_cast<float>(y_);
-  clip(first.right, last.right, x - bend);
-  clip(-first.left, -last.left, -(x + 1) - bend);
-  clip(first.bottom, last.bottom, y - bend);
-  clip(-first.top, -last.top, -(y + 1) - bend);
+  if (std::isfinite(bend)) {
+    // `a` and `b`: what a bound is at the ends; it must be above `limit`.
+    const auto clip = [&](float a, float b, float limit) {
+      if (a < limit && b < limit) range.to = -1;
+      if (a < limit && b >= limit) range.from = std::max(range.from, (limit - a) / (b - a));
+      if (a >= limit && b < limit) range.to = std::min(range.to, (limit - a) / (b - a));
+    };
+    const auto x = static_cast<float>(x_);
+    const auto y = static_cast<float>(y_);
+    clip(first.right, last.right, x - bend);
+    clip(-first.left, -last.left, -(x + 1) - bend);
+    clip(first.bottom, last.bottom, y - bend);
+    clip(-first.top, -last.top, -(y + 1) - bend);
+    const float down_px = std::abs(first.top - last.top) - std::abs(first.left - last.left);
+    if (std::isfinite(down_px)) moves_down_px_ += down_px;
+  }
+  candidate.of_samples = candidate.of_lines = range;
+  return range.from < range.to;
 }
 
-namespace {
-
-// The strata [from, to) of a candidate in those of its span. Those of a span are the ones whose
-// middle it holds.
-template <typename Shares, typename Of>
-std::array<int, 2> strata_of(const Shares& span, const Of& candidate, int strata) {
-  const auto all = static_cast<float>(strata);
-  const auto whole = [&](float at) { return static_cast<int>(std::clamp(at, 0.0f, all)); };
-  return {
-      std::max(whole(std::ceil(span.from * all - 0.5f)), whole(std::floor(candidate.from * all))),
-      std::min(whole(std::ceil(span.to * all - 0.5f)), whole(std::ceil(candidate.to * all)))};
+void Visibility::look(int x) {
+  begin_pixel(x);
+  look_at(kAll);
 }
 
-}  // namespace
+double Visibility::alpha_of(std::uint32_t instance) {
+  look_at(instance);
+  return alpha_;
+}
 
-void Visibility::keep_nearest(std::size_t in_pixel,
-                              const RayTriangle& triangle,
-                              const Candidate& candidate) {
-  const auto [from, to] = strata_of(spans_[triangle.span], candidate, samples_.strata);
-  const auto keep = !by_time_              ? keep_nearest_still
-                    : candidate.is_uniform ? keep_nearest_uniform
-                                           : keep_nearest_moving;
-  keep(functions_[in_pixel],
-       triangle.farthest,
-       triangle.nearest,
-       static_cast<std::int32_t>(in_pixel),
+void Visibility::look_at(std::uint32_t only) {
+  alpha_ = 0;
+  surfaces_.clear();
+  reads_.clear();
+  if (candidates_.empty()) return;
+  masks_.begin(lines_, moves_down_px_ > 0);
+  bool is_translucent = false;
+  // Whether an outline of a translucent triangle crosses the pixel.
+  bool has_outline = false;
+  for (const Candidate& candidate : candidates_) {
+    if (!counts(candidate, only)) continue;
+    if (candidate.of->is_opaque) {
+      if (!masks_.is_full())
+        masks_.add(candidate.functions, candidate.of_lines.from, candidate.of_lines.to);
+    } else {
+      is_translucent = true;
+      has_outline = has_outline || !candidate.is_everywhere;
+    }
+  }
+  alpha_ = masks_.share();
+  // Samples tell what masks do not.
+  const bool by_samples =
+      (is_translucent && alpha_ < 1) || (has_several_ && only == kAll && alpha_ > 0);
+  if (!by_samples && (only != kAll || alpha_ == 0)) return;
+  const bool is_even = alpha_ == 0 && !has_outline;
+  sample(by_samples && !is_even ? counts_.on_outline : counts_.where_even, only);
+  double sum = 0;
+  for (const Sum& of : sums_) sum += static_cast<double>(of.weight);
+  if (by_samples) {
+    // Samples add to the masks what translucent surfaces contribute where no opaque one is.
+    const auto opaque =
+        std::count_if(nearest_.begin(), nearest_.begin() + samples_.count, [](std::int32_t who) {
+          return who >= 0;
+        });
+    alpha_ = std::clamp(
+        alpha_ + (sum - static_cast<double>(opaque)) / samples_.count, 0.0, 1.0);
+  }
+  if (sum == 0 && alpha_ > 0) {
+    // No sample meets what the lines do: the nearest triangle stands for it.
+    const auto nearest =
+        std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+          return candidate.of->is_opaque && counts(candidate, only);
+        });
+    add(static_cast<std::size_t>(nearest - candidates_.begin()), 1, 1, 0);
+    sum = 1;
+  }
+  if (only == kAll && alpha_ > 0) list_surfaces(alpha_ / sum);
+}
+
+void Visibility::sample(int n, std::uint32_t only) {
+  PixelSamples(x_, y_).fill(n, by_time_, samples_);
+  const int blocks = n / Samples::kBlock;
+  std::fill_n(inverse_depth_.begin(), n, 0.0f);
+  std::fill_n(nearest_.begin(), n, -1);
+  std::fill_n(hidden_.begin(), blocks, 0.0f);
+  layer_count_ = 0;
+  sums_.assign(candidates_.size(), {});
+  seen_.clear();
+  float hidden_everywhere = 0;
+  for (const bool opaque : {true, false})
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const Candidate& candidate = candidates_[i];
+      // All others are hidden too.
+      if (candidate.of->nearest < hidden_everywhere) break;
+      if (candidate.of->is_opaque != opaque || !counts(candidate, only)) continue;
+      if (opaque) {
+        keep_nearest(i);
+        hidden_everywhere = *std::min_element(hidden_.begin(), hidden_.begin() + blocks);
+      } else {
+        add_fragments(i);
+      }
+    }
+  if (layer_count_ == 0)
+    resolve_opaque();
+  else
+    resolve_fragments();
+}
+
+void Visibility::keep_nearest(std::size_t candidate) {
+  const Candidate& of = candidates_[candidate];
+  const auto [from, to] = blocks_of(of.of_samples, samples_);
+  const auto keep = of.functions.is_uniform() ? keep_nearest_uniform : keep_nearest_moving;
+  keep(of.functions,
+       of.of->farthest,
+       of.of->nearest,
+       static_cast<std::int32_t>(candidate),
        {samples_, from, to, inverse_depth_.data(), nearest_.data(), hidden_.data()});
 }
 
-void Visibility::add_fragments(std::size_t in_pixel,
-                               const RayTriangle& triangle,
-                               const Candidate& candidate) {
-  const auto [from, to] = strata_of(spans_[triangle.span], candidate, samples_.strata);
+void Visibility::add_fragments(std::size_t candidate) {
+  const Candidate& of = candidates_[candidate];
+  const auto [from, to] = blocks_of(of.of_samples, samples_);
   if (from >= to) return;
   if (layer_count_ == layers_.size()) layers_.emplace_back();
   FragmentLayer& layer = layers_[layer_count_++];
-  layer.in_pixel = in_pixel;
-  const int each = samples_.of_stratum();
+  layer.candidate = candidate;
   std::fill_n(layer.inverse_depth.begin(), samples_.count, 0.0f);
-  find_fragments(functions_[in_pixel],
-                 triangle.farthest,
-                 triangle.nearest,
+  find_fragments(of.functions,
+                 of.of->farthest,
+                 of.of->nearest,
                  samples_,
-                 from * each,
-                 to * each,
+                 from,
+                 to,
                  inverse_depth_.data(),
                  layer.inverse_depth.data());
 }
 
-void Visibility::resolve(std::span<const std::uint32_t> list) {
-  sums_.assign(list.size(), {});
-  read_.clear();
-  if (layer_count_ == 0)
-    resolve_opaque();
-  else
-    resolve_fragments(list);
-  finish(list);
-}
-
-// The samples that see one triangle are read at even steps.
-void Visibility::add(std::size_t in_pixel, float weight, float light, std::size_t sample) {
-  Sum& sum = sums_[in_pixel];
-  const int stride = std::max(1, samples_.count / kReads);
-  sum.weight += static_cast<double>(weight);
-  sum.light += static_cast<double>(light);
-  sum.one = static_cast<std::uint32_t>(sample);
-  if (sum.samples++ % stride == stride / 2)
-    read_.push_back({static_cast<std::uint32_t>(in_pixel), static_cast<std::uint32_t>(sample)});
+void Visibility::add(std::size_t candidate, float weight, float light, int sample) {
+  Sum& sum = sums_[candidate];
+  sum.weight += weight;
+  sum.light += light;
+  ++sum.samples;
+  seen_.push_back({static_cast<std::uint32_t>(candidate), static_cast<std::uint32_t>(sample)});
 }
 
 void Visibility::resolve_opaque() {
-  const int stride = std::max(1, samples_.count / kReads);
-  const int count = samples_.count;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < samples_.count; ++i) {
     const std::int32_t who = nearest_[static_cast<std::size_t>(i)];
-    if (who < 0) continue;
-    Sum& sum = sums_[static_cast<std::size_t>(who)];
-    sum.one = static_cast<std::uint32_t>(i);
-    // A power of two.
-    if ((sum.samples++ & (stride - 1)) == stride / 2)
-      read_.push_back({static_cast<std::uint32_t>(who), static_cast<std::uint32_t>(i)});
+    if (who >= 0) add(static_cast<std::size_t>(who), 1, 1, i);
   }
-  for (Sum& sum : sums_) sum.weight = sum.light = sum.samples;
 }
 
-float Visibility::opacity_of(const RayTriangle& triangle,
-                             std::size_t in_pixel,
-                             std::size_t sample) const {
+float Visibility::opacity_of(const Candidate& candidate, std::size_t sample) const {
+  const RayTriangle& triangle = *candidate.of;
   const PlacedInstance& placed = instances_[triangle.instance];
   const Facet& facet = placed.placed.model->facets[triangle.part][triangle.in_part];
-  const aircraft::Material& material = placed.placed.material(facet);
   if (facet.is_even) return facet.even_opacity;
   const Eigen::Array4f f =
-      functions_[in_pixel](samples_.x[sample], samples_.y[sample], samples_.t[sample]);
+      candidate.functions(samples_.x[sample], samples_.y[sample], samples_.t[sample]);
   const float sum = f[0] + f[1] + f[2];
   const float distance_m = 1 / std::clamp(f[3], triangle.farthest, triangle.nearest);
   // Footprint of one of the many samples, as a share of the pixel's side.
   constexpr float kSampleShare = 0.25f;
   return opacity_at(placed.placed.model->mesh,
                     facet,
-                    material,
+                    placed.placed.material(facet),
                     f[1] / sum,
                     f[2] / sum,
                     kSampleShare * distance_m * ray_.pixel_rad());
 }
 
-void Visibility::resolve_fragments(std::span<const std::uint32_t> list) {
-  thread_local std::vector<std::pair<float, std::size_t>> fragments;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
-    fragments.clear();
+void Visibility::resolve_fragments() {
+  for (int i = 0; i < samples_.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    fragments_.clear();
     for (std::size_t k = 0; k < layer_count_; ++k)
-      if (layers_[k].inverse_depth[i] > 0)
-        fragments.emplace_back(layers_[k].inverse_depth[i], layers_[k].in_pixel);
-    std::sort(fragments.begin(), fragments.end(), std::greater<>());
+      if (layers_[k].inverse_depth[at] > 0)
+        fragments_.emplace_back(layers_[k].inverse_depth[at], layers_[k].candidate);
+    std::sort(fragments_.begin(), fragments_.end(), std::greater<>());
     float light = 1;
-    for (const auto& [depth, in_pixel] : fragments) {
-      const float opacity = opacity_of(triangles_.all()[list[in_pixel]], in_pixel, i);
+    for (const auto& [depth, candidate] : fragments_) {
+      const float opacity = opacity_of(candidates_[candidate], at);
       if (!(opacity > 0)) continue;
-      add(in_pixel, light * opacity, light, i);
+      add(candidate, light * opacity, light, i);
       light *= 1 - opacity;
       if (!(light > 0)) break;
     }
-    if (light > 0 && nearest_[i] >= 0) add(static_cast<std::size_t>(nearest_[i]), light, light, i);
+    if (light > 0 && nearest_[at] >= 0)
+      add(static_cast<std::size_t>(nearest_[at]), light, light, i);
   }
 }
 
-void Visibility::finish(std::span<const std::uint32_t> list) {
-  bool is_one = true;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const Sum& sum = sums_[i];
-    if (!(sum.light > 0)) continue;
-    VisibleSurface surface;
-    surface.triangle = list[i];
-    surface.in_pixel = static_cast<std::uint32_t>(i);
-    surface.weight = static_cast<float>(sum.weight);
-    surface.light = static_cast<float>(sum.light);
-    result_.alpha += sum.weight;
-    const std::uint32_t instance = triangles_.all()[list[i]].instance;
-    if (result_.surfaces.empty()) full_of_ = instance;
-    is_one = is_one && instance == full_of_ && layer_count_ == 0;
-    surface.first_read = static_cast<std::uint32_t>(result_.reads.size());
-    const auto read = [&](std::uint32_t sample) {
-      result_.reads.push_back({samples_.x[sample], samples_.y[sample], samples_.t[sample]});
-      surface.middle.x += samples_.x[sample];
-      surface.middle.y += samples_.y[sample];
-      surface.middle.t += samples_.t[sample];
-    };
-    for (const Read& of : read_)
-      if (of.in_pixel == i) read(of.sample);
-    if (result_.reads.size() == surface.first_read) read(sum.one);
-    surface.end_read = static_cast<std::uint32_t>(result_.reads.size());
-    const auto reads = static_cast<float>(surface.end_read - surface.first_read);
-    surface.middle = {surface.middle.x / reads, surface.middle.y / reads, surface.middle.t / reads};
-    result_.surfaces.push_back(surface);
+void Visibility::list_surfaces(double scale) {
+  // Of the samples that see a surface, every `stride`th is read, and at least one.
+  const auto stride =
+      std::max<std::uint32_t>(1, static_cast<std::uint32_t>(samples_.count) / kReads);
+  std::uint32_t reads = 0;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    Sum& sum = sums_[i];
+    if (sum.samples == 0) continue;
+    sum.surface = static_cast<std::uint32_t>(surfaces_.size());
+    VisibleSurface& surface = surfaces_.emplace_back();
+    surface.triangle = candidates_[i].triangle;
+    surface.candidate = static_cast<std::uint32_t>(i);
+    surface.weight = static_cast<float>(scale * static_cast<double>(sum.weight));
+    surface.light = static_cast<float>(scale * static_cast<double>(sum.light));
+    surface.first_read = surface.end_read = reads;
+    reads += (sum.samples + stride - 1) / stride;
+    sum.samples = 0;
   }
-  is_full_ = is_one && result_.alpha == static_cast<double>(samples_.count);
+  reads_.resize(reads);
+  for (const Seen& seen : seen_) {
+    Sum& sum = sums_[seen.candidate];
+    if (sum.samples++ % stride != 0) continue;
+    VisibleSurface& surface = surfaces_[sum.surface];
+    const PixelPlace at{samples_.x[seen.sample], samples_.y[seen.sample], samples_.t[seen.sample]};
+    reads_[surface.end_read++] = at;
+    surface.middle = {surface.middle.x + at.x, surface.middle.y + at.y, surface.middle.t + at.t};
+  }
+  for (VisibleSurface& surface : surfaces_) {
+    const auto count = static_cast<float>(surface.end_read - surface.first_read);
+    surface.middle = {
+        surface.middle.x / count, surface.middle.y / count, surface.middle.t / count};
+  }
 }
 
 }  // namespace airtruth::render
