@@ -43,8 +43,8 @@ scores::TruthFrame frame_of(const annotation::Frame& truth,
   scores::TruthFrame frame;
   frame.frame = truth.frame;
   frame.time_s = truth.time_s;
-  const auto asked = dataset::labels_of(truth, boxes, lens.width, lens.height);
-  const auto visible = dataset::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
+  const auto asked = sequences::labels_of(truth, boxes, lens.width, lens.height);
+  const auto visible = sequences::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
   for (const exchange::Label& shown : visible.labels) {
     const exchange::Label* label = label_of(asked, shown.track);
     const annotation::Intruder& intruder =
@@ -106,7 +106,7 @@ std::optional<double> recorded_violation_s(const JsonObject& record, const std::
 }
 
 // The violation of a volume that the record does not have.
-void ask_paths(const sequence::Finished& finished,
+void ask_paths(const replay::Finished& finished,
                std::size_t actor,
                const encounter::Volume& volume,
                scores::TruthEncounter& encounter) {
@@ -119,7 +119,7 @@ void ask_paths(const sequence::Finished& finished,
   encounter.violation_s = first_violation_s(volume, states, lookahead_s);
 }
 
-scores::TruthEncounter encounter_of(const sequence::Finished& finished,
+scores::TruthEncounter encounter_of(const replay::Finished& finished,
                                     const JsonObject* record,
                                     std::size_t actor,
                                     const std::string& volume) {
@@ -141,7 +141,7 @@ scores::TruthEncounter encounter_of(const sequence::Finished& finished,
   return encounter;
 }
 
-void add_encounters(const sequence::Finished& finished,
+void add_encounters(const replay::Finished& finished,
                     const JsonObject& record,
                     const std::string& volume,
                     scores::TruthSequence& truth) {
@@ -178,7 +178,7 @@ void add_times_to_approach(scores::TruthSequence& truth) {
 RenderedTruth rendered_truth(const fs::path& folder,
                              dataset::Boxes boxes,
                              const std::string& volume) {
-  const sequence::Finished finished = sequence::open_finished(folder);
+  const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
   RenderedTruth rendered;
   rendered.first_background_frame = finished.scene->background.first_frame;

@@ -47,7 +47,7 @@ void add_encounters(scores::TruthSequence& truth) {
   }
 }
 
-scores::TruthSequence imported_truth(const dataset::LabelledSet& set, const std::string& name) {
+scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std::string& name) {
   exchange::Clip clip = set.clip(name);
   scores::TruthSequence truth;
   truth.name = name;
@@ -215,7 +215,7 @@ void expect_volume(const SetTruth& set, const std::string& volume) {
 }  // namespace
 
 SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
-  const dataset::LabelledSet set(folder);
+  const labelled::LabelledSet set(folder);
   const dataset::Boxes boxes = set.usual_boxes(options.warn);
   SetTruth result;
   std::vector<std::int64_t> first_frames;
