@@ -111,10 +111,12 @@ def flight(recorder, folder, frames=60):
 
 def example(recorder, name):
     def make(folder):
-        flight(recorder, folder)
         with open(os.path.join(ROOT, "examples", name)) as file:
             # Shorter than written, and without loss.
             text = re.sub(r'(?m)^frame_count = .*$', "", file.read())
+        # The clip, of 30 frames a second, holds each time that the scene states.
+        last_s = max(map(float, re.findall(r'(?m)^(?:cpa_)?time_s = ([0-9.]+)', text)), default=0)
+        flight(recorder, folder, frames=max(60, int(30 * last_s) + 2))
         text = re.sub(r'(?m)^principal_point_px = .*$', "", text)
         write(folder, name, re.sub(r'(?m)^video = "(mp4|avi)".*$', 'video = "mkv"', text))
         recorder.run(folder, "render", name, "--out", "out")
