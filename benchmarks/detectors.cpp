@@ -17,7 +17,7 @@
 #include <opencv2/core.hpp>
 
 #include "runners/classical/classical.h"
-#include "runners/runs/clip_frames.h"
+#include "runners/runs/clips.h"
 
 namespace {
 

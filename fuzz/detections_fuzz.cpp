@@ -14,7 +14,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "runners/detector/protocol.h"
-#include "runners/results/fault.h"
+#include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "runners/tracking/trax_region.h"
+#include "runners/tracking/trax_message.h"
 #include "runners/tracking/trax_session.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

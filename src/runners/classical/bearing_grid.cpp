@@ -5,8 +5,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "runners/classical/turned.h"
-
 namespace airtruth::classical {
 namespace {
 

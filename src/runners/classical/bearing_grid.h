@@ -10,6 +10,15 @@
 
 namespace airtruth::classical {
 
+// Where a camera that was turned otherwise sees what this one sees at a pixel; empty where it does
+// not. Exact for a far point through any lens.
+inline std::optional<Pixel> pixel_after_turn(const lens::Lens& lens,
+                                             const Quaternion& other_from_this,
+                                             const Pixel& pixel) {
+  const auto ray = lens.ray_from_pixel(pixel);
+  return ray ? lens.pixel_from_cam(other_from_this * *ray) : std::nullopt;
+}
+
 // A grid of bearings: the directions in which a camera of the same lens would see the cells of its
 // picture if it stood still, in an attitude called the anchor. The measured turns say where the
 // real camera sees each cell, so what is stored on the grid keeps its bearing while the camera

@@ -6,12 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "runners/classical/kinds.h"
-#include "runners/classical/parts.h"
+#include "runners/classical/classical.h"
 #include "runners/classical/region.h"
 #include "runners/classical/scale_space.h"
-#include "runners/classical/surroundings.h"
-#include "runners/classical/test_flights.h"
+#include "support/classical_flights.h"
 
 namespace airtruth::classical {
 namespace {

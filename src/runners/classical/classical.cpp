@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runners/classical/kinds.h"
+#include "runners/classical/close_minus_open.h"
+#include "runners/classical/frame_difference.h"
+#include "runners/classical/hidden_markov.h"
 
 namespace airtruth::classical {
 namespace {

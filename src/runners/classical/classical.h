@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runners/classical/blobs.h"
 #include "runners/detector/detector.h"
 
 // The detectors that need no training (docs/detection.md):
@@ -18,11 +19,35 @@
 // All find aircraft of two to about a hundred pixels, brighter or darker than what is behind them.
 // They are deterministic and have no memory beyond the sequence. Nothing is detected on the own
 // aircraft where the sequence states its mask. Each has a confident score that follows from its
-// statistic: noise alone reaches it once in an hour (kinds.h).
+// statistic: noise alone reaches it once in an hour (below).
 namespace airtruth::classical {
 
 std::vector<std::string> classical_names();
 // nullptr for a name that is none of these.
 std::unique_ptr<detector::Detector> make_classical(std::string_view name);
+
+// What the detectors share.
+
+// Weaker blobs are noise more often than not at any size: in a frame of 1280x960 white noise a
+// sample of some thousand independent ones exceeds this many standard deviations.
+inline constexpr double kLeastContrastToNoise = 4;
+
+// A rate where the video states none.
+inline constexpr double kUsualRateHz = 30;
+
+// The blobs as detections, the strongest first, without those below `least` and without a weaker
+// one of the same object. Scores are the contrast-to-noise ratios, to four digits.
+std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double least);
+
+// Noise alone reaches a detector's confident score this often.
+inline constexpr double kNoiseAlarmsPerHour = 1;
+
+// The number of standard deviations that independent normal samples exceed, to either side,
+// kNoiseAlarmsPerHour times in an hour: 2 n Q(z) of a frame, with n samples. Neighbouring samples
+// of a smoothed picture are not independent, and exceed it less often.
+double confident_deviations(double samples_per_frame, double frame_rate_hz);
+// The log likelihood ratio that is exceeded as often at most. Where there is no target, the mean of
+// a likelihood ratio is 1, so that it exceeds x with a probability of at most 1 / x (Markov).
+double confident_log_ratio(double cells_per_frame, double frame_rate_hz);
 
 }  // namespace airtruth::classical

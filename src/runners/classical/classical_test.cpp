@@ -8,8 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runners/classical/kinds.h"
-#include "runners/classical/test_flights.h"
+#include "support/classical_flights.h"
 
 namespace airtruth::classical {
 namespace {

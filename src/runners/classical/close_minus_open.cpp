@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/classical/close_minus_open.h"
+
 #include <algorithm>
 #include <deque>
 
+#include "runners/classical/bearing_grid.h"
 #include "runners/classical/blobs.h"
-#include "runners/classical/kinds.h"
-#include "runners/classical/turned.h"
+#include "runners/classical/classical.h"
 
 namespace airtruth::classical {
 namespace {

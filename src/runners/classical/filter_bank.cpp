@@ -1,12 +1,153 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/classical/filter_bank.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/base/error.h"
 
 namespace airtruth::classical {
+namespace {
+
+// Standard deviation of a target's response in units of the typical one: that of the noise.
+constexpr double kSpread = 1.25;
+constexpr int kStrengths = 64;
+// Levels whose responses are measurements: for objects of up to 32 px across, and three times as
+// long. Of larger ones, parts respond.
+constexpr std::size_t kLevelsOfMeasurement = 4;
+
+// Relative responses of a level, one for each sample, in 8 bits.
+cv::Mat relative_responses(const Level& level) {
+  cv::Mat relative(level.response.size(), CV_8U, cv::Scalar(0));
+  for (int y = 0; y < level.typical.rows * kBlock; ++y) {
+    const short* response = level.response.ptr<short>(y);
+    const float* typical = level.typical.ptr<float>(y / kBlock);
+    std::uint8_t* out = relative.ptr<std::uint8_t>(y);
+    for (int bx = 0; bx < level.typical.cols; ++bx) {
+      // Fixed point: 256 parts of a part.
+      const int factor =
+          static_cast<int>(std::lround(256.0 * kPartsOfTypical / static_cast<double>(typical[bx])));
+      for (int x = bx * kBlock; x < (bx + 1) * kBlock; ++x)
+        out[x] = static_cast<std::uint8_t>(std::min(255, response[x] * factor >> 8));
+    }
+  }
+  return relative;
+}
+
+// The larger of every 2 x 2 samples.
+cv::Mat pooled(const cv::Mat& samples, const cv::Size& size) {
+  cv::Mat result(size, CV_8U);
+  for (int y = 0; y < size.height; ++y) {
+    const std::uint8_t* upper = samples.ptr<std::uint8_t>(2 * y);
+    const std::uint8_t* lower = samples.ptr<std::uint8_t>(2 * y + 1);
+    std::uint8_t* out = result.ptr<std::uint8_t>(y);
+    for (int x = 0; x < size.width; ++x)
+      out[x] = std::max(std::max(upper[2 * x], upper[2 * x + 1]),
+                        std::max(lower[2 * x], lower[2 * x + 1]));
+  }
+  return result;
+}
+
+cv::Mat clutter_of(const Level& level, const cv::Size& cells) {
+  const double quiet = level.quietest();
+  cv::Mat classes(level.typical.size(), CV_8U);
+  for (int y = 0; y < classes.rows; ++y)
+    for (int x = 0; x < classes.cols; ++x) {
+      const double octaves = std::log2(level.typical.at<float>(y, x) / quiet);
+      classes.at<std::uint8_t>(y, x) =
+          static_cast<std::uint8_t>(std::clamp(static_cast<int>(octaves), 0, kClutterClasses - 1));
+    }
+  cv::Mat result;
+  cv::resize(classes, result, cells, 0, 0, cv::INTER_NEAREST);
+  return result;
+}
+
+}  // namespace
+
+Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cells) {
+  cv::Mat coarse;
+  const std::size_t count = std::min(levels.size(), kLevelsOfMeasurement);
+  for (std::size_t i = count; i-- > 1;) {
+    const cv::Mat here = relative_responses(levels[i]);
+    if (coarse.empty()) {
+      coarse = here;
+      continue;
+    }
+    cv::Mat enlarged;
+    cv::resize(coarse, enlarged, here.size(), 0, 0, cv::INTER_NEAREST);
+    cv::max(enlarged, here, coarse);
+  }
+  Measurement measurement;
+  measurement.response = pooled(relative_responses(levels.front()), cells);
+  if (!coarse.empty()) {
+    if (coarse.size() != cells) cv::resize(coarse, coarse, cells, 0, 0, cv::INTER_NEAREST);
+    cv::max(measurement.response, coarse, measurement.response);
+  }
+  measurement.clutter = clutter_of(levels.front(), cells);
+  return measurement;
+}
+
+Measurement coarser(const Measurement& measurement, int factor, const cv::Size& cells) {
+  Measurement result;
+  // The extreme of `factor` neighbours along both directions, at every factor-th cell.
+  cv::Mat largest;
+  cv::dilate(measurement.response,
+             largest,
+             cv::Mat::ones(factor, factor, CV_8U),
+             {0, 0});  // the cell and those after it
+  const cv::Rect used(0, 0, cells.width * factor, cells.height * factor);
+  cv::resize(largest(used), result.response, cells, 0, 0, cv::INTER_NEAREST);
+  cv::resize(measurement.clutter(used), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
+  return result;
+}
+
+LikelihoodRatio::LikelihoodRatio() {
+  for (int k = 0; k < kStrengths; ++k) {
+    const double strength =
+        kWeakest * std::pow(kStrongest / kWeakest, k / static_cast<double>(kStrengths - 1));
+    for (int m = 0; m < 256; ++m) {
+      const double off = (static_cast<double>(m) / kPartsOfTypical - strength) / kSpread;
+      target_[static_cast<std::size_t>(m)] += std::exp(-0.5 * off * off);
+    }
+  }
+  double sum = 0;
+  for (const double share : target_) sum += share;
+  for (double& share : target_) share /= sum;
+}
+
+void LikelihoodRatio::learn(const Measurement& measurement) {
+  for (auto& counts : counts_)
+    for (double& count : counts) count *= 1 - 1 / kMemoryFrames;
+  std::array<std::array<int, 256>, kClutterClasses> now{};
+  for (int y = 0; y < measurement.response.rows; ++y) {
+    const std::uint8_t* response = measurement.response.ptr<std::uint8_t>(y);
+    const std::uint8_t* clutter = measurement.clutter.ptr<std::uint8_t>(y);
+    for (int x = 0; x < measurement.response.cols; ++x) ++now[clutter[x]][response[x]];
+  }
+  for (std::size_t c = 0; c < kClutterClasses; ++c) {
+    double sum = 0;
+    for (std::size_t m = 0; m < 256; ++m) {
+      counts_[c][m] += now[c][m];
+      sum += counts_[c][m];
+    }
+    // The strongest responses of a frame are counted over five bins, since single bins of the tail
+    // are empty or hold a target.
+    double largest = kHidden;
+    for (std::size_t m = 0; m < 256; ++m) {
+      double near = 1;
+      const std::size_t low = m < 2 ? 0 : m - 2, high = std::min<std::size_t>(255, m + 2);
+      for (std::size_t k = low; k <= high; ++k) near += counts_[c][k];
+      const double clutter = near / static_cast<double>(high - low + 1) / std::max(sum, 1.0);
+      const double ratio = kHidden + (1 - kHidden) * target_[m] / clutter;
+      largest = std::clamp(ratio, largest, std::max(largest, kLargest));
+      ratios_[c][m] = static_cast<float>(sum > 0 ? largest : 1.0);
+    }
+  }
+}
+
 namespace {
 
 // Odds have a rim of one cell, so that every cell has neighbours. The rim keeps the odds 1: a

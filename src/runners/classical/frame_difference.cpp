@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/classical/frame_difference.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
 #include "runners/classical/bearing_grid.h"
-#include "runners/classical/kinds.h"
+#include "runners/classical/classical.h"
 
 namespace airtruth::classical {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/classical/hidden_markov.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,9 +9,8 @@
 
 #include "runners/classical/bearing_grid.h"
 #include "runners/classical/blobs.h"
+#include "runners/classical/classical.h"
 #include "runners/classical/filter_bank.h"
-#include "runners/classical/kinds.h"
-#include "runners/classical/likelihood.h"
 
 namespace airtruth::classical {
 namespace {

@@ -6,8 +6,7 @@
 #include "runners/classical/bearing_grid.h"
 #include "runners/classical/classical.h"
 #include "runners/classical/filter_bank.h"
-#include "runners/classical/test_flights.h"
-#include "runners/classical/turned.h"
+#include "support/classical_flights.h"
 
 namespace airtruth::classical {
 namespace {

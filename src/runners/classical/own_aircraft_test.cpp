@@ -7,7 +7,7 @@
 
 #include "runners/classical/classical.h"
 #include "runners/classical/free_view.h"
-#include "runners/classical/test_flights.h"
+#include "support/classical_flights.h"
 
 namespace airtruth::classical {
 namespace {

@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/detector/external.h"
 
+#include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include "foundation/base/error.h"
+#include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
 #include "runners/detector/protocol.h"
-#include "runners/detector/shared_samples.h"
 #include "runners/process/child.h"
 
 namespace airtruth::detector {
 namespace {
-
-using process::Clock;
 
 // Its answers are the lines that begin as a JSON object does; all else that it prints is kept in a
 // log.
 constexpr std::string_view kAnswerBegins = "{";
 constexpr double kQuitS = 0.5;  // to take the request to quit
 constexpr double kEndS = 1;     // to end after it
-
-Clock::time_point in(double seconds) {
-  return Clock::now() +
-         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 // Rows of samples without padding: red, green and blue, or luma alone as the video has it.
 std::string samples_of(const image::Picture& picture, SampleOrder samples) {
@@ -42,6 +41,52 @@ std::string samples_of(const image::Picture& picture, SampleOrder samples) {
   return bytes;
 }
 
+// Memory that a program at this machine can map: a file in /dev/shm, or in the temporary folder
+// where that does not exist. The destructor removes it.
+class SharedSamples {
+ public:
+  // Throws Error where it cannot be made.
+  explicit SharedSamples(std::size_t bytes);
+  SharedSamples(const SharedSamples&) = delete;
+  SharedSamples& operator=(const SharedSamples&) = delete;
+  ~SharedSamples();
+
+  const std::string& path() const { return path_; }
+  char* data() { return static_cast<char*>(memory_); }
+
+ private:
+  std::string path_;
+  std::size_t bytes_;
+  std::optional<Unfinished> unfinished_;
+  void* memory_ = nullptr;
+};
+
+SharedSamples::SharedSamples(std::size_t bytes) : bytes_(bytes) {
+  path_ = (process::memory_folder() / "airtruth-detect-XXXXXX").string();
+  const int file = ::mkostemp(path_.data(), O_CLOEXEC);
+  if (file < 0)
+    throw Error(
+        std::string("cannot create memory for a detector's frames: ") + std::strerror(errno),
+        {path_});
+  unfinished_.emplace(Unfinished::path(path_));
+  // The blocks are taken now: a full disk is an error here, and no signal later.
+  const int failed = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
+  memory_ = failed == 0 ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
+                        : MAP_FAILED;
+  const int fault = failed != 0 ? failed : errno;
+  ::close(file);
+  if (memory_ == MAP_FAILED) {
+    ::unlink(path_.c_str());
+    throw Error(std::string("cannot take memory for a detector's frames: ") + std::strerror(fault),
+                {path_});
+  }
+}
+
+SharedSamples::~SharedSamples() {
+  ::munmap(memory_, bytes_);
+  ::unlink(path_.c_str());
+}
+
 class External : public Detector {
  public:
   explicit External(ExternalOptions options) : options_(std::move(options)) {}
@@ -55,7 +100,7 @@ class External : public Detector {
     guarded([&] {
       child_.emplace(
           options_.command, process::Child::Transport::kStandard, options_.stop, kAnswerBegins);
-      const auto deadline = in(options_.start_s);
+      const auto deadline = process::in(options_.start_s);
       hello_ = hello_of(child_->read(deadline));
       if (hello_.frames == FramesBy::kSharedMemory)
         shared_.emplace(static_cast<std::size_t>(sequence.width) *
@@ -71,7 +116,7 @@ class External : public Detector {
       check(child_.has_value(), "a sequence is begun before its frames");
       if (child_->read_if_there()) throw process::Failure("answered before it was asked");
       const std::string samples = samples_of(*frame.picture, hello_.samples);
-      const auto deadline = in(options_.answer_s);
+      const auto deadline = process::in(options_.answer_s);
       if (shared_) std::memcpy(shared_->data(), samples.data(), samples.size());
       child_->write(frame_line(frame, samples.size()), deadline);
       if (!shared_) child_->write(samples, deadline);
@@ -96,8 +141,8 @@ class External : public Detector {
   void end() {
     if (!child_) return;
     try {
-      child_->write(kQuitLine, in(kQuitS));
-      child_->wait(in(kEndS));
+      child_->write(kQuitLine, process::in(kQuitS));
+      child_->wait(process::in(kEndS));
     } catch (const std::exception&) {  // it is ended with its process
     }
     log_ += child_->log();

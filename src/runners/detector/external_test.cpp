@@ -13,7 +13,7 @@
 
 #include "foundation/base/error.h"
 #include "runners/detector/protocol.h"
-#include "runners/process/process_end.h"
+#include "support/process_end.h"
 
 namespace airtruth::detector {
 namespace {
@@ -195,7 +195,7 @@ TEST(External, LeavesNoProcessBehind) {
   std::ifstream(file) >> grandchild;
   std::filesystem::remove(file);
   ASSERT_GT(grandchild, 0);
-  EXPECT_TRUE(process::ends(grandchild));
+  EXPECT_TRUE(test_support::ends(grandchild));
 }
 
 TEST(External, EndsAWaitWhenStopped) {

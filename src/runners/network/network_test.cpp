@@ -13,12 +13,13 @@
 #include "foundation/base/files.h"
 #include "runners/network/network_detector.h"
 #include "runners/network/network_input.h"
-#include "runners/network/onnx_bytes.h"
+#include "support/onnx_bytes.h"
 
 namespace airtruth::network {
 namespace {
 
 using testing::AllOf;
+namespace onnx = test_support::onnx;
 using testing::HasSubstr;
 using testing::Not;
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <stop_token>
@@ -16,6 +17,12 @@
 namespace airtruth::process {
 
 using Clock = std::chrono::steady_clock;
+// The time so many seconds from now.
+Clock::time_point in(double seconds);
+
+// Where files for another process cost no writing to a disk: /dev/shm, or the temporary folder
+// where that does not exist.
+std::filesystem::path memory_folder();
 
 // Thrown where a runner can give no more answers: its process ended, did not answer in time, or
 // violated its protocol; its network failed. The text goes on after the runner's name.

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/results/coco_results.h"
+
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
@@ -7,20 +11,16 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/files.h"
+#include "foundation/base/suggest.h"
 #include "foundation/json/json_object.h"
 #include "runners/results/json_list.h"
-#include "runners/results/results_files.h"
-#include "runners/results/set_images.h"
 
-// COCO's results format (cocodataset.org, "TrackerResults format"): a list of {image_id,
-// category_id, bbox, score}; bbox is [x, y, width, height] with the first pixel at 0. Or a whole
-// COCO file whose annotations each have a score.
 namespace airtruth::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 30;
+constexpr std::size_t kMaxBytes = std::size_t{4} << 30;  // of a file: some 40 million detections
 constexpr const char* kExpected =
     "expected COCO results, [{\"image_id\": ..., \"category_id\": ..., \"bbox\": [x, y, width, "
     "height], \"score\": ...}, ...], or a COCO file whose annotations each have a score";
@@ -30,6 +30,70 @@ struct Names {
   std::map<std::int64_t, std::string> image_files;
   std::map<std::int64_t, std::string> categories;
 };
+
+struct SetImage {
+  std::size_t sequence = 0;  // index in the set
+  std::int64_t frame = 0;
+};
+
+// The images of a set by their number and by their name (ExpectedSequence states both).
+class SetImages {
+ public:
+  // `set` must outlive the object.
+  explicit SetImages(std::span<const ExpectedSequence> set);
+  // Both throw Error at `where` for an image that the set does not have.
+  SetImage by_id(std::int64_t id, const Where& where) const;
+  // "images/all/NAME/000012.jpg" and "NAME/000012" alike.
+  SetImage by_name(const std::string& text, const Where& where) const;
+
+ private:
+  std::span<const ExpectedSequence> set_;
+  std::vector<std::int64_t> first_ids_;
+  std::int64_t end_ = 1;
+  std::map<std::string, std::size_t> names_;
+};
+
+SetImages::SetImages(std::span<const ExpectedSequence> set) : set_(set) {
+  std::int64_t first = 1;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    first_ids_.push_back(first);
+    first += set[i].frames;
+    names_.emplace(set[i].name, i);
+  }
+  end_ = first;
+}
+
+SetImage SetImages::by_id(std::int64_t id, const Where& where) const {
+  if (id < 1 || id >= end_)
+    throw Error(fmt::format("image_id is {}; the set has the images 1 to {}", id, end_ - 1), where);
+  const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
+  const auto i = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
+  return {i, id - first_ids_[i]};
+}
+
+SetImage SetImages::by_name(const std::string& text, const Where& where) const {
+  fs::path path(text);
+  const std::string stem = path.stem().string();
+  std::int64_t frame = -1;
+  const auto [end, failed] = std::from_chars(stem.data(), stem.data() + stem.size(), frame);
+  const std::string name = path.parent_path().filename().string();
+  const auto found = names_.find(name);
+  const bool is_number = failed == std::errc() && end == stem.data() + stem.size() && frame >= 0;
+  if (found != names_.end() && is_number && frame < set_[found->second].frames)
+    return {found->second, frame};
+  std::string hint;
+  if (found != names_.end()) {
+    hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
+  } else {
+    std::vector<std::string> names;
+    for (const ExpectedSequence& sequence : set_) names.push_back(sequence.name);
+    if (const auto near = nearest_spelling(name, names))
+      hint = "; did you mean the sequence '" + *near + "'?";
+  }
+  throw Error("the set has no image '" + text.substr(0, 200) +
+                  "'; expected SEQUENCE/NUMBER.jpg, with frames from 0" + hint,
+              where);
+}
 
 JsonDocument parsed(const JsonPart& part, const fs::path& file) {
   for (const char* word : {"NaN", "Infinity"})

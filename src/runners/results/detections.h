@@ -8,6 +8,8 @@
 
 #include <airtruth/box.h>
 
+#include "foundation/base/error.h"
+
 // What a detector reports: boxes with scores.
 //
 // Example: a detector sees one aircraft at (100, 50) with 20 x 8 px in the first of two frames and
@@ -36,6 +38,28 @@ struct SequenceDetections {
   std::vector<std::vector<Detection>> frames;
   // The detector's own time for each frame, in seconds; empty where it is unknown.
   std::vector<double> seconds;
+};
+
+// What makes a detection impossible in a picture of this size (0: unknown), as the first half of a
+// message; empty where it is possible. A box must have an area and touch the picture; its numbers
+// and the score must be finite.
+//
+//   fault_of({{700, 0, 9, 9}, 1}, 640, 480) == "the box 700,0 9x9 lies outside its image of
+//   640x480"
+std::optional<std::string> fault_of(const Detection& detection, int width, int height);
+
+// Frames of a sequence as they are read.
+class FrameList {
+ public:
+  // Frames beyond `frames` are an error; 0: the number is unknown, and the list grows.
+  FrameList(std::string name, int width, int height, std::int64_t frames);
+  // `frame` counts from 0. Throws Error at `where`.
+  void add(std::int64_t frame, Detection detection, const Where& where);
+  SequenceDetections take() { return std::move(found_); }
+
+ private:
+  SequenceDetections found_;
+  bool grows_ = false;
 };
 
 }  // namespace airtruth::results

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/results/detections.h"
+
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -6,7 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "runners/results/fault.h"
+#include "runners/results/coco_results.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::results {

@@ -2,6 +2,8 @@
 #include "runners/results/results_folder.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -11,7 +13,8 @@
 #include "foundation/base/files.h"
 #include "foundation/base/suggest.h"
 #include "foundation/json/json_object.h"
-#include "runners/results/results_files.h"
+#include "labels/exchange/text.h"
+#include "runners/results/coco_results.h"
 
 namespace airtruth::results {
 namespace {
@@ -20,9 +23,56 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "airtruth detections 1";
 constexpr const char* kAircraft = "aircraft";
-constexpr int kMaxSide = 65'536;
+constexpr int kMaxSide = 65'536;  // px, of a picture
 // 46 hours at 30 frames/s.
 constexpr std::int64_t kMaxFramesOfRun = 5'000'000;
+
+// To 1/1000 px: what is written and read back is written again as the same text.
+double rounded_px(double coordinate_px) { return std::round(coordinate_px * 1000) / 1000; }
+
+constexpr std::int64_t kMaxTrack = 1'000'000'000'000;  // an id; a double holds it exactly
+
+std::optional<std::int64_t> whole(double value, std::int64_t least, std::int64_t most) {
+  const bool fits = value >= static_cast<double>(least) && value <= static_cast<double>(most) &&
+                    value == std::floor(value);
+  return fits ? std::optional(static_cast<std::int64_t>(value)) : std::nullopt;
+}
+
+void read_mot_text(const fs::path& file, FrameList& frames) {
+  for (const exchange::Line& line : exchange::lines_of(file)) {
+    const Where where{file.string(), line.number};
+    const std::vector<double> n = exchange::numbers_of(line, file);
+    if (n.size() < 7 || n.size() > 10)
+      throw Error(
+          fmt::format("has {} columns; expected frame,id,left,top,width,height,score", n.size()),
+          where);
+    const auto frame = whole(n[0], 1, std::int64_t{1} << 40);
+    if (!frame) throw Error("the frame is no whole number from 1 on", where);
+    const auto track = whole(n[1], -1, kMaxTrack);
+    if (!track) throw Error("the id is no whole number from -1 on", where);
+    Detection detection;
+    detection.box_px = {rounded_px(n[2] - 1), rounded_px(n[3] - 1), n[4], n[5]};
+    detection.score = n[6];
+    if (*track >= 0) detection.track = *track;
+    frames.add(*frame - 1, std::move(detection), where);
+  }
+}
+
+std::string mot_text_of(const SequenceDetections& detections) {
+  std::string text;
+  for (std::size_t i = 0; i < detections.frames.size(); ++i)
+    for (const Detection& d : detections.frames[i])
+      fmt::format_to(std::back_inserter(text),
+                     "{},{},{},{},{},{},{:.9g},-1,-1,-1\n",
+                     i + 1,
+                     d.track.value_or(-1),
+                     rounded_px(d.box_px.x + 1),
+                     rounded_px(d.box_px.y + 1),
+                     std::max(0.001, rounded_px(d.box_px.width)),
+                     std::max(0.001, rounded_px(d.box_px.height)),
+                     d.score);
+  return text;
+}
 
 fs::path text_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".txt");
@@ -182,6 +232,15 @@ void expect_distinct(std::span<const ExpectedSequence> set) {
 }
 
 }  // namespace
+
+bool is_of_results_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+}
+
+bool is_results_name(std::string_view name) {
+  return !name.empty() && name.size() <= 80 && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_of_results_name);
+}
 
 void write_sequence(const fs::path& folder, const SequenceDetections& detections) {
   write_file(text_file(folder, detections.name), mot_text_of(detections));

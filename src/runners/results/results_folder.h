@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runners/results/detections.h"
@@ -22,6 +23,12 @@
 namespace airtruth::results {
 
 namespace fs = std::filesystem;
+
+// Whether a tracker's or detector's results can have this name: 1 to 80 of letters, digits, '-',
+// '_' and '.', and no '.' first.
+bool is_results_name(std::string_view name);
+// Whether a name may hold this character.
+bool is_of_results_name(char c);
 
 // What a data set states about a sequence. Image ids of COCO results follow from a list of these:
 // the frames of all sequences are counted through in the order of the list, from 1, as `airtruth
@@ -41,13 +48,6 @@ bool has_sequence(const fs::path& folder, const std::string& name);
 std::vector<std::string> detected_sequences_in(const fs::path& folder);
 // Reads both files. Throws Error as read_detections does.
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name);
-
-// Writes COCO results of `sequences` to a file. Categories are numbered from 1 in alphabetical
-// order; `set` gives the image ids. The sequences are read from `folder` one at a time; a sequence
-// of the set that is not in the folder has no results.
-void write_coco_results(const fs::path& file,
-                        const fs::path& folder,
-                        std::span<const ExpectedSequence> set);
 
 // Reads the detections of a set, in the order of `set`. A sequence without results is left out:
 // in COCO results, which have no place for it, every sequence is present. `source` is one of

@@ -23,8 +23,8 @@ using evaluation::Mark;
 using evaluation::Trajectory;
 using evaluation::VotFrame;
 
-constexpr std::size_t kMaskHead = 4;  // x, y, width, height
-constexpr double kMaxMaskSide = 65'535;
+constexpr std::size_t kMaskHead = 4;     // x, y, width, height
+constexpr double kMaxMaskSide = 65'535;  // px; that of a picture in any format
 
 VotFrame marked(double code) {
   if (code == 1) return {Mark::kBegun, {}};
@@ -32,57 +32,11 @@ VotFrame marked(double code) {
   return {Mark::kUnknown, {}};
 }
 
-VotFrame answer(const Box& box) {
-  const bool is_sound =
-      std::isfinite(box.x + box.y + box.width + box.height) && box.width > 0 && box.height > 0;
-  return {Mark::kAnswer, is_sound ? std::optional(box) : std::nullopt};
-}
-
-VotFrame polygon_of(const std::vector<double>& n, int origin_px) {
-  BoxBounds bounds;
-  for (std::size_t i = 0; i + 1 < n.size(); i += 2) {
-    if (!std::isfinite(n[i] + n[i + 1])) return {Mark::kAnswer, {}};
-    bounds.add({n[i] - origin_px, n[i + 1] - origin_px});
-  }
-  return answer(bounds.box().value_or(Box{}));
-}
-
-// Describes the fault of a mask; empty for a valid mask.
-std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
-  if (n.size() < kMaskHead) return "is a mask of fewer than four numbers";
-  for (const double value : n)
-    if (value != std::floor(value) || !(std::abs(value) <= kMaxMaskSide * kMaxMaskSide))
-      return "is a mask with what is no whole number";
-  const bool has_size = n[2] >= 0 && n[3] >= 0 && n[2] <= kMaxMaskSide && n[3] <= kMaxMaskSide;
-  if (!has_size) return "is a mask of a size out of all bounds";
-  double pixels = 0;
-  for (std::size_t i = kMaskHead; i < n.size(); ++i) {
-    if (n[i] < 0) return "is a mask with a negative run length";
-    pixels += n[i];
-  }
-  if (pixels > n[2] * n[3]) return "is a mask whose runs are longer than the mask";
-  return std::nullopt;
-}
-
-// Bounding box of the ones of a valid mask.
-VotFrame mask_box(const std::vector<double>& n, int origin_px) {
-  const auto width = static_cast<std::int64_t>(n[2]);
-  BoxBounds bounds;
-  std::int64_t at = 0;
-  for (std::size_t i = kMaskHead; i < n.size(); ++i) {
-    const auto run = static_cast<std::int64_t>(n[i]);
-    if ((i - kMaskHead) % 2 == 1 && run > 0) {
-      const std::int64_t last = at + run - 1;
-      const std::int64_t top = at / width, bottom = last / width;  // rows
-      const bool is_one_row = top == bottom;
-      const double left = is_one_row ? double(at % width) : 0;
-      const double right = is_one_row ? double(last % width) : n[2] - 1;
-      bounds.add({n[0] + left - origin_px, n[1] + double(top) - origin_px});
-      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(bottom) + 1 - origin_px});
-    }
-    at += run;
-  }
-  return answer(bounds.box().value_or(Box{}));
+// A box without area is an answer without a box.
+VotFrame answer(const std::optional<Box>& box) {
+  const bool is_sound = box && std::isfinite(box->x + box->y + box->width + box->height) &&
+                        box->width > 0 && box->height > 0;
+  return {Mark::kAnswer, is_sound ? box : std::nullopt};
 }
 
 // Little-endian numbers of a file's bytes, one after another.
@@ -124,11 +78,11 @@ VotFrame next_region(Bytes& bytes, int origin_px) {
       return marked(bytes.next<std::uint32_t>());
     case 1: {
       const std::vector<double> n = bytes.next<float>(4);
-      return answer({n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
+      return answer(Box{n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
     }
     case 2: {
       const auto points = bytes.next<std::uint16_t>();
-      return polygon_of(bytes.next<float>(std::size_t{2} * points), origin_px);
+      return answer(bounds_of_polygon(bytes.next<float>(std::size_t{2} * points), origin_px));
     }
     case 3: {
       std::vector<double> n = bytes.next<std::int16_t>(2);
@@ -137,7 +91,7 @@ VotFrame next_region(Bytes& bytes, int origin_px) {
       n.insert(n.end(), size.begin(), size.begin() + 2);
       n.insert(n.end(), runs.begin(), runs.end());
       if (const auto fault = fault_of_mask(n)) bytes.fail("what ends here " + *fault);
-      return mask_box(n, origin_px);
+      return answer(bounds_of_mask(n, origin_px));
     }
     default:
       bytes.fail(fmt::format("has a region of type {}", type));
@@ -146,11 +100,56 @@ VotFrame next_region(Bytes& bytes, int origin_px) {
 
 }  // namespace
 
+std::optional<Box> bounds_of_polygon(const std::vector<double>& n, int origin_px) {
+  BoxBounds bounds;
+  for (std::size_t i = 0; i + 1 < n.size(); i += 2) {
+    if (!std::isfinite(n[i] + n[i + 1])) return std::nullopt;
+    bounds.add({n[i] - origin_px, n[i + 1] - origin_px});
+  }
+  return bounds.box();
+}
+
+std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
+  if (n.size() < kMaskHead) return "is a mask of fewer than four numbers";
+  for (const double value : n)
+    if (value != std::floor(value) || !(std::abs(value) <= kMaxMaskSide * kMaxMaskSide))
+      return "is a mask with what is no whole number";
+  const bool has_size = n[2] >= 0 && n[3] >= 0 && n[2] <= kMaxMaskSide && n[3] <= kMaxMaskSide;
+  if (!has_size) return "is a mask of a size out of all bounds";
+  double pixels = 0;
+  for (std::size_t i = kMaskHead; i < n.size(); ++i) {
+    if (n[i] < 0) return "is a mask with a negative run length";
+    pixels += n[i];
+  }
+  if (pixels > n[2] * n[3]) return "is a mask whose runs are longer than the mask";
+  return std::nullopt;
+}
+
+std::optional<Box> bounds_of_mask(const std::vector<double>& n, int origin_px) {
+  const auto width = static_cast<std::int64_t>(n[2]);
+  BoxBounds bounds;
+  std::int64_t at = 0;
+  for (std::size_t i = kMaskHead; i < n.size(); ++i) {
+    const auto run = static_cast<std::int64_t>(n[i]);
+    if ((i - kMaskHead) % 2 == 1 && run > 0) {
+      const std::int64_t last = at + run - 1;
+      const std::int64_t top = at / width, bottom = last / width;  // rows
+      const bool is_one_row = top == bottom;
+      const double left = is_one_row ? double(at % width) : 0;
+      const double right = is_one_row ? double(last % width) : n[2] - 1;
+      bounds.add({n[0] + left - origin_px, n[1] + double(top) - origin_px});
+      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(bottom) + 1 - origin_px});
+    }
+    at += run;
+  }
+  return bounds.box();
+}
+
 VotFrame region_of(const exchange::Line& line, const std::filesystem::path& file, int origin_px) {
   if (line.text.starts_with('m')) {
     const std::vector<double> n = exchange::numbers_of({line.number, line.text.substr(1)}, file);
     if (const auto fault = fault_of_mask(n)) throw Error(*fault, {file.string(), line.number});
-    return mask_box(n, origin_px);
+    return answer(bounds_of_mask(n, origin_px));
   }
   const std::vector<double> n = exchange::numbers_of(line, file);
   if (n.size() == 1) return marked(n[0]);
@@ -159,8 +158,8 @@ VotFrame region_of(const exchange::Line& line, const std::filesystem::path& file
                 {file.string(), line.number});
   if (std::any_of(n.begin(), n.end(), [](double value) { return std::isnan(value); }))
     return marked(0);
-  if (n.size() == 4) return answer({n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
-  return polygon_of(n, origin_px);
+  if (n.size() == 4) return answer(Box{n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
+  return answer(bounds_of_polygon(n, origin_px));
 }
 
 Trajectory read_binary_trajectory(const std::filesystem::path& file, int origin_px) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <airtruth/vot.h>
@@ -12,6 +14,16 @@
 // binary files (.bin). A region is a rectangle; a polygon or a mask, which becomes its bounding
 // box; or one of the marks 0, 1 and 2. As in the toolkit, a text region with a NaN is the mark 0.
 namespace airtruth::results {
+
+// The bounds of x0, y0, x1, y1, ...; empty where a number is not finite. `origin_px` is the
+// coordinate that the numbers give to the first pixel, 0 or 1.
+std::optional<Box> bounds_of_polygon(const std::vector<double>& numbers, int origin_px = 0);
+
+// A mask is x, y, width, height and run lengths along its rows, of which the first counts zeros.
+// Describes what is wrong with it; empty for a valid one.
+std::optional<std::string> fault_of_mask(const std::vector<double>& numbers);
+// The bounds of the ones of a valid mask; empty where it has none.
+std::optional<Box> bounds_of_mask(const std::vector<double>& numbers, int origin_px = 0);
 
 // Reads one text region: "x,y,w,h"; "x0,y0,x1,y1,x2,y2,..."; "mx,y,w,h,n0,n1,...", a mask as run
 // lengths along its rows of which the first counts zeros; or a mark. `origin_px` is the coordinate

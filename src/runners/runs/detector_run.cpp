@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <set>
+#include <span>
 #include <thread>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "camera/lens/calibration_file.h"
 #include "dataset/labelled/labelled_set.h"
@@ -17,13 +21,155 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/stopwatch.h"
-#include "runners/results/fault.h"
-#include "runners/runs/clip_frames.h"
+#include "foundation/json/settings_record.h"
+#include "runners/results/coco_results.h"
+#include "runners/results/detections.h"
 #include "runners/runs/clips.h"
-#include "runners/runs/detector_results.h"
 
 namespace airtruth::runs {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecord = "detector.json";
+
+Json settings_of(const association::AssociationOptions& association) {
+  const auto& score = association.confident_score;
+  return {{"declare", fmt::format("{}/{}", association.declare_m, association.declare_n)},
+          {"confident_score", score ? Json(*score) : Json()}};
+}
+
+// The command without the folder of its files, which are known by their content.
+std::string recorded(const std::string& command) {
+  const std::vector<fs::path> files = files_of(command);
+  if (files.empty()) return command;
+  return command.substr(0, command.find(':') + 1) + files.front().filename().string();
+}
+
+// What decides the bytes of the results.
+Json settings_of(const DetectorName& detector, const DetectOptions& options) {
+  Json settings = {{"detector", recorded(detector.command)},
+                   {"max_per_frame", options.max_per_frame}};
+  settings["min_score"] = options.min_score ? Json(*options.min_score) : Json();
+  settings["lens"] = options.lens ? Json(sha256_of_file(*options.lens)) : Json();
+  settings["mask"] = options.mask && options.masks ? Json(sha256_of_file(*options.mask)) : Json();
+  settings["masks"] = options.masks;
+  settings["mask_results"] = options.mask_results;
+  settings["association"] = options.association ? settings_of(*options.association) : Json();
+  settings["files"] = Json::object();
+  for (const fs::path& file : files_of(detector.command)) {
+    settings["files"][file.filename().string()] = sha256_of_file(file);
+  }
+  return settings;
+}
+
+// The folder of the results of backgrounds, in a detector's folder.
+constexpr const char* kBackgrounds = "backgrounds";
+
+// The results of one detector in its folder: what is there, what is added. Thread-safe.
+class DetectorResults {
+ public:
+  // Throws Error where the folder holds results of other settings.
+  DetectorResults(const DetectorName& detector, const fs::path& out, const DetectOptions& options);
+
+  // Creates the folder and its record.
+  void open() const;
+  // `part` is "" for the sequences of a set, or kBackgrounds.
+  // Counts a sequence that is there.
+  bool keeps(const std::string& part, const std::string& sequence);
+  void add(const std::string& part,
+           const results::SequenceDetections& detections,
+           const std::string& log);
+  void add_broken(const std::string& sequence, const std::string& fault, const std::string& log);
+  // Writes the COCO results of a set of which every sequence is there.
+  void finish(std::span<const results::ExpectedSequence> set, const std::string& file_name) const;
+
+  const std::string& command() const { return detector_.command; }
+  const DetectSummary& summary() const { return summary_; }
+
+ private:
+  bool is_open() const;
+  void write_log(const std::string& sequence, const std::string& log) const;
+
+  DetectorName detector_;
+  const DetectOptions& options_;
+  std::mutex mutex_;
+  DetectSummary summary_;
+};
+
+DetectorResults::DetectorResults(const DetectorName& detector,
+                                 const fs::path& out,
+                                 const DetectOptions& options)
+    : detector_(detector), options_(options) {
+  summary_.name = detector.name;
+  summary_.folder = out / detector.name;
+  is_open();
+}
+
+bool DetectorResults::is_open() const {
+  // settings_of() throws Error for a lens that is not there, also before there is a folder.
+  return is_record_of(summary_.folder / kRecord, settings_of(detector_, options_));
+}
+
+void DetectorResults::open() const {
+  if (is_open()) return;
+  std::error_code failed;
+  fs::create_directories(summary_.folder, failed);
+  if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+  Json record = settings_of(detector_, options_);
+  record["name"] = detector_.name;
+  record["format"] = "airtruth detections 1";
+  record["version"] = kVersion;
+  write_file(summary_.folder / kRecord, record.dump(1) + "\n");
+}
+
+bool DetectorResults::keeps(const std::string& part, const std::string& sequence) {
+  if (!results::has_sequence(summary_.folder / part, sequence)) return false;
+  const std::lock_guard lock(mutex_);
+  ++summary_.kept;
+  return true;
+}
+
+void DetectorResults::add(const std::string& part,
+                          const results::SequenceDetections& detections,
+                          const std::string& log) {
+  const fs::path folder = summary_.folder / part;
+  fs::create_directories(folder);
+  write_log(detections.name, log);
+  results::write_sequence(folder, detections);
+  const std::lock_guard lock(mutex_);
+  ++summary_.made;
+  summary_.frames += std::ssize(detections.frames);
+  for (const auto& frame : detections.frames) summary_.detections += std::ssize(frame);
+  for (const double s : detections.seconds) summary_.seconds += s;
+}
+
+void DetectorResults::add_broken(const std::string& sequence,
+                                 const std::string& fault,
+                                 const std::string& log) {
+  write_log(sequence, log + "airtruth: the detector " + fault + "\n");
+  const std::lock_guard lock(mutex_);
+  ++summary_.broken;
+  airtruth::warn(options_.warn,
+                 fmt::format("{} on {}: the detector {}", detector_.name, sequence, fault));
+}
+
+void DetectorResults::finish(std::span<const results::ExpectedSequence> set,
+                             const std::string& file_name) const {
+  const bool is_whole =
+      std::all_of(set.begin(), set.end(), [&](const results::ExpectedSequence& one) {
+        return results::has_sequence(summary_.folder, one.name);
+      });
+  const fs::path file = summary_.folder / file_name;
+  if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
+  results::write_coco_results(file, summary_.folder, set);
+}
+
+void DetectorResults::write_log(const std::string& sequence, const std::string& log) const {
+  if (log.empty()) return;
+  fs::create_directories(summary_.folder / "logs");
+  write_file(summary_.folder / "logs" / (sequence + ".log"), log);
+}
 
 // The share of a box's pixels, those with their centre in it, that the own aircraft hides.
 double hidden_share(const Box& box, const image::Mask& own_aircraft) {

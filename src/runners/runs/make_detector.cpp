@@ -13,20 +13,13 @@
 #include "runners/detector/external.h"
 #include "runners/network/model_description.h"
 #include "runners/network/network_detector.h"
+#include "runners/results/results_folder.h"
 
 namespace airtruth::runs {
 namespace {
 
 constexpr std::string_view kExec = "exec:";
 constexpr std::string_view kNetwork = "onnx:";
-
-bool is_file_name(const std::string& name) {
-  return !name.empty() && name.size() <= 80 && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), [](char c) {
-           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ||
-                  c == '.';
-         });
-}
 
 // "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
 std::string usual_name(const std::string& command) {
@@ -58,7 +51,7 @@ DetectorName named_detector(const std::string& text) {
       equals != std::string::npos && (colon == std::string::npos || equals < colon);
   const std::string command = is_named ? text.substr(equals + 1) : text;
   const std::string name = is_named ? text.substr(0, equals) : usual_name(command);
-  if (!is_file_name(name))
+  if (!results::is_results_name(name))
     throw Error("'" + name.substr(0, 80) +
                 "' is no name for a detector's results; expected letters, digits, - _ .");
   return {name, command};

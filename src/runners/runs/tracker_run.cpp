@@ -2,6 +2,7 @@
 #include "runners/runs/tracker_run.h"
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -16,10 +17,11 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
+#include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
-#include "runners/runs/follower.h"
+#include "runners/tracking/tracker.h"
 
 namespace airtruth::runs {
 namespace {
@@ -32,6 +34,82 @@ using evaluation::Trajectory;
 constexpr std::int64_t kSkip = 5;
 // Crashes allowed in a run with restarts; after them each start counts as a failure.
 constexpr int kMaxCrashes = 3;
+
+tracking::TrackerOptions tracker_options(const TrackOptions& options, std::uint64_t seed) {
+  return {
+      .seed = seed, .start_s = options.start_s, .answer_s = options.answer_s, .stop = options.stop};
+}
+
+// One run of a tracker, with its answers and its times. A failed tracker gives no more answers
+// until begin() starts it anew.
+class Follower {
+ public:
+  Follower(const std::string& command, const TrackOptions& options, std::uint64_t seed)
+      : command_(command), options_(tracker_options(options, seed)) {}
+
+  // Starts the tracker on a picture. Returns false where it failed.
+  bool begin(const image::Picture& picture, const Box& box) {
+    return guarded([&] {
+      if (!tracker_) tracker_ = tracking::make_tracker(command_, options_);
+      tracker_->load(picture);
+      const Stopwatch watch;
+      tracker_->init(box);
+      seconds_ = watch.seconds();
+    });
+  }
+
+  // Empty where the tracker lost the object or has failed.
+  std::optional<Box> next(const image::Picture& picture) {
+    std::optional<Box> box;
+    seconds_ = 0;
+    if (!tracker_) return box;
+    guarded([&] {
+      tracker_->load(picture);
+      const Stopwatch watch;
+      const tracking::Answer answer = tracker_->update();
+      const double took_s = watch.seconds();
+      seconds_ = answer.seconds.value_or(took_s);
+      if (!answer.lost) box = answer.box_px;
+      ++answers_;
+      spent_s_ += seconds_;
+    });
+    return box;
+  }
+
+  bool is_broken() const { return !tracker_; }
+  // Duration of the last call of the tracker; 0 where it failed.
+  double seconds() const { return seconds_; }
+  // The last failure; empty where there was none.
+  const std::string& fault() const { return fault_; }
+  std::string log() const { return log_ + (tracker_ ? tracker_->log() : ""); }
+  std::int64_t answers() const { return answers_; }
+  // Sum of the durations of all answers, in seconds.
+  double spent_s() const { return spent_s_; }
+
+ private:
+  bool guarded(const auto& work) {
+    try {
+      work();
+      return true;
+    } catch (const process::Failure& error) {
+      fault_ = error.what();
+      seconds_ = 0;
+      if (tracker_) log_ += tracker_->log();
+      log_ += "airtruth: the tracker " + fault_ + "\n";
+      tracker_.reset();
+      return false;
+    }
+  }
+
+  std::string command_;
+  tracking::TrackerOptions options_;
+  std::unique_ptr<tracking::Tracker> tracker_;
+  double seconds_ = 0;
+  std::string fault_;
+  std::string log_;
+  std::int64_t answers_ = 0;
+  double spent_s_ = 0;
+};
 
 // A run's frames and times as they come.
 struct Record {

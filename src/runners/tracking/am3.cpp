@@ -145,14 +145,14 @@ class Am3 : public Tracker {
       const int left = std::max(0, x - margin) / block * block;
       const int top = std::max(0, y - margin) / block * block;
       const PixelBox part{left, top, x + width_ + margin - left, y + height_ + margin - top};
-      return {Pyramid(*luma_, part, levels_), double(left), double(top), 1};
+      return {Pyramid(*luma_, part), double(left), double(top), 1};
     }
     const int width = width_ + 2 * margin;
     const int height = height_ + 2 * margin;
     const double left = x_ - margin * scale_;
     const double top = y_ - margin * scale_;
     const image::Plane plane = resampled(*luma_, left, top, scale_, width, height);
-    return {Pyramid(plane, {0, 0, width, height}, levels_), left, top, scale_};
+    return {Pyramid(plane, {0, 0, width, height}), left, top, scale_};
   }
 
   // Whether a window of the view lies in the picture.

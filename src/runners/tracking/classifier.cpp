@@ -79,7 +79,7 @@ std::vector<std::ptrdiff_t> Classifier::bases_of(const Pyramid& pyramid,
                                                  std::span<const Place> places) const {
   std::vector<std::ptrdiff_t> bases;
   bases.reserve(places.size());
-  for (const Place& place : places) bases.push_back(place.y * pyramid.stride(level_) + place.x);
+  for (const Place& place : places) bases.push_back(pyramid.offset(level_, place.x, place.y));
   return bases;
 }
 
@@ -88,16 +88,15 @@ void Classifier::add_feature(const Weak& weak,
                              const Pyramid& pyramid,
                              std::span<const std::ptrdiff_t> bases,
                              std::span<float> values) const {
-  const std::uint32_t* sums = pyramid.sums(level_);
-  const std::ptrdiff_t stride = pyramid.stride(level_);
   for (const Rectangle& r : weak.rectangles) {
-    const std::uint32_t* above = sums + r.y * stride + r.x;
-    const std::uint32_t* below = above + r.height * stride;
+    const std::uint32_t* above = pyramid.sums() + pyramid.offset(level_, r.x, r.y);
+    const std::uint32_t* below = above + pyramid.offset(level_, 0, r.height);
+    const std::ptrdiff_t right = pyramid.offset(level_, r.width, 0);
     const float weight = r.weight * unit_;
     for (std::size_t i = 0; i < bases.size(); ++i) {
       const std::ptrdiff_t at = bases[i];
       // The arithmetic wraps modulo 2^32 like the sums, and the difference is right.
-      const std::uint32_t sum = below[at + r.width] - below[at] - above[at + r.width] + above[at];
+      const std::uint32_t sum = below[at + right] - below[at] - above[at + right] + above[at];
       values[i] += weight * static_cast<float>(sum);
     }
   }

@@ -7,7 +7,7 @@
 
 #include "foundation/base/seed.h"
 #include "runners/tracking/am3.h"
-#include "runners/tracking/pyramid.h"
+#include "runners/tracking/luma_window.h"
 
 namespace airtruth::tracking {
 

@@ -6,8 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace airtruth::tracking {
+#include "foundation/base/error.h"
 
+namespace airtruth::tracking {
 namespace {
 
 // A part of a picture, reduced by whole blocks of pixels.
@@ -56,6 +57,22 @@ Reduced reduced_part(
 }
 
 }  // namespace
+
+Pyramid::Pyramid(const image::Plane& luma, const PixelBox& part) {
+  const auto inside = intersection(part, {0, 0, luma.width, luma.height});
+  check(inside.has_value(), "a pyramid's part lies in the picture");
+  width_ = inside->width;
+  height_ = inside->height;
+  stride_ = width_ + 1;
+  sums_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 1), 0);
+  for (int y = 0; y < height_; ++y) {
+    const std::uint8_t* samples = luma.row(inside->y + y) + inside->x;
+    const std::uint32_t* above = sums_.data() + offset(0, 1, y);
+    std::uint32_t* here = sums_.data() + offset(0, 1, y + 1);
+    std::uint32_t row = 0;
+    for (int x = 0; x < width_; ++x) here[x] = above[x] + (row += samples[x]);
+  }
+}
 
 image::Plane resampled(
     const image::Plane& luma, double left, double top, double scale, int width, int height) {

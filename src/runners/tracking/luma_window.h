@@ -1,10 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
-#include "runners/tracking/pyramid.h"
 
 namespace airtruth::tracking {
+
+// Box sums of a part of a picture's luma at all resolutions of a pyramid, of which each level is
+// half of the one before (means of 2x2 pixels). A box of a level consists of whole pixels of the
+// part, so one integral picture has the sums of all levels, at every 2^level-th of its entries.
+// Only the part is read, so the cost depends on the part's size and not on the picture's.
+class Pyramid {
+ public:
+  // `part` is cut to the picture; pixel (0, 0) of every level begins at its corner.
+  Pyramid(const image::Plane& luma, const PixelBox& part);
+
+  int width(int level) const { return width_ >> level; }
+  int height(int level) const { return height_ >> level; }
+
+  // Returns the sum over [x, x + width) by [y, y + height) of a level, in units of 1 / 4^level grey
+  // levels.
+  float sum(int level, int x, int y, int width, int height) const {
+    const std::uint32_t* above = sums_.data() + offset(level, x, y);
+    const std::uint32_t* below = above + offset(level, 0, height);
+    const std::ptrdiff_t right = offset(level, width, 0);
+    return static_cast<float>(below[right] - below[0] - above[right] + above[0]);
+  }
+  // The sums, and the way in them to a pixel of a level, to add fixed corner offsets to many
+  // positions.
+  const std::uint32_t* sums() const { return sums_.data(); }
+  std::ptrdiff_t offset(int level, int x, int y) const { return (y * stride_ + x) << level; }
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  std::vector<std::uint32_t> sums_;  // (height + 1) x (width + 1), modulo 2^32
+};
 
 // Part of a picture's luma at several resolutions. Each of its pixels is `scale` pixels of the
 // picture wide.

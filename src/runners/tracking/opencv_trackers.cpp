@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <type_traits>
 #include <utility>
 
 #include <opencv2/core.hpp>
@@ -24,6 +25,7 @@
 namespace airtruth::tracking {
 namespace {
 
+// The least side of a window, px: random Haar features of MIL and Boosting fit into it.
 constexpr double kMinHaarPx = 8;
 
 cv::Mat bgr_of(const image::Picture& picture) {
@@ -97,11 +99,32 @@ Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
   return answer;
 }
 
-// cv::Tracker takes whole pixels. Made anew for each start: a second init() of the same KCF writes
-// past its buffers.
-class Modern : public Tracker {
+// cv::Tracker takes whole pixels.
+bool init(cv::Tracker& tracker, const cv::Mat& frame, const Box& box) {
+  tracker.init(frame,
+               cv::Rect(static_cast<int>(box.x),
+                        static_cast<int>(box.y),
+                        static_cast<int>(box.width),
+                        static_cast<int>(box.height)));
+  return true;
+}
+bool update(cv::Tracker& tracker, const cv::Mat& frame, cv::Rect& found) {
+  return tracker.update(frame, found);
+}
+bool init(cv::legacy::Tracker& tracker, const cv::Mat& frame, const Box& box) {
+  return opencv_plugin::functions().init(
+      tracker, frame, cv::Rect2d(box.x, box.y, box.width, box.height));
+}
+bool update(cv::legacy::Tracker& tracker, const cv::Mat& frame, cv::Rect2d& found) {
+  return opencv_plugin::functions().update(tracker, frame, found);
+}
+
+// A tracker of OpenCV's present interface or of its legacy one, with the rectangles that it takes.
+// Made anew for each start: a second init() of the same KCF writes past its buffers.
+template <typename Library, typename Rectangle>
+class OpenCvTracker : public Tracker {
  public:
-  Modern(std::function<cv::Ptr<cv::Tracker>()> make, std::uint64_t seed, double least_px)
+  OpenCvTracker(std::function<cv::Ptr<Library>()> make, std::uint64_t seed, double least_px)
       : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
@@ -109,16 +132,16 @@ class Modern : public Tracker {
     refuse_unsound(box, frame_);
     cv::theRNG().state = seed_;
     last_ = box;
-    broken_ = false;
     tracker_ = make_();
-    window_ = Window(box, least_px_, frame_);
-    const Box window = whole(window_.window());
+    // Boosting cuts a box between pixels in two ways and reads past its features: whole pixels for
+    // what has a least size, as the present interface has them for all.
+    constexpr bool kIsLegacy = std::is_same_v<Library, cv::legacy::Tracker>;
+    const bool has_least = least_px_ > 0;
+    window_ = Window(kIsLegacy && has_least ? whole(box) : box, least_px_, frame_);
+    const Box& window = window_.window();
     try {
-      tracker_->init(frame_,
-                     cv::Rect(static_cast<int>(window.x),
-                              static_cast<int>(window.y),
-                              static_cast<int>(window.width),
-                              static_cast<int>(window.height)));
+      broken_ =
+          !tracking::init(*tracker_, frame_, kIsLegacy && !has_least ? window : whole(window));
     } catch (const cv::Exception&) {
       broken_ = true;
     }
@@ -127,8 +150,8 @@ class Modern : public Tracker {
     if (broken_) return {last_, 0, true};
     const Answer answer = answer_of(
         [&](Box& box) {
-          cv::Rect found;
-          if (!tracker_->update(frame_, found)) return false;
+          Rectangle found;
+          if (!tracking::update(*tracker_, frame_, found)) return false;
           box = window_.object_in(
               {double(found.x), double(found.y), double(found.width), double(found.height)});
           return true;
@@ -139,55 +162,8 @@ class Modern : public Tracker {
   }
 
  private:
-  std::function<cv::Ptr<cv::Tracker>()> make_;
-  cv::Ptr<cv::Tracker> tracker_;
-  std::uint64_t seed_;
-  double least_px_;
-  Window window_;
-  cv::Mat frame_;
-  Box last_;
-  bool broken_ = false;
-};
-
-class Legacy : public Tracker {
- public:
-  Legacy(std::function<cv::Ptr<cv::legacy::Tracker>()> make, std::uint64_t seed, double least_px)
-      : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
-
-  void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
-  void init(const Box& box) override {
-    refuse_unsound(box, frame_);
-    cv::theRNG().state = seed_;
-    last_ = box;
-    tracker_ = make_();
-    // Boosting cuts a box between pixels in two ways and reads past its features: whole pixels for
-    // what has a least size, as the modern interface has them for all.
-    window_ = Window(least_px_ > 0 ? whole(box) : box, least_px_, frame_);
-    const Box window = least_px_ > 0 ? whole(window_.window()) : window_.window();
-    try {
-      broken_ = !opencv_plugin::functions().init(
-          *tracker_, frame_, cv::Rect2d(window.x, window.y, window.width, window.height));
-    } catch (const cv::Exception&) {
-      broken_ = true;
-    }
-  }
-  Answer update() override {
-    if (broken_) return {last_, 0, true};
-    const Answer answer = answer_of(
-        [&](Box& box) {
-          cv::Rect2d found;
-          if (!opencv_plugin::functions().update(*tracker_, frame_, found)) return false;
-          box = window_.object_in({found.x, found.y, found.width, found.height});
-          return true;
-        },
-        last_);
-    last_ = answer.box_px;
-    return answer;
-  }
-
- private:
-  std::function<cv::Ptr<cv::legacy::Tracker>()> make_;
-  cv::Ptr<cv::legacy::Tracker> tracker_;
+  std::function<cv::Ptr<Library>()> make_;
+  cv::Ptr<Library> tracker_;
   std::uint64_t seed_;
   double least_px_;
   Window window_;
@@ -253,10 +229,10 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   if (!name.starts_with("opencv-")) return nullptr;
   const opencv_plugin::Functions& opencv = opencv_plugin::functions();
   const auto modern = [&](auto make, double least_px = 0) {
-    return std::make_unique<Modern>(make, state, least_px);
+    return std::make_unique<OpenCvTracker<cv::Tracker, cv::Rect>>(make, state, least_px);
   };
   const auto old = [&](auto make, double least_px = 0) {
-    return std::make_unique<Legacy>(make, state, least_px);
+    return std::make_unique<OpenCvTracker<cv::legacy::Tracker, cv::Rect2d>>(make, state, least_px);
   };
   const auto with_own_rand = [&](std::unique_ptr<Tracker> tracker) {
     return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own

@@ -2,10 +2,10 @@
 #include "runners/tracking/tracker.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "foundation/base/error.h"
 #include "foundation/base/suggest.h"
+#include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"
 #include "runners/tracking/opencv_trackers.h"
 #include "runners/tracking/trax_tracker.h"
@@ -57,11 +57,7 @@ TrackerName named(std::string_view tracker, const TrackerOptions& options) {
   if (equals == std::string_view::npos)
     return {trax_name(tracker, options), std::string(tracker), true};
   const std::string_view name = tracker.substr(0, equals);
-  const bool fits = !name.empty() && name.front() != '.' && name.size() <= 80 &&
-                    std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                      return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-                    });
-  if (!fits)
+  if (!results::is_results_name(name))
     throw Error("'" + std::string(name) +
                 "' is no name for a tracker's results; expected letters, digits, '-', '_', '.'");
   return {std::string(name), std::string(tracker.substr(equals + 1))};

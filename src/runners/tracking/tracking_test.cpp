@@ -10,7 +10,6 @@
 #include "foundation/base/seed.h"
 #include "runners/tracking/am3.h"
 #include "runners/tracking/luma_window.h"
-#include "runners/tracking/pyramid.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::tracking {
@@ -289,7 +288,7 @@ TEST(Trackers, RefuseABoxWithoutArea) {
 TEST(Pyramid, SumsAreThoseOfThePixels) {
   const image::Picture picture = scene(60, 60, 30, 18, 5);
   const image::Plane& luma = picture.luma();
-  const Pyramid pyramid(luma, {40, 48, 101, 77}, 3);
+  const Pyramid pyramid(luma, {40, 48, 101, 77});
   for (int level = 0; level < 3; ++level) {
     const int scale = 1 << level;
     const int x = 3, y = 5, width = 9, height = 4;

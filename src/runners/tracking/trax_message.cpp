@@ -4,13 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
 
 #include "runners/process/child.h"
+#include "runners/results/vot_regions.h"
 
 namespace airtruth::tracking {
 namespace {
 
+// Characters; libtrax refuses longer keys.
 constexpr std::size_t kMaxKey = 64;
+constexpr std::string_view kMask = "mask:";
+constexpr double kMaxPx = 1e9;  // far outside any picture
 
 constexpr std::array<std::pair<std::string_view, Type>, 6> kTypes = {
     {{"hello", Type::kHello},
@@ -72,6 +80,33 @@ std::string in_quotes(std::string_view text) {
   return result + "\"";
 }
 
+std::vector<double> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  while (true) {
+    const std::size_t end = std::min(text.find_first_of(",;"), text.size());
+    std::string_view word = text.substr(0, end);
+    while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
+    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
+    double value = 0;
+    const auto [stop, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (word.empty() || (fault != std::errc() && fault != std::errc::result_out_of_range) ||
+        stop != word.data() + word.size())
+      throw process::Failure("'" + std::string(word.substr(0, 40)) + "' is no number of a region");
+    numbers.push_back(fault == std::errc() ? value : INFINITY);
+    if (end == text.size()) return numbers;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// Empty for what is no box in any picture.
+std::optional<Box> sound(const std::optional<Box>& box) {
+  const bool is_sound =
+      box && std::isfinite(box->x + box->y + box->width + box->height) && box->width > 0 &&
+      box->height > 0 &&
+      std::max({std::abs(box->x), std::abs(box->y), box->width, box->height}) < kMaxPx;
+  return is_sound ? box : std::nullopt;
+}
+
 }  // namespace
 
 std::string_view Message::property(std::string_view key) const {
@@ -115,6 +150,38 @@ std::string line_of(const Message& message) {
   for (const std::string& argument : message.arguments) line += " " + in_quotes(argument);
   for (const auto& [key, value] : message.properties) line += " " + in_quotes(key + "=" + value);
   return line + "\n";
+}
+
+std::optional<Box> box_of(std::string_view region) {
+  if (region.starts_with(kMask)) {
+    const std::vector<double> mask = numbers_of(region.substr(kMask.size()));
+    if (const auto fault = results::fault_of_mask(mask))
+      throw process::Failure("what it reports " + *fault);
+    return sound(results::bounds_of_mask(mask));
+  }
+  const std::vector<double> n = numbers_of(region);
+  if (n.size() == 1) return std::nullopt;
+  if (n.size() == 4) return sound(Box{n[0], n[1], n[2], n[3]});
+  if (n.size() < 6 || n.size() % 2 != 0)
+    throw process::Failure(fmt::format("a region has {} numbers", n.size()));
+  return sound(results::bounds_of_polygon(n));
+}
+
+std::string rectangle_of(const Box& box) {
+  return fmt::format("{},{},{},{}", box.x, box.y, box.width, box.height);
+}
+
+std::string polygon_of(const Box& box) {
+  return fmt::format("{0},{1},{2},{1},{2},{3},{0},{3}", box.x, box.y, box.right(), box.bottom());
+}
+
+std::string mask_of(const Box& box) {
+  const auto whole = [](double v) { return static_cast<std::int64_t>(std::llround(v)); };
+  const std::int64_t x = whole(box.x);
+  const std::int64_t y = whole(box.y);
+  const std::int64_t width = std::max<std::int64_t>(1, whole(box.right()) - x);
+  const std::int64_t height = std::max<std::int64_t>(1, whole(box.bottom()) - y);
+  return fmt::format("mask:{},{},{},{},0,{}", x, y, width, height, width * height);
 }
 
 }  // namespace airtruth::tracking

@@ -2,22 +2,25 @@
 #include "runners/tracking/trax_session.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <optional>
 
+#include <fmt/format.h>
+
+#include "foundation/base/base64.h"
 #include "foundation/base/error.h"
-#include "runners/tracking/trax_region.h"
+#include "foundation/base/files.h"
+#include "foundation/image/colour.h"
+#include "picture/video/still.h"
 
 namespace airtruth::tracking {
 namespace {
 
 constexpr int kNewest = 4;
-
-process::Clock::time_point in(double seconds) {
-  return process::Clock::now() + std::chrono::duration_cast<process::Clock::duration>(
-                                     std::chrono::duration<double>(seconds));
-}
 
 // "path;memory", also with commas.
 std::vector<std::string> list_of(std::string_view text) {
@@ -86,7 +89,47 @@ Reply reply_of(const Message& message) {
   return reply;
 }
 
+fs::path new_folder() {
+  std::string name = (process::memory_folder() / "airtruth-trax-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw Error(
+        std::string("cannot create a folder for a tracker's pictures: ") + std::strerror(errno),
+        {name});
+  return name;
+}
+
 }  // namespace
+
+Images::Images(ImageKind kind) : kind_(kind) {
+  if (kind_ == ImageKind::kMemory) return;
+  folder_ = new_folder();
+  unfinished_.emplace(Unfinished::path(folder_));
+}
+
+Images::~Images() {
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+std::string Images::hand_over(const image::Picture& picture) {
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  if (kind_ == ImageKind::kMemory) {
+    const std::string_view samples(
+        reinterpret_cast<const char*>(rgb.samples.get()),
+        3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height));
+    return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(samples));
+  }
+  const auto path = [this](std::int64_t number) {
+    return folder_ / fmt::format("{:08d}.png", number);
+  };
+  const fs::path file = path(count_);
+  video::write_still(file, rgb, Flush::kLater);
+  std::error_code ignored;
+  if (count_ >= 2) fs::remove(path(count_ - 2), ignored);
+  ++count_;
+  if (kind_ == ImageKind::kPath) return "file://" + file.string();
+  return "data:image/png;" + base64_of(read_file(file));
+}
 
 Hello hello_of(const Message& message) {
   Hello hello;
@@ -124,7 +167,7 @@ Hello hello_of(const Message& message) {
 
 Session::Session(const SessionOptions& options)
     : options_(options), child_(options.command, options.transport, options.stop, kPrefix) {
-  const Message first = *parse_line(child_.read(in(options.start_s)));
+  const Message first = *parse_line(child_.read(process::in(options.start_s)));
   expect(first, Type::kHello, "hello");
   hello_ = hello_of(first);
   images_ = std::make_unique<Images>(hello_.images);
@@ -132,8 +175,8 @@ Session::Session(const SessionOptions& options)
 
 Session::~Session() {
   try {
-    child_.write(line_of({Type::kQuit, {}, {}}), in(0.5));
-    child_.wait(in(1));
+    child_.write(line_of({Type::kQuit, {}, {}}), process::in(0.5));
+    child_.wait(process::in(1));
   } catch (const std::exception&) {  // it is ended with its process
   }
 }
@@ -142,7 +185,7 @@ void Session::load(const image::Picture& picture) { image_ = images_->hand_over(
 
 Reply Session::ask(const std::vector<Message>& requests) {
   if (child_.read_if_there()) throw process::Failure("it answered before it was asked");
-  const auto deadline = in(options_.frame_s);
+  const auto deadline = process::in(options_.frame_s);
   for (const Message& request : requests) child_.write(line_of(request), deadline);
   const Message message = *parse_line(child_.read(deadline));
   const double took =

@@ -13,9 +13,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
-#include "runners/process/process_end.h"
-#include "runners/tracking/trax_region.h"
+#include "runners/tracking/trax_message.h"
 #include "runners/tracking/trax_session.h"
+#include "support/process_end.h"
 
 namespace airtruth::tracking {
 namespace {
@@ -316,7 +316,7 @@ TEST(Session, LeavesNoProcessBehind) {
   std::ifstream(file) >> grandchild;
   std::filesystem::remove(file);
   ASSERT_GT(grandchild, 0);
-  EXPECT_TRUE(process::ends(grandchild));
+  EXPECT_TRUE(test_support::ends(grandchild));
 }
 
 TEST(Session, EndsAWaitWhenStopped) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/tracking/trax_tracker.h"
 
-#include <cctype>
-
 #include "foundation/base/error.h"
+#include "runners/results/results_folder.h"
 #include "runners/tracking/trax_session.h"
 
 namespace airtruth::tracking {
@@ -98,10 +97,7 @@ std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerO
 std::string trax_name(std::string_view name, const TrackerOptions& options) {
   std::string fit;
   const Session session(session_options(name, options));
-  for (const char c : session.hello().name)
-    fit += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.'
-               ? c
-               : '_';
+  for (const char c : session.hello().name) fit += results::is_of_results_name(c) ? c : '_';
   while (!fit.empty() && fit.front() == '.') fit.erase(0, 1);
   return fit.empty() ? "trax" : fit.substr(0, 80);
 }

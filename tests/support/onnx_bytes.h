@@ -8,7 +8,7 @@
 
 // ONNX files made by hand, for tests: the messages of onnx.proto in Protocol Buffers' encoding.
 // Field numbers are those of onnx.proto, IR version 6.
-namespace airtruth::network::onnx {
+namespace airtruth::test_support::onnx {
 
 inline std::string varint(std::uint64_t value) {
   std::string bytes;
@@ -115,4 +115,4 @@ inline std::string constant_yolo_model(int side, const std::vector<float>& row) 
   return model(graph);
 }
 
-}  // namespace airtruth::network::onnx
+}  // namespace airtruth::test_support::onnx

@@ -9,7 +9,7 @@
 #include <sys/types.h>
 
 // For tests of programs in processes of their own.
-namespace airtruth::process {
+namespace airtruth::test_support {
 
 // Waits until a process that is no child of this one has ended; false after a minute, a limit that
 // only stops a hang.
@@ -23,4 +23,4 @@ inline bool ends(pid_t process) {
   return false;
 }
 
-}  // namespace airtruth::process
+}  // namespace airtruth::test_support

@@ -6,10 +6,11 @@
 #include <random>
 #include <vector>
 
+#include "runners/classical/bearing_grid.h"
 #include "runners/classical/classical.h"
-#include "runners/classical/turned.h"
 
-// Skies with targets, and flights past them, for the tests of this module.
+// Skies with targets, and flights past them, for the tests of the classical detectors, in whose
+// namespace they are.
 namespace airtruth::classical {
 
 inline constexpr int kWidth = 320, kHeight = 240;

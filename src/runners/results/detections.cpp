@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runners/results/detections.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "runners/results/fault.h"
-#include "runners/results/results_files.h"
 
 namespace airtruth::results {
 namespace {
@@ -25,8 +24,6 @@ std::string text_of(const Box& box) {
 }
 
 }  // namespace
-
-double rounded_px(double coordinate_px) { return std::round(coordinate_px * 1000) / 1000; }
 
 std::optional<std::string> fault_of(const Detection& detection, int width, int height) {
   const Box& box = detection.box_px;
