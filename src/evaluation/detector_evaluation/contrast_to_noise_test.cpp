@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "encounter/separation/violation.h"
-#include "evaluation/detector_evaluation/rendered_truth.h"
+#include "evaluation/detector_evaluation/set_truth.h"
 #include "foundation/base/seed.h"
 
 namespace airtruth::detector_evaluation {

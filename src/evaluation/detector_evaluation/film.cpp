@@ -5,9 +5,7 @@
 #include <map>
 #include <set>
 
-#include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
-#include "picture/video/reader.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -99,50 +97,27 @@ std::optional<Box> subject_of(const scores::Assessment& assessment,
   return std::nullopt;
 }
 
-class Filming {
- public:
-  Filming(const scores::Assessment& assessment, const FilmOptions& options)
-      : assessment_(assessment), options_(options) {}
-
-  void read(std::size_t truth, const Plan& plan, SequenceFilm& film) const {
-    const scores::TruthSequence& sequence = assessment_.truths[truth];
-    if (sequence.media.empty()) return;
-    video::Reader reader(sequence.media, {.threads = 1});
-    std::int64_t next = 0;
-    for (std::size_t i = 0; i <= plan.last(); ++i) {
-      const bool is_still = plan.stills.contains(i);
-      const auto cutouts = plan.cutouts.find(i);
-      if (!is_still && cutouts == plan.cutouts.end()) continue;
-      std::optional<video::Frame> frame;
-      for (; next <= sequence.frames[i].frame; ++next) {
-        if (options_.stop.stop_requested()) throw Interrupted();
-        frame = reader.next();
-        if (!frame)
-          throw Error("ends before the truth of " + sequence.name + " does",
-                      {sequence.media.string()});
-      }
-      if (!frame) continue;  // its number is that of the frame before
-      if (is_still) film.stills.push_back(still_of(frame->picture, truth, i));
-      if (cutouts != plan.cutouts.end())
-        for (const Wanted& wanted : cutouts->second)
-          *wanted.place = report::cutout_of(frame->picture, wanted.box, {});
-    }
+std::vector<report::Still> read_film(const scores::Assessment& assessment,
+                                     std::size_t truth,
+                                     const Plan& plan,
+                                     const std::stop_token& stop) {
+  const scores::TruthSequence& sequence = assessment.truths[truth];
+  std::vector<report::Still> stills;
+  if (sequence.media.empty()) return stills;
+  report::ClipPictures pictures(sequence.media, sequence.name, stop);
+  for (std::size_t i = 0; i <= plan.last(); ++i) {
+    const bool is_still = plan.stills.contains(i);
+    const auto cutouts = plan.cutouts.find(i);
+    if (!is_still && cutouts == plan.cutouts.end()) continue;
+    const image::Picture& picture = pictures.at(sequence.frames[i].frame);
+    if (is_still)
+      stills.push_back(report::still_of(picture, i, subject_of(assessment, truth, i), {}));
+    if (cutouts != plan.cutouts.end())
+      for (const Wanted& wanted : cutouts->second)
+        *wanted.place = report::cutout_of(picture, wanted.box, {});
   }
-
- private:
-  SequenceFilm::Still still_of(const image::Picture& picture,
-                               std::size_t truth,
-                               std::size_t frame) const {
-    SequenceFilm::Still still{.frame = frame};
-    still.whole = report::small_jpeg(picture, kStillWidth, report::CutoutOptions{}.quality);
-    if (const auto box = subject_of(assessment_, truth, frame))
-      still.close = report::cutout_of(picture, *box, {});
-    return still;
-  }
-
-  const scores::Assessment& assessment_;
-  const FilmOptions& options_;
-};
+  return stills;
+}
 
 }  // namespace
 
@@ -153,11 +128,13 @@ Film film_of(const scores::Assessment& assessment, const FilmOptions& options) {
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < plans.size(); ++i)
     if (!plans[i].is_empty()) wanted.push_back(i);
-  const Filming filming(assessment, options);
   in_parallel(
       wanted.size(),
       options.jobs,
-      [&](std::size_t i) { filming.read(wanted[i], plans[wanted[i]], film.sequences[wanted[i]]); },
+      [&](std::size_t i) {
+        film.sequences[wanted[i]] =
+            read_film(assessment, wanted[i], plans[wanted[i]], options.stop);
+      },
       options.progress,
       options.stop);
   return film;

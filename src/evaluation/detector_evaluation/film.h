@@ -7,28 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/report/cutout.h"
+#include "evaluation/report/film.h"
 #include "evaluation/scores/detector_score.h"
 
 namespace airtruth::detector_evaluation {
 
-// Pictures of one sequence.
-struct SequenceFilm {
-  struct Still {
-    std::size_t frame = 0;  // index in scores::TruthSequence::frames
-    // The whole picture, at most kStillWidth wide.
-    std::string whole;
-    // Around the aircraft that counts and is largest, else around the strongest detection of the
-    // first detector; empty where there is neither.
-    report::Cutout close;
-  };
-  std::vector<Still> stills;  // by frame
-};
-constexpr int kStillWidth = 480;
-
 // The pictures of a page. Empty films and cutouts: the sequence's video is not known.
 struct Film {
-  std::vector<SequenceFilm> sequences;  // as scores::Assessment::truths
+  // As scores::Assessment::truths. The subject of a still is the aircraft that counts and is
+  // largest, else the strongest detection of the first detector.
+  std::vector<std::vector<report::Still>> sequences;
   // As DetectorScore::false_alarms and misses of each detector.
   std::vector<std::vector<report::Cutout>> false_alarms, misses;
 };

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/detector_evaluation/json.h"
 #include "evaluation/detector_evaluation/plots.h"
+#include "evaluation/detector_evaluation/tables.h"
 #include "foundation/base/files.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
@@ -97,18 +97,6 @@ Json false_alarm_frames(const scores::ScoredDetections& scored, double score) {
   return frames;
 }
 
-const char* name_of(scores::MatchKind kind) {
-  switch (kind) {
-    case scores::MatchKind::kTruePositive:
-      return "found";
-    case scores::MatchKind::kIgnored:
-      return "ignored";
-    case scores::MatchKind::kFalseAlarm:
-      return "false alarm";
-  }
-  return "";
-}
-
 Json detections_in(const scores::ScoredDetections& scored, std::size_t frame) {
   Json json = Json::array();
   if (frame >= scored.detections.frames.size()) return json;
@@ -124,7 +112,7 @@ Json detections_in(const scores::ScoredDetections& scored, std::size_t frame) {
     json.push_back({box_json(found[i].box_px),
                     found[i].score,
                     found[i].track ? Json(*found[i].track) : Json(),
-                    name_of(match.kind),
+                    enum_name(match.kind),
                     match.what});
   }
   return json;
@@ -153,11 +141,11 @@ Json cutout_json(const report::Cutout& cutout) {
   return cutout.jpeg.empty() ? Json() : Json{cutout.x, cutout.y, cutout.px};
 }
 
-Json stills_json(const scores::TruthSequence& truth, const SequenceFilm& film) {
+Json stills_json(const scores::TruthSequence& truth, const std::vector<report::Still>& film) {
   Json stills = Json::array();
-  for (const SequenceFilm::Still& still : film.stills) {
-    const scores::TruthFrame& frame = truth.frames[still.frame];
-    stills.push_back({{"index", still.frame},
+  for (const report::Still& still : film) {
+    const scores::TruthFrame& frame = truth.frames[still.index];
+    stills.push_back({{"index", still.index},
                       {"frame", frame.frame},
                       {"time_s", rounded(frame.time_s, 0.001)},
                       {"close", cutout_json(still.close)},
@@ -180,7 +168,7 @@ Json encounters_json(const scores::TruthSequence& truth) {
 
 Json sequence_json(const scores::Assessment& assessment, const Film& film, std::size_t index) {
   const scores::TruthSequence& truth = assessment.truths[index];
-  const SequenceFilm& pictures = film.sequences[index];
+  const std::vector<report::Still>& stills = film.sequences[index];
   Json frame_numbers = Json::array();
   for (const scores::TruthFrame& frame : truth.frames) frame_numbers.push_back(frame.frame);
   Json detectors = Json::array();
@@ -189,8 +177,7 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
     for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != index) continue;
       Json drawn = Json::array();
-      for (const SequenceFilm::Still& still : pictures.stills)
-        drawn.push_back(detections_in(scored, still.frame));
+      for (const report::Still& still : stills) drawn.push_back(detections_in(scored, still.index));
       detectors.push_back({{"detector", k},
                            {"found", found_letters(truth, scored, point_score(detector))},
                            {"false_alarms", false_alarm_frames(scored, point_score(detector))},
@@ -204,7 +191,7 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
           {"weight", truth.weight},
           {"frame", frame_numbers},
           {"encounters", encounters_json(truth)},
-          {"stills", stills_json(truth, pictures)},
+          {"stills", stills_json(truth, stills)},
           {"detectors", detectors}};
 }
 
@@ -224,10 +211,7 @@ std::vector<html::PageBlob> pictures_of(const Film& film) {
     report::add_picture(pictures, name, jpeg);
   };
   for (std::size_t i = 0; i < film.sequences.size(); ++i)
-    for (std::size_t n = 0; n < film.sequences[i].stills.size(); ++n) {
-      add(fmt::format("whole-{}-{}", i, n), film.sequences[i].stills[n].whole);
-      add(fmt::format("close-{}-{}", i, n), film.sequences[i].stills[n].close.jpeg);
-    }
+    report::add_stills(pictures, i, film.sequences[i]);
   for (std::size_t k = 0; k < film.misses.size(); ++k) {
     for (std::size_t i = 0; i < film.false_alarms[k].size(); ++i)
       add(fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg);

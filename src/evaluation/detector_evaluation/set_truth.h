@@ -3,11 +3,15 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
+#include "encounter/separation/measures.h"
+#include "encounter/separation/violation.h"
 #include "evaluation/scores/truth.h"
 #include "foundation/base/log.h"
 
@@ -39,5 +43,20 @@ SetTruth set_truth(const fs::path& set, const SetTruthOptions& options);
 // Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
 // happens. Throws Error where the video ends before the truth does.
 void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop);
+
+// The own aircraft and an intruder at one frame.
+struct PairState {
+  double time_s = 0;
+  encounter::Mover own;
+  encounter::Mover intruder;
+};
+
+// The first time at which the states violate the volume: within the frames, between which positions
+// and velocities are interpolated, or within `lookahead_s` after the last of them, from which on
+// both keep their velocities. Empty where they never do. For volumes that the scene did not ask
+// for; sequence.json states the violations of the others along the whole paths.
+std::optional<double> first_violation_s(const encounter::Volume& volume,
+                                        std::span<const PairState> states,
+                                        double lookahead_s);
 
 }  // namespace airtruth::detector_evaluation

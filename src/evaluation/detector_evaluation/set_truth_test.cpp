@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "evaluation/detector_evaluation/assess.h"
-#include "evaluation/detector_evaluation/json.h"
+#include "evaluation/detector_evaluation/tables.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "runners/results/results_folder.h"

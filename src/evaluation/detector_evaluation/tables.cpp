@@ -1,107 +1,369 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/detector_evaluation/tables.h"
 
-#include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <airtruth/version.h>
-#include <fmt/format.h>
 
-#include "evaluation/detector_evaluation/json.h"
 #include "evaluation/report/tables.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
 
 using report::Json;
+using report::json_of;
+using report::or_null;
+
+Json json_of(const std::optional<measures::PrecisionCurve>& curve,
+             const std::optional<measures::PrecisionBand>& band) {
+  if (!curve) return {};
+  Json json = {{"precision", curve->precision},
+               {"score", curve->score},
+               {"recall", curve->recall},
+               {"truths", curve->truths}};
+  if (band) {
+    json["low_95"] = band->low;
+    json["high_95"] = band->high;
+  }
+  return json;
+}
+
+Json json_of(const measures::Spread& spread) {
+  Json json = {{"mean", spread.mean},
+               {"deviation", spread.deviation},
+               {"rms", spread.rms},
+               {"within_95", spread.within_95},
+               {"count", spread.count}};
+  const auto& intervals = spread.intervals;
+  const auto bounds = [&](evaluation::Interval measures::Spread::Intervals::*of) {
+    return json_of(intervals ? std::optional((*intervals).*of) : std::nullopt);
+  };
+  json["mean_interval_95"] = bounds(&measures::Spread::Intervals::mean);
+  json["deviation_interval_95"] = bounds(&measures::Spread::Intervals::deviation);
+  json["rms_interval_95"] = bounds(&measures::Spread::Intervals::rms);
+  json["within_95_interval_95"] = bounds(&measures::Spread::Intervals::within_95);
+  return json;
+}
+
+Json json_of(const measures::AotRate& rate) {
+  return {{"rate", rate.total > 0 ? Json(rate.rate()) : Json()},
+          {"detected", rate.detected},
+          {"total", rate.total}};
+}
+
+// Null without a trial.
+Json json_of(const statistics::Proportion& share) {
+  if (!(share.trials > 0)) return {};
+  return {{"share", share.value},
+          {"interval_95", {share.low, share.high}},
+          {"successes", share.successes},
+          {"trials", share.trials},
+          {"sequences", share.clusters},
+          {"effective_sequences", share.effective_clusters}};
+}
+
+Json json_of(const std::optional<scores::WeightedMean>& mean) {
+  if (!mean) return {};
+  return {{"mean", mean->mean}, {"interval_95", json_of(mean->interval)}, {"count", mean->count}};
+}
+
+Json json_of(const measures::AveragePrecision& ap) {
+  return {{"ap", or_null(ap.ap)},
+          {"ap_50", or_null(ap.ap_50)},
+          {"ap_50_interval_95", json_of(ap.ap_50_interval)},
+          {"ap_75", or_null(ap.ap_75)},
+          {"ap_small", or_null(ap.ap_small)},
+          {"ap_medium", or_null(ap.ap_medium)},
+          {"ap_large", or_null(ap.ap_large)},
+          {"ar_1", or_null(ap.ar_1)},
+          {"ar_10", or_null(ap.ar_10)},
+          {"ar_100", or_null(ap.ar_100)},
+          {"ar_small", or_null(ap.ar_small)},
+          {"ar_medium", or_null(ap.ar_medium)},
+          {"ar_large", or_null(ap.ar_large)},
+          {"ap_centre", or_null(ap.ap_centre)},
+          {"ap_centre_interval_95", json_of(ap.ap_centre_interval)},
+          {"curve_50", json_of(ap.curve_50, ap.band_50)},
+          {"curve_centre", json_of(ap.curve_centre, ap.band_centre)}};
+}
+
+// `has_hours`: false where the duration of the sequences is unknown.
+Json json_of(const measures::FrocPoint& point, bool has_hours) {
+  return {{"score", point.score},
+          {"detection", json_of(point.detection)},
+          {"false_alarms_per_image", point.false_alarms_per_image},
+          {"false_alarms_per_hour", has_hours ? Json(point.false_alarms_per_hour) : Json()},
+          {"false_alarms_per_flight", point.false_alarms_per_flight}};
+}
+
+Json json_of(const measures::Froc& froc) {
+  Json json = {{"images", froc.images},
+               {"flights", froc.flights},
+               {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
+               {"aircraft_in_images", froc.aircraft},
+               {"points", Json::array()}};
+  for (const measures::FrocPoint& point : froc.points)
+    json["points"].push_back(json_of(point, froc.hours > 0));
+  return json;
+}
+
+Json json_of(const scores::DetectionBin& bin) {
+  Json json = Json::object();
+  if (bin.name.empty()) {
+    json["from"] = bin.from;
+    json["to"] = report::json_of_bound(bin.to);
+  } else {
+    json["name"] = bin.name;
+  }
+  json.update(json_of(bin.detection));
+  if (bin.weighted) json["weighted"] = json_of(*bin.weighted);
+  return json;
+}
+
+Json json_of(const std::optional<measures::BearingError>& error) {
+  if (!error) return {};
+  const auto rate = [](const std::optional<measures::Spread>& spread) {
+    return spread ? json_of(*spread) : Json();
+  };
+  return {{"azimuth_mrad", json_of(error->azimuth)},
+          {"elevation_mrad", json_of(error->elevation)},
+          {"azimuth_rate_mradps", rate(error->azimuth_rate)},
+          {"elevation_rate_mradps", rate(error->elevation_rate)},
+          {"sc228_bearing_deviation_mrad", measures::kSc228Bearing_mrad},
+          {"sc228_rate_deviation_mradps", measures::kSc228Rate_mradps}};
+}
+
+Json json_of(const measures::AotScore& aot, bool has_hours) {
+  return {{"score", aot.score},
+          {"edr", json_of(aot.edr_all)},
+          {"edr_below_horizon", json_of(aot.edr_below)},
+          {"edr_mixed", json_of(aot.edr_mixed)},
+          {"edr_above_horizon", json_of(aot.edr_above)},
+          {"edr_by_frames", json_of(aot.edr_frames_all)},
+          {"afdr", json_of(aot.afdr)},
+          {"max_range_m", or_null(aot.max_range_m)},
+          {"hfar", has_hours ? Json(aot.hfar) : Json()},
+          {"fppi", aot.fppi}};
+}
+
+Json json_of(const measures::Hota& hota) {
+  const auto curve = [](const measures::Hota::Curve& values) {
+    return Json{{"mean", measures::Hota::mean(values)}, {"at_overlaps", values}};
+  };
+  return {{"hota", curve(hota.hota)},
+          {"det_a", curve(hota.det_a)},
+          {"ass_a", curve(hota.ass_a)},
+          {"det_re", curve(hota.det_re)},
+          {"det_pr", curve(hota.det_pr)},
+          {"ass_re", curve(hota.ass_re)},
+          {"ass_pr", curve(hota.ass_pr)},
+          {"loc_a", curve(hota.loc_a)}};
+}
+
+Json json_of(const measures::ClearMot& clear) {
+  return {{"mota", clear.mota()},
+          {"motp", clear.motp()},
+          {"recall", clear.recall()},
+          {"precision", clear.precision()},
+          {"true_positives", clear.true_positives},
+          {"false_negatives", clear.false_negatives},
+          {"false_positives", clear.false_positives},
+          {"identity_switches", clear.identity_switches},
+          {"fragmentations", clear.fragmentations},
+          {"mostly_tracked", clear.mostly_tracked},
+          {"partly_tracked", clear.partly_tracked},
+          {"mostly_lost", clear.mostly_lost}};
+}
+
+Json json_of(const measures::Identity& identity) {
+  return {{"idf1", identity.idf1()},
+          {"recall", identity.recall()},
+          {"precision", identity.precision()},
+          {"true_positives", identity.true_positives},
+          {"false_negatives", identity.false_negatives},
+          {"false_positives", identity.false_positives}};
+}
+
+Json json_of(const scores::DeclarationSummary& summary) {
+  return {{"declared", json_of(summary.declared)},
+          {"range_m", json_of(summary.range_m)},
+          {"to_closest_approach_s", json_of(summary.to_closest_approach_s)},
+          {"in_time", summary.in_time ? json_of(*summary.in_time) : Json()},
+          {"no_violation", summary.no_violation},
+          {"impossible", summary.impossible},
+          {"unknown", summary.unknown}};
+}
+
+Json json_of(const scores::EncounterScore& one,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::TruthSequence& truth = assessment.truths[detector.sequences[one.sequence].truth];
+  const scores::TruthEncounter* encounter = truth.encounter(one.object);
+  Json json = {{"sequence", truth.name},
+               {"object", one.object},
+               {"name", encounter != nullptr ? Json(encounter->name) : Json()},
+               {"weight", truth.weight},
+               {"first_seen_frame", truth.frames[one.first_seen].frame},
+               {"first_seen_s", truth.frames[one.first_seen].time_s},
+               {"first_seen_range_m", or_null(one.first_seen_range_m)},
+               {"frames_seen", one.frames_seen},
+               {"least_range_m", or_null(one.least_range_m)},
+               {"declaration", Json()},
+               {"in_time", enum_name(one.in_time)}};
+  if (encounter != nullptr) {
+    json["closest_approach_s"] = or_null(encounter->closest_approach_s);
+    json["violation_s"] = or_null(encounter->violation_s);
+  }
+  if (one.declaration)
+    json["declaration"] = {
+        {"frame", truth.frames[one.declaration->frame].frame},
+        {"time_s", one.declaration->time_s},
+        {"track", one.declaration->track},
+        {"range_m", or_null(one.declaration->range_m)},
+        {"to_closest_approach_s", or_null(one.declaration->to_closest_approach_s)}};
+  return json;
+}
+
+Json json_of(const scores::OperatingPoint& point, bool has_hours) {
+  return {{"score", point.score},
+          {"false_tracks_per_hour", has_hours ? Json(point.false_tracks_per_hour) : Json()},
+          {"declared", json_of(point.declared)},
+          {"range_m", json_of(point.range_m)},
+          {"range_all_m", json_of(point.range_all_m)}};
+}
+
+// Null for results without tracks.
+Json tracks_json_of(const scores::DetectorScore& detector, const scores::Assessment& assessment) {
+  if (!detector.tracks) return {};
+  const scores::TrackScores& tracks = *detector.tracks;
+  const bool has_hours = detector.froc.hours > 0;
+  Json json = {{"hota", json_of(tracks.hota)},
+               {"clear", json_of(tracks.clear)},
+               {"identity", json_of(tracks.identity)},
+               {"false_tracks", tracks.false_tracks},
+               {"false_tracks_per_hour", has_hours ? Json(tracks.false_tracks_per_hour) : Json()},
+               {"declarations", json_of(tracks.declarations)},
+               {"weighted_declarations",
+                tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
+               {"encounters", Json::array()},
+               {"operating_curve", Json::array()}};
+  for (const scores::EncounterScore& one : tracks.encounters)
+    json["encounters"].push_back(json_of(one, detector, assessment));
+  for (const scores::OperatingPoint& point : tracks.operating_curve)
+    json["operating_curve"].push_back(json_of(point, has_hours));
+  return json;
+}
+
+Json json_of(const scores::FalseAlarm& alarm,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
+  const scores::TruthSequence& truth = assessment.truths[scored.truth];
+  const Box& box = scored.detections.frames[alarm.frame][alarm.detection].box_px;
+  return {{"sequence", truth.name},
+          {"frame", truth.frames[alarm.frame].frame},
+          {"score", alarm.score},
+          {"box_px", {box.x, box.y, box.width, box.height}},
+          {"what", alarm.what},
+          {"frames", alarm.frames},
+          {"sequences", alarm.sequences},
+          {"to_aircraft_px", or_null(alarm.to_aircraft_px)}};
+}
+
+Json json_of(const scores::Miss& miss,
+             const scores::DetectorScore& detector,
+             const scores::Assessment& assessment) {
+  const scores::TruthSequence& truth = assessment.truths[detector.sequences[miss.sequence].truth];
+  const scores::TruthObject& object = truth.frames[miss.frame].objects[miss.index];
+  const Box& box = object.box_px;
+  return {{"sequence", truth.name},
+          {"object", miss.object},
+          {"first_frame", truth.frames[miss.first_frame].frame},
+          {"frames", miss.frames},
+          {"frame", truth.frames[miss.frame].frame},
+          {"box_px", {box.x, box.y, box.width, box.height}},
+          {"range_m", or_null(object.range_m)},
+          {"contrast_to_noise", or_null(miss.contrast_to_noise)}};
+}
+
+}  // namespace
+
+Json json_of_detector(const scores::DetectorScore& detector, const scores::Assessment& assessment) {
+  const bool has_hours = detector.froc.hours > 0;
+  const auto aot = [&](const std::optional<measures::AotScore>& score) {
+    return score ? json_of(*score, has_hours) : Json();
+  };
+  Json json = {{"name", detector.name},
+               {"sequences", detector.sequences.size()},
+               {"detections", detector.detections},
+               {"frames_per_second_median", or_null(detector.frames_per_second_median)},
+               {"average_precision", json_of(detector.average_precision)},
+               {"froc", json_of(detector.froc)},
+               {"point", detector.point ? json_of(*detector.point, has_hours) : Json()},
+               {"by", Json::object()},
+               {"false_alarms_by", detector.false_alarms_by},
+               {"mistaken_by", Json::object()},
+               {"bearing", json_of(detector.bearing)},
+               {"aot", json_of(detector.aot, has_hours)},
+               {"aot_at_hfar_0.5", has_hours ? aot(detector.aot_ranks.by_hfar) : Json()},
+               {"aot_at_fppi_0.0005", aot(detector.aot_ranks.by_fppi)},
+               {"tracks", tracks_json_of(detector, assessment)},
+               {"strongest_false_alarms", Json::array()},
+               {"misses", Json::array()}};
+  if (detector.point && detector.weighted_detection)
+    json["point"]["weighted_detection"] = json_of(*detector.weighted_detection);
+  for (const auto& [key, bins] : detector.by) {
+    json["by"][key] = Json::array();
+    for (const scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
+  }
+  for (const auto& [what, share] : detector.mistaken_by) json["mistaken_by"][what] = json_of(share);
+  for (const scores::FalseAlarm& alarm : detector.false_alarms)
+    json["strongest_false_alarms"].push_back(json_of(alarm, detector, assessment));
+  for (const scores::Miss& miss : detector.misses)
+    json["misses"].push_back(json_of(miss, detector, assessment));
+  return json;
+}
+
+namespace {
 
 constexpr const char* kFormat = "airtruth detection evaluation 1";
 
-using report::quoted;
+// The format of numbers in CSV.
+constexpr const char* kNumber = "{:.9g}";
 
-std::string cell(double value) { return fmt::format(",{:.9g}", value); }
-std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ","; }
-std::string cells(const std::optional<evaluation::Interval>& interval) {
-  return interval ? cell(interval->low) + cell(interval->high) : ",,";
-}
-std::string cells(const std::optional<statistics::Proportion>& share) {
-  return share && share->trials > 0 ? cell(share->value) + cell(share->low) + cell(share->high)
-                                    : ",,,";
-}
-std::string cells(const std::optional<scores::WeightedMean>& mean) {
-  return mean ? cell(mean->mean) + cells(mean->interval) : ",,,";
-}
-
-constexpr const char* kDetectorsHead =
-    "detector,sequences,detections,ap,ap_50,ap_50_low_95,ap_50_high_95,ap_75,ap_centre,"
-    "ap_centre_low_95,ap_centre_high_95,point_score,detection,detection_low_95,detection_high_95,"
-    "weighted_detection,weighted_detection_low_95,weighted_detection_high_95,"
-    "false_alarms_per_image,false_alarms_per_hour,false_alarms_per_flight,"
-    "azimuth_deviation_mrad,azimuth_deviation_low_95_mrad,azimuth_deviation_high_95_mrad,"
-    "elevation_deviation_mrad,elevation_deviation_low_95_mrad,elevation_deviation_high_95_mrad,"
-    "azimuth_rate_deviation_mradps,azimuth_rate_deviation_low_95_mradps,"
-    "azimuth_rate_deviation_high_95_mradps,elevation_rate_deviation_mradps,"
-    "elevation_rate_deviation_low_95_mradps,elevation_rate_deviation_high_95_mradps,aot_edr,"
-    "aot_hfar,aot_afdr,aot_fppi,hota,mota,idf1,declared,declared_low_95,declared_high_95,"
-    "declaration_range_m,declaration_range_low_95,declaration_range_high_95,"
-    "declaration_to_closest_approach_s,declaration_to_closest_approach_low_95,"
-    "declaration_to_closest_approach_high_95,in_time,in_time_low_95,in_time_high_95,"
-    "false_tracks_per_hour,frames_per_second_median\n";
-
-std::string point_cells(const scores::DetectorScore& detector) {
-  if (!detector.point) return std::string(10, ',');
-  const measures::FrocPoint& point = *detector.point;
-  return cell(point.score) + cells(std::optional(point.detection)) +
-         cells(detector.weighted_detection) + cell(point.false_alarms_per_image) +
-         (detector.froc.hours > 0 ? cell(point.false_alarms_per_hour) : ",") +
-         cell(point.false_alarms_per_flight);
-}
-
-std::string bearing_cells(const std::optional<measures::BearingError>& error) {
-  if (!error) return std::string(12, ',');
-  const auto deviation = [](const std::optional<measures::Spread>& spread) {
-    if (!spread) return std::string(3, ',');
-    const auto& intervals = spread->intervals;
-    return cell(spread->deviation) +
-           cells(intervals ? std::optional(intervals->deviation) : std::nullopt);
-  };
-  return deviation(error->azimuth) + deviation(error->elevation) + deviation(error->azimuth_rate) +
-         deviation(error->elevation_rate);
-}
-
-std::string aot_cells(const scores::DetectorScore& detector) {
-  const measures::AotScore& aot = detector.aot;
-  const auto rate = [](const measures::AotRate& one) {
-    return one.total > 0 ? cell(one.rate()) : std::string(",");
-  };
-  return rate(aot.edr_all) + (detector.froc.hours > 0 ? cell(aot.hfar) : ",") + rate(aot.afdr) +
-         cell(aot.fppi);
-}
-
-std::string track_cells(const scores::DetectorScore& detector) {
-  if (!detector.tracks) return std::string(16, ',');
-  const scores::TrackScores& tracks = *detector.tracks;
-  const scores::DeclarationSummary& declarations = tracks.declarations;
-  return cell(measures::Hota::mean(tracks.hota.hota)) + cell(tracks.clear.mota()) +
-         cell(tracks.identity.idf1()) + cells(std::optional(declarations.declared)) +
-         cells(declarations.range_m) + cells(declarations.to_closest_approach_s) +
-         cells(declarations.in_time) +
-         (detector.froc.hours > 0 ? cell(tracks.false_tracks_per_hour) : ",");
-}
-
-std::string detectors_csv(const scores::Assessment& assessment) {
-  std::string text = kDetectorsHead;
-  for (const scores::DetectorScore& detector : assessment.detectors) {
-    const measures::AveragePrecision& ap = detector.average_precision;
-    text += quoted(detector.name) +
-            fmt::format(",{},{}", detector.sequences.size(), detector.detections) + cell(ap.ap) +
-            cell(ap.ap_50) + cells(ap.ap_50_interval) + cell(ap.ap_75) + cell(ap.ap_centre) +
-            cells(ap.ap_centre_interval) + point_cells(detector) + bearing_cells(detector.bearing) +
-            aot_cells(detector) + track_cells(detector) + cell(detector.frames_per_second_median) +
-            "\n";
-  }
-  return text;
-}
+constexpr const char* kDetectorColumns =
+    "detector=name,sequences,detections,ap=average_precision/ap,ap_50=average_precision/ap_50,"
+    "ap_50_*_95=average_precision/ap_50_interval_95,ap_75=average_precision/ap_75,"
+    "ap_centre=average_precision/ap_centre,"
+    "ap_centre_*_95=average_precision/ap_centre_interval_95,"
+    "point_score=point/score,detection=point/detection/share,"
+    "detection_*_95=point/detection/interval_95,"
+    "weighted_detection=point/weighted_detection/share,"
+    "weighted_detection_*_95=point/weighted_detection/interval_95,"
+    "false_alarms_per_image=point/false_alarms_per_image,"
+    "false_alarms_per_hour=point/false_alarms_per_hour,"
+    "false_alarms_per_flight=point/false_alarms_per_flight,"
+    "azimuth_deviation_mrad=bearing/azimuth_mrad/deviation,"
+    "azimuth_deviation_*_95_mrad=bearing/azimuth_mrad/deviation_interval_95,"
+    "elevation_deviation_mrad=bearing/elevation_mrad/deviation,"
+    "elevation_deviation_*_95_mrad=bearing/elevation_mrad/deviation_interval_95,"
+    "azimuth_rate_deviation_mradps=bearing/azimuth_rate_mradps/deviation,"
+    "azimuth_rate_deviation_*_95_mradps=bearing/azimuth_rate_mradps/deviation_interval_95,"
+    "elevation_rate_deviation_mradps=bearing/elevation_rate_mradps/deviation,"
+    "elevation_rate_deviation_*_95_mradps=bearing/elevation_rate_mradps/deviation_interval_95,"
+    "aot_edr=aot/edr/rate,aot_hfar=aot/hfar,aot_afdr=aot/afdr/rate,aot_fppi=aot/fppi,"
+    "hota=tracks/hota/hota/mean,mota=tracks/clear/mota,idf1=tracks/identity/idf1,"
+    "declared=tracks/declarations/declared/share,"
+    "declared_*_95=tracks/declarations/declared/interval_95,"
+    "declaration_range_m=tracks/declarations/range_m/mean,"
+    "declaration_range_*_95=tracks/declarations/range_m/interval_95,"
+    "declaration_to_closest_approach_s=tracks/declarations/to_closest_approach_s/mean,"
+    "declaration_to_closest_approach_*_95=tracks/declarations/to_closest_approach_s/interval_95,"
+    "in_time=tracks/declarations/in_time/share,"
+    "in_time_*_95=tracks/declarations/in_time/interval_95,"
+    "false_tracks_per_hour=tracks/false_tracks_per_hour,frames_per_second_median";
 
 // What one sequence has at the operating point.
 struct SequenceCounts {
@@ -128,95 +390,101 @@ SequenceCounts counts_of(const scores::ScoredDetections& scored,
 }
 
 std::string sequences_csv(const scores::Assessment& assessment) {
-  std::string text =
-      "detector,sequence,background,frames,duration_s,weight,aircraft_in_frames,found,false_"
-      "alarms\n";
+  std::vector<Json> rows;
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const scores::ScoredDetections& scored : detector.sequences) {
       const scores::TruthSequence& truth = assessment.truths[scored.truth];
       const double score = detector.point ? detector.point->score : 0;
       const SequenceCounts counts = counts_of(scored, truth, score);
-      text += quoted(detector.name) + "," + quoted(truth.name) + "," + quoted(truth.background) +
-              fmt::format(",{}", truth.frames.size()) +
-              (truth.duration_s > 0 ? cell(truth.duration_s) : ",") + cell(truth.weight) +
-              fmt::format(",{},{},{}\n", counts.aircraft, counts.detected, counts.false_alarms);
+      rows.push_back({{"detector", detector.name},
+                      {"sequence", truth.name},
+                      {"background", truth.background},
+                      {"frames", truth.frames.size()},
+                      {"duration_s", truth.duration_s > 0 ? Json(truth.duration_s) : Json()},
+                      {"weight", truth.weight},
+                      {"aircraft_in_frames", counts.aircraft},
+                      {"found", counts.detected},
+                      {"false_alarms", counts.false_alarms}});
     }
-  return text;
+  return report::csv_of(
+      "detector,sequence,background,frames,duration_s,weight,aircraft_in_frames,found,false_alarms",
+      rows,
+      kNumber);
 }
 
-std::string encounters_csv(const scores::Assessment& assessment) {
-  std::string text =
-      "detector,sequence,object,weight,first_seen_s,first_seen_range_m,declared_s,declared_range_m,"
-      "declared_to_closest_approach_s,violation_s,in_time\n";
-  for (const scores::DetectorScore& detector : assessment.detectors) {
-    if (!detector.tracks) continue;
-    for (const scores::EncounterScore& one : detector.tracks->encounters) {
-      const scores::TruthSequence& truth =
-          assessment.truths[detector.sequences[one.sequence].truth];
-      const scores::TruthEncounter* encounter = truth.encounter(one.object);
-      const auto& declared = one.declaration;
-      text += quoted(detector.name) + "," + quoted(truth.name) + fmt::format(",{}", one.object) +
-              cell(truth.weight) + cell(truth.frames[one.first_seen].time_s) +
-              cell(one.first_seen_range_m) +
-              (declared ? cell(declared->time_s) + cell(declared->range_m) +
-                              cell(declared->to_closest_approach_s)
-                        : ",,,") +
-              cell(encounter != nullptr ? encounter->violation_s : std::nullopt) + "," +
-              (one.in_time == scores::InTime::kUnknown ? "" : scores::name_of(one.in_time)) + "\n";
+// The tables below state what the JSON of the detectors does.
+using Detectors = std::vector<Json>;
+
+std::string encounters_csv(const Detectors& detectors) {
+  std::vector<Json> rows;
+  for (const Json& detector : detectors) {
+    if (detector["tracks"].is_null()) continue;
+    for (const Json& encounter : detector["tracks"]["encounters"]) {
+      Json& row = rows.emplace_back(encounter);
+      row["detector"] = detector["name"];
+      if (row["in_time"] == enum_name(scores::InTime::kUnknown)) row["in_time"] = "";
     }
   }
-  return text;
+  return report::csv_of(
+      "detector,sequence,object,weight,first_seen_s,first_seen_range_m,"
+      "declared_s=declaration/time_s,declared_range_m=declaration/range_m,"
+      "declared_to_closest_approach_s=declaration/to_closest_approach_s,violation_s,in_time",
+      rows,
+      kNumber);
 }
 
-std::string breakdown_csv(const scores::Assessment& assessment) {
-  std::string text =
-      "detector,by,name,from,to,aircraft_in_frames,found,detection,low_95,high_95,"
-      "weighted_detection,weighted_low_95,weighted_high_95,effective_sequences\n";
-  for (const scores::DetectorScore& detector : assessment.detectors)
-    for (const auto& [key, bins] : detector.by)
-      for (const scores::DetectionBin& bin : bins) {
-        text += quoted(detector.name) + "," + key + "," + quoted(bin.name);
-        text +=
-            bin.name.empty() ? cell(bin.from) + (std::isfinite(bin.to) ? cell(bin.to) : ",") : ",,";
-        text += cell(bin.detection.trials) + cell(bin.detection.successes) +
-                cells(std::optional(bin.detection)) + cells(bin.weighted) +
-                (bin.weighted ? cell(bin.weighted->effective_clusters) : ",") + "\n";
+std::string breakdown_csv(const Detectors& detectors) {
+  std::vector<Json> rows;
+  for (const Json& detector : detectors)
+    for (const auto& [key, bins] : detector["by"].items())
+      for (const Json& bin : bins) {
+        Json& row = rows.emplace_back(bin);
+        row["detector"] = detector["name"];
+        row["by"] = key;
       }
-  return text;
+  return report::csv_of(
+      "detector,by,name,from,to,aircraft_in_frames=trials,found=successes,detection=share,"
+      "*_95=interval_95,weighted_detection=weighted/share,weighted_*_95=weighted/interval_95,"
+      "effective_sequences=weighted/effective_sequences",
+      rows,
+      kNumber);
 }
 
-std::string curves_csv(const scores::Assessment& assessment) {
-  std::string text = "detector,curve,score,x,y,low_95,high_95\n";
-  const auto line =
-      [&](const scores::DetectorScore& detector, const char* curve, const std::string& rest) {
-        text += quoted(detector.name) + "," + curve + rest + "\n";
-      };
-  const auto precision = [&](const scores::DetectorScore& detector,
-                             const char* name,
-                             const std::optional<measures::PrecisionCurve>& curve,
-                             const std::optional<measures::PrecisionBand>& band) {
-    if (!curve) return;
-    for (std::size_t i = 0; i < curve->precision.size(); ++i)
-      line(detector,
-           name,
-           cell(curve->score[i]) + cell(static_cast<double>(i) / 100) + cell(curve->precision[i]) +
-               (band ? cell(band->low[i]) + cell(band->high[i]) : ",,"));
-  };
-  for (const scores::DetectorScore& detector : assessment.detectors) {
-    const measures::AveragePrecision& ap = detector.average_precision;
-    precision(detector, "precision_by_recall_overlap_50", ap.curve_50, ap.band_50);
-    precision(detector, "precision_by_recall_centre", ap.curve_centre, ap.band_centre);
-    for (const measures::FrocPoint& point : detector.froc.points)
-      line(detector,
-           "detection_by_false_alarms_per_image",
-           cell(point.score) + cell(point.false_alarms_per_image) +
-               cells(std::optional(point.detection)));
-    if (!detector.tracks || !(detector.froc.hours > 0)) continue;
-    for (const scores::OperatingPoint& point : detector.tracks->operating_curve)
-      if (point.range_m)
-        line(detector,
-             "declaration_range_by_false_tracks_per_hour",
-             cell(point.score) + cell(point.false_tracks_per_hour) + cells(point.range_m));
+// One row for each recall.
+Json recalls_of(const Json& curve) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; !curve.is_null() && i < curve["score"].size(); ++i) {
+    Json& row = rows.emplace_back();
+    row["recall"] = static_cast<double>(i) / (measures::kRecallSteps - 1);
+    for (const char* key : {"score", "precision", "low_95", "high_95"})
+      if (curve.contains(key)) row[key] = curve[key][i];
+  }
+  return rows;
+}
+
+std::string curves_csv(const Detectors& detectors) {
+  std::string text = report::csv_of("detector,curve,score,x,y,*_95", {}, kNumber);
+  for (const Json& detector : detectors) {
+    const auto add = [&](const char* curve, const Json& points, const char* xy) {
+      for (Json row : points) {
+        row.update({{"detector", detector["name"]}, {"curve", curve}});
+        text += report::csv_rows(std::string("detector,curve,score,") + xy, {row}, kNumber);
+      }
+    };
+    const Json& precision = detector["average_precision"];
+    for (const auto& [name, key] : {std::pair{"precision_by_recall_overlap_50", "curve_50"},
+                                    {"precision_by_recall_centre", "curve_centre"}})
+      add(name, recalls_of(precision[key]), "recall,precision,low_95,high_95");
+    add("detection_by_false_alarms_per_image",
+        detector["froc"]["points"],
+        "false_alarms_per_image,detection/share,*=detection/interval_95");
+    if (detector["tracks"].is_null() || detector["froc"]["hours"].is_null()) continue;
+    Json declared = detector["tracks"]["operating_curve"];
+    std::erase_if(declared.get_ref<Json::array_t&>(),
+                  [](const Json& point) { return point["range_m"].is_null(); });
+    add("declaration_range_by_false_tracks_per_hour",
+        declared,
+        "false_tracks_per_hour,range_m/mean,*=range_m/interval_95");
   }
   return text;
 }
@@ -233,6 +501,9 @@ Json point_options_of(const scores::Assessment& assessment) {
 }  // namespace
 
 void write_tables(const scores::Assessment& assessment, const std::filesystem::path& out) {
+  Detectors detectors;
+  for (const scores::DetectorScore& detector : assessment.detectors)
+    detectors.push_back(json_of_detector(detector, assessment));
   Json all = {{"format", kFormat},
               {"version", kVersion},
               {"dataset", assessment.set},
@@ -241,15 +512,13 @@ void write_tables(const scores::Assessment& assessment, const std::filesystem::p
               {"volume", assessment.volume.empty() ? Json() : Json(assessment.volume)},
               {"weighted", assessment.is_weighted},
               {"left_out", assessment.left_out},
-              {"detectors", Json::array()}};
-  for (const scores::DetectorScore& detector : assessment.detectors)
-    all["detectors"].push_back(json_of_detector(detector, assessment));
+              {"detectors", detectors}};
   report::write_files(out,
-                      {{"detectors.csv", detectors_csv(assessment)},
+                      {{"detectors.csv", report::csv_of(kDetectorColumns, detectors, kNumber)},
                        {"detection_sequences.csv", sequences_csv(assessment)},
-                       {"detection_encounters.csv", encounters_csv(assessment)},
-                       {"detection_breakdown.csv", breakdown_csv(assessment)},
-                       {"detection_curves.csv", curves_csv(assessment)},
+                       {"detection_encounters.csv", encounters_csv(detectors)},
+                       {"detection_breakdown.csv", breakdown_csv(detectors)},
+                       {"detection_curves.csv", curves_csv(detectors)},
                        {"detection.json", all.dump(1) + "\n"}});
 }
 

@@ -1,16 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/report/tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 
+#include <fmt/format.h>
+
+#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::report {
+namespace {
 
 namespace fs = std::filesystem;
 
+struct Column {
+  std::string name;
+  Json::json_pointer place;
+};
+
+std::vector<Column> columns_of(std::string_view text) {
+  std::vector<Column> columns;
+  for (const std::string& cell : cells_of(text)) {
+    const std::size_t equals = std::min(cell.find('='), cell.size());
+    const std::string name = cell.substr(0, equals);
+    const std::string place = "/" + (equals < cell.size() ? cell.substr(equals + 1) : name);
+    const std::size_t star = name.find('*');
+    if (star == std::string::npos) {
+      columns.push_back({name, Json::json_pointer(place)});
+      continue;
+    }
+    for (const auto& [end, number] : {std::pair{"low", "/0"}, {"high", "/1"}})
+      columns.push_back(
+          {std::string(name).replace(star, 1, end), Json::json_pointer(place + number)});
+  }
+  return columns;
+}
+
+// In quotes where it holds a comma, a quote or a line break.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string result = "\"";
@@ -18,11 +47,40 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+std::string cell_of(const Json& value, const char* number) {
+  if (value.is_string()) return quoted(value.get<std::string>());
+  if (value.is_null()) return "";
+  if (!value.is_number_float()) return value.dump();
+  const auto fraction = value.get<double>();
+  return std::isfinite(fraction) ? fmt::format(fmt::runtime(number), fraction) : "";
+}
+
+}  // namespace
+
 Json json_of(const std::optional<evaluation::Interval>& interval) {
   return interval ? Json{interval->low, interval->high} : Json();
 }
 
 Json json_of_bound(double bound) { return std::isfinite(bound) ? Json(bound) : Json(); }
+
+std::string csv_of(std::string_view columns, const std::vector<Json>& rows, const char* number) {
+  std::string text;
+  for (const Column& column : columns_of(columns)) text += (text.empty() ? "" : ",") + column.name;
+  return text + "\n" + csv_rows(columns, rows, number);
+}
+
+std::string csv_rows(std::string_view columns, const std::vector<Json>& rows, const char* number) {
+  const std::vector<Column> known = columns_of(columns);
+  std::string text;
+  for (const Json& row : rows) {
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (i > 0) text += ",";
+      if (row.contains(known[i].place)) text += cell_of(row.at(known[i].place), number);
+    }
+    text += "\n";
+  }
+  return text;
+}
 
 std::string name_of_results(const fs::path& results) {
   const fs::path plain = fs::absolute(results).lexically_normal();

@@ -4,20 +4,18 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <airtruth/statistics.h>
 #include <nlohmann/json.hpp>
 
-// What the tables of trackers and of detectors have in common: cells of CSV, values of JSON, and
-// the files.
+// What the tables of trackers and of detectors have in common: values of JSON, tables of CSV whose
+// cells are such values, and the files.
 namespace airtruth::report {
 
 using Json = nlohmann::ordered_json;
-
-// A name as a cell of RFC 4180: in quotes where it holds a comma, a quote or a line break.
-std::string quoted(const std::string& text);
 
 // The value, or null where there is none.
 template <typename T>
@@ -28,6 +26,18 @@ Json or_null(const std::optional<T>& value) {
 Json json_of(const std::optional<evaluation::Interval>& interval);
 // The upper end of a bin; null for the last one, which has none.
 Json json_of_bound(double bound);
+
+// A table as RFC 4180 has it, whose cells are values of its rows: what a row does not have, null
+// and a number that is not finite are empty. `columns` are their headings, each with the place of
+// its value where that is not the heading, as RFC 6901 writes it but for the first slash: "a" or
+// "a=b/c". A * stands for two columns, the ends "low" and "high" of the interval at the place.
+// `number` is the format of numbers with a fraction: "{}" for all their digits.
+//
+// Example: "name,p=share/value,p_*=share/interval" is name,p,p_low,p_high, and the row {"name":
+// "a", "share": {"value": 0.5, "interval": [0.25, 0.75]}} is a,0.5,0.25,0.75.
+std::string csv_of(std::string_view columns, const std::vector<Json>& rows, const char* number);
+// The same without the headings.
+std::string csv_rows(std::string_view columns, const std::vector<Json>& rows, const char* number);
 
 // The name of a tracker or detector is that of its folder of results or, without the ending, of its
 // file. Throws Error for one that is not UTF-8.

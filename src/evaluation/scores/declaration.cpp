@@ -144,22 +144,6 @@ struct Weighted {
 
 }  // namespace
 
-const char* name_of(InTime in_time) {
-  switch (in_time) {
-    case InTime::kUnknown:
-      return "unknown";
-    case InTime::kNoViolation:
-      return "no violation";
-    case InTime::kImpossible:
-      return "impossible";
-    case InTime::kYes:
-      return "yes";
-    case InTime::kNo:
-      return "no";
-  }
-  return "unknown";
-}
-
 std::vector<EncounterScore> encounters_of(std::size_t sequence,
                                           const TruthSequence& truth,
                                           const ScoredDetections& scored,

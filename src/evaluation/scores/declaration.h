@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/truth.h"
 #include "evaluation/statistics/proportion.h"
+#include "foundation/base/enum_names.h"
 #include "runners/results/detections.h"
 
 // When a detector's tracks declare an aircraft, and whether that leaves time for a manoeuvre.
@@ -47,8 +49,13 @@ enum class InTime {
   kNo,
 };
 
-// "unknown", "no violation", "impossible", "yes", "no".
-const char* name_of(InTime in_time);
+constexpr auto enum_names(InTime) {
+  return std::to_array<EnumName<InTime>>({{InTime::kUnknown, "unknown"},
+                                          {InTime::kNoViolation, "no violation"},
+                                          {InTime::kImpossible, "impossible"},
+                                          {InTime::kYes, "yes"},
+                                          {InTime::kNo, "no"}});
+}
 
 // One aircraft of one sequence.
 struct EncounterScore {

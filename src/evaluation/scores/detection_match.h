@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "evaluation/scores/truth.h"
+#include "foundation/base/enum_names.h"
 #include "runners/results/detections.h"
 
 // The match of each detection with the truth of its frame: a detection is a true positive on the
@@ -23,6 +25,12 @@ enum class MatchKind {
   kIgnored,       // it is on an aircraft that does not count, or in an ignored region
   kFalseAlarm,    // all others
 };
+
+constexpr auto enum_names(MatchKind) {
+  return std::to_array<EnumName<MatchKind>>({{MatchKind::kTruePositive, "found"},
+                                             {MatchKind::kIgnored, "ignored"},
+                                             {MatchKind::kFalseAlarm, "false alarm"}});
+}
 
 struct Match {
   MatchKind kind = MatchKind::kFalseAlarm;

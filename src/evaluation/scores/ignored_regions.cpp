@@ -7,14 +7,14 @@
 
 #include "foundation/base/csv.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
+#include "labels/exchange/text.h"
 
 namespace airtruth::scores {
 namespace {
 
 constexpr std::string_view kHead = "sequence,first_frame,last_frame,x,y,width,height";
 constexpr std::size_t kCells = 7;
-constexpr double kMostFrames = 1e9;
+constexpr double kMostFrames = 1e9;  // a year at 30 frames/s
 // Far outside any picture.
 constexpr double kMostPixels = 1e6;
 
@@ -50,17 +50,11 @@ IgnoredRegion region_of(const std::vector<std::string>& cells, const Where& wher
 }  // namespace
 
 std::vector<IgnoredRegion> read_ignored_regions(const fs::path& file) {
-  const std::string text = read_file(file);
   std::vector<IgnoredRegion> regions;
   bool has_head = false;
-  Where where{file.string(), 0};
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = std::string_view(text).substr(at, end - at);
-    at = end + 1;
-    ++where.line;
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
-    const std::vector<std::string> cells = cells_of(line);
+  for (const exchange::Line& line : exchange::lines_of(file)) {
+    const Where where{file.string(), line.number};
+    const std::vector<std::string> cells = cells_of(line.text);
     if (!has_head) {
       if (cells != cells_of(kHead))
         throw Error("is no heading of ignored regions; expected " + std::string(kHead), where);

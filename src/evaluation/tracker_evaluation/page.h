@@ -14,7 +14,7 @@ namespace airtruth::tracker_evaluation {
 void write_page(const Assessment& assessment, const std::filesystem::path& out);
 
 // Writes the page's plots as files for a paper into out/figures: success, precision, normalised,
-// eao, range_m, size_px, contrast, background and ranking (plots.h). For each sequence it adds
+// eao, range_m, size_px, contrast, background and ranking. For each sequence it adds
 // xy-NAME (X, Y and the error over the frames, as in Figure 11 of the E-Vision paper) and, where
 // the videos were read, frames-NAME.png (pictures with boxes, as in its Figure 12). `format` is
 // "png", "pdf" or "svg". The gnuplot script of each plot, including its data, lies beside the plot.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/tracker_evaluation/tables.h"
 
-#include <cmath>
-
 #include <airtruth/version.h>
 #include <fmt/format.h>
 
@@ -15,7 +13,9 @@ using evaluation::Score;
 using measures::Bin;
 using report::Json;
 using report::or_null;
-using report::quoted;
+
+// The format of numbers in CSV: all their digits.
+constexpr const char* kNumber = "{}";
 
 Json json_of(const Score& score) {
   Json json = {{"frames", score.frames}, {"frames_with_target", score.counted}};
@@ -73,90 +73,58 @@ Json breakdown_of(const ScoredTracker& tracker) {
   return json;
 }
 
-// Nothing where there is no number.
-std::string cell(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format(",{}", *value) : ",";
+// The columns of a score that lies at a place.
+std::string score_columns(const std::string& place) {
+  std::string columns =
+      ",frames=" + place + "frames,frames_with_target=" + place + "frames_with_target";
+  for (const Measure& measure : measures())
+    columns += fmt::format(",{0}={1}{0}", measure.name, place);
+  return columns + ",angle_mrad=" + place + "angle_mrad";
 }
 
-std::string score_head() {
-  std::string line = ",frames,frames_with_target";
-  for (const Measure& measure : measures()) line += std::string(",") + measure.name;
-  return line + ",angle_mrad";
-}
-
-std::string score_cells(const std::optional<Score>& score, const std::optional<double>& angle) {
-  if (!score) return std::string(measures().size() + 3, ',');
-  std::string line = fmt::format(",{},{}", score->frames, score->counted);
-  for (const Measure& measure : measures()) line += cell((*score).*measure.value);
-  return line + cell(angle);
-}
-
-constexpr const char* kVotHead =
-    ",restart_accuracy,restart_failures,restart_eao,multistart_accuracy,multistart_robustness,"
-    "multistart_eao";
-
-std::string vot_cells(const std::optional<evaluation::Restart>& restart,
-                      const std::optional<evaluation::MultiStart>& multistart) {
-  return (restart ? cell(restart->accuracy) + cell(restart->failures) + cell(restart->eao)
-                  : ",,,") +
-         (multistart
-              ? cell(multistart->accuracy) + cell(multistart->robustness) + cell(multistart->eao)
-              : ",,,");
-}
+constexpr const char* kVotColumns =
+    ",restart_accuracy=restart/accuracy,restart_failures=restart/failures,restart_eao=restart/eao,"
+    "multistart_accuracy=multistart/accuracy,multistart_robustness=multistart/robustness,"
+    "multistart_eao=multistart/eao";
 
 std::string trackers_csv(const Assessment& assessment) {
-  std::string text = "tracker" + score_head();
+  std::string columns = "tracker=name" + score_columns("overall/");
   for (const Measure& measure : measures())
-    text += fmt::format(",{0}_low_95,{0}_high_95", measure.name);
-  text += std::string(kVotHead) + ",sequences_lost\n";
-  for (const ScoredTracker& tracker : assessment.trackers) {
-    text += quoted(tracker.name) + score_cells(tracker.overall, tracker.angle_mrad);
-    for (const Measure& measure : measures()) {
-      const auto found = tracker.intervals.find(measure.name);
-      const bool known = found != tracker.intervals.end() && found->second;
-      text += known ? cell(found->second->low) + cell(found->second->high) : ",,";
-    }
-    text += vot_cells(tracker.restart, tracker.multistart);
-    text += fmt::format(",{}\n", tracker.lost);
-  }
-  return text;
+    columns += fmt::format(",{0}_*_95=overall/intervals_95/{0}", measure.name);
+  std::vector<Json> rows;
+  for (const ScoredTracker& tracker : assessment.trackers)
+    rows.emplace_back(json_of(tracker))["sequences_lost"] = tracker.lost;
+  return report::csv_of(columns + kVotColumns + ",sequences_lost", rows, kNumber);
 }
 
 std::string sequences_csv(const Assessment& assessment) {
-  std::string text = "tracker,sequence" + score_head() + kVotHead +
-                     ",first_loss_frame,first_loss_s,first_loss_range_m\n";
+  std::vector<Json> rows;
   for (const ScoredTracker& tracker : assessment.trackers)
-    for (const ScoredSequence& sequence : tracker.sequences) {
-      text += quoted(tracker.name) + "," + quoted(sequence.name) +
-              score_cells(sequence.score, measures::mean_of(sequence.outcomes).angle_mrad) +
-              vot_cells(sequence.restart, sequence.multistart);
-      text += sequence.loss ? fmt::format(",{}", sequence.loss->frame) +
-                                  cell(sequence.loss->time_s) + cell(sequence.loss->range_m)
-                            : ",,,";
-      text += "\n";
-    }
-  return text;
+    for (const ScoredSequence& sequence : tracker.sequences)
+      rows.emplace_back(json_of(sequence))["tracker"] = tracker.name;
+  return report::csv_of("tracker,sequence=name" + score_columns("") + kVotColumns +
+                            ",first_loss_frame=first_loss/frame,first_loss_s=first_loss/time_s,"
+                            "first_loss_range_m=first_loss/range_m",
+                        rows,
+                        kNumber);
 }
 
 std::string breakdown_csv(const Assessment& assessment) {
-  std::string text =
-      "tracker,by,from,to,frames,overlap,success_50,precision_20px,centre_px,normalised,"
-      "angle_mrad\n";
-  const auto line = [&](const ScoredTracker& tracker,
-                        const std::string& by,
-                        const std::string& bounds,
-                        const Bin& bin) {
-    text += quoted(tracker.name) + "," + by + bounds + fmt::format(",{}", bin.frames) +
-            cell(bin.overlap) + cell(bin.success_50) + cell(bin.precision_20px) +
-            cell(bin.centre_px) + cell(bin.normalised) + cell(bin.angle_mrad) + "\n";
-  };
+  std::vector<Json> rows;
   for (const ScoredTracker& tracker : assessment.trackers) {
-    for (const auto& [key, bins] : tracker.bins)
-      for (const Bin& bin : bins) line(tracker, key, cell(bin.from) + cell(bin.to), bin);
-    for (const auto& [name, bin] : tracker.backgrounds)
-      line(tracker, "background", "," + quoted(name) + ",", bin);
+    const Json breakdown = breakdown_of(tracker);
+    for (const auto& [key, bins] : breakdown.items())
+      for (const auto& [name, bin] : bins.items()) {
+        Json& row = rows.emplace_back(bin);
+        row["tracker"] = tracker.name;
+        row["by"] = key;
+        if (bins.is_object()) row["from"] = name;
+      }
   }
-  return text;
+  return report::csv_of(
+      "tracker,by,from,to,frames,overlap,success_50,precision_20px,centre_px,normalised,angle_mrad",
+      rows,
+      kNumber);
 }
 
 }  // namespace

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <set>
 
-#include "foundation/base/error.h"
 #include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
-#include "picture/video/numbered_frames.h"
 #include "sequence/replay/finished.h"
 #include "show/drawing/thumbnails.h"
 
 namespace airtruth::tracker_evaluation {
 namespace {
-
-constexpr report::CutoutOptions kClose = {
-    .surroundings = 3, .most_of_picture = 3, .side = 200, .quality = 8};
 
 std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
   if (set.is_imported(name)) return std::nullopt;
@@ -39,15 +34,6 @@ TruthClip truth_from(exchange::Clip clip) {
 PixelBox covered(const Box& box) {
   const PixelBox touched = pixels_of(box);
   return {touched.x, touched.y, std::max(1, touched.width), std::max(1, touched.height)};
-}
-
-TruthClip::Still still_of(const TruthClip& truth, std::size_t i, const image::Picture& picture) {
-  TruthClip::Still still;
-  still.index = i;
-  still.width = picture.width;
-  still.whole = report::small_jpeg(picture, TruthClip::kWholeWidth, kClose.quality);
-  if (const auto box = truth.box(i)) still.close = report::cutout_of(picture, *box, kClose);
-  return still;
 }
 
 }  // namespace
@@ -80,16 +66,12 @@ void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop)
   if (truth.clip.media.empty()) return;
   const std::size_t count = truth.clip.frames.size();
   const std::set<std::size_t> wanted = report::spread_over(count, stills);
-  video::NumberedFrames frames(truth.clip.media, {});
+  report::ClipPictures pictures(truth.clip.media, truth.clip.name, stop);
   for (std::size_t i = 0; i < count; ++i) {
-    if (stop.stop_requested()) throw Interrupted();
-    const image::Picture* picture = frames.at(truth.clip.frames[i].frame);
-    if (picture == nullptr)
-      throw Error("ends before the labels of " + truth.clip.name + " do",
-                  {truth.clip.media.string()});
-    if (const auto box = truth.box(i))
-      truth.contrast[i] = drawing::contrast(*picture, covered(*box));
-    if (wanted.count(i) > 0) truth.stills.push_back(still_of(truth, i, *picture));
+    const image::Picture& picture = pictures.at(truth.clip.frames[i].frame);
+    const std::optional<Box> box = truth.box(i);
+    if (box) truth.contrast[i] = drawing::contrast(picture, covered(*box));
+    if (wanted.contains(i)) truth.stills.push_back(report::still_of(picture, i, box, kClose));
   }
 }
 

@@ -11,7 +11,7 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/labelled/labelled_set.h"
-#include "evaluation/report/cutout.h"
+#include "evaluation/report/film.h"
 #include "foundation/base/log.h"
 
 namespace airtruth::tracker_evaluation {
@@ -29,18 +29,8 @@ struct TruthClip {
   std::vector<std::optional<double>> size_px;  // longer side of the box, px
   // Contrast in grey levels (show/drawing/thumbnails.h), filled in by add_film().
   std::vector<std::optional<double>> contrast;
-
-  // Small JPEGs of some frames for the page.
-  struct Still {
-    std::size_t index = 0;  // index in clip.frames
-    int width = 0;          // width of the video's picture, px
-    // The whole picture, at most kWholeWidth pixels wide.
-    std::string whole;
-    // The surroundings of the object; empty without a truth box.
-    report::Cutout close;
-  };
-  static constexpr int kWholeWidth = 400;
-  std::vector<Still> stills;
+  // Some frames, for the page.
+  std::vector<report::Still> stills;
 
   std::optional<Box> box(std::size_t i) const {
     const auto& labels = clip.frames[i].labels;
@@ -48,6 +38,9 @@ struct TruthClip {
   }
   evaluation::VotTruth vot() const;
 };
+
+constexpr report::CutoutOptions kClose = {
+    .surroundings = 3, .most_of_picture = 3, .side = 200, .whole_width = 400, .quality = 8};
 
 // Returns every object of every sequence, sorted by name, with its covered boxes
 // (LabelledSet::usual_boxes).

@@ -80,7 +80,7 @@
 
   const none = { display: false };
 
-  // The plots are described by the program (evaluation/tracker_evaluation/plots.h). They have no legends: the
+  // The plots are described by the program (evaluation/tracker_evaluation/page.h). They have no legends: the
   // ranking says which style is whose.
   const drawPlots = () => {
     for (const canvas of document.querySelectorAll('canvas[data-plot]')) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/report/cutout.h"
+#include "evaluation/report/film.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "foundation/base/base64.h"
+#include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
 #include "show/drawing/thumbnails.h"
@@ -26,8 +29,23 @@ Cutout cutout_of(const image::Picture& picture, const Box& box, const CutoutOpti
   return cutout;
 }
 
-std::string small_jpeg(const image::Picture& picture, int width, int quality) {
-  return video::jpeg_of(drawing::small_copy(image::rgb8_from_picture(picture), width), quality);
+Still still_of(const image::Picture& picture,
+               std::size_t index,
+               const std::optional<Box>& subject,
+               const CutoutOptions& options) {
+  Still still{.index = index, .width = picture.width};
+  still.whole = video::jpeg_of(
+      drawing::small_copy(image::rgb8_from_picture(picture), options.whole_width), options.quality);
+  if (subject) still.close = cutout_of(picture, *subject, options);
+  return still;
+}
+
+const image::Picture& ClipPictures::at(std::int64_t frame) {
+  if (stop_.stop_requested()) throw Interrupted();
+  const image::Picture* picture = frames_.at(frame);
+  if (picture == nullptr)
+    throw Error("ends before the labels of " + name_ + " do", {media_.string()});
+  return *picture;
 }
 
 std::set<std::size_t> spread_over(std::size_t frames, std::size_t count) {
@@ -42,6 +60,15 @@ void add_picture(std::vector<html::PageBlob>& pictures,
                  const std::string& name,
                  const std::string& jpeg) {
   if (!jpeg.empty()) pictures.push_back({name, base64_of(jpeg)});
+}
+
+void add_stills(std::vector<html::PageBlob>& pictures,
+                std::size_t sequence,
+                const std::vector<Still>& stills) {
+  for (std::size_t i = 0; i < stills.size(); ++i) {
+    add_picture(pictures, fmt::format("whole-{}-{}", sequence, i), stills[i].whole);
+    add_picture(pictures, fmt::format("close-{}-{}", sequence, i), stills[i].close.jpeg);
+  }
 }
 
 }  // namespace airtruth::report
